@@ -50,6 +50,15 @@ def coupled(name: str, *joints: str) -> str:
     return HEAD.replace("2.0", "2.1").replace("closures:\n", f"couplings:\n{items}closures:\n")
 
 
+#: The URDF up to the inertia of its first link.
+BASE = (Path(__file__).parents[1] / "data" / "workbench.urdf").read_text(encoding="utf-8").partition("<mass")[0]
+
+
+def of_version(version: str, origin: str) -> tuple[str, str]:
+    """An edit of the URDF, which then states a version, and the origin of its first inertia."""
+    return BASE, BASE.replace('name="workbench"', f'name="workbench" version="{version}"') + f"<origin {origin}/>"
+
+
 # code, file, text to replace, replacement, text at the place that the diagnostic points at, part of message or hint
 # fmt: off
 ERRORS = [
@@ -105,8 +114,15 @@ ERRORS = [
     ("urdf-bad-number", URDF, 'mass value="2"', 'mass value="1e999"', "1e999", "finite"),
     ("urdf-bad-number", URDF, 'xyz="0.4 0 0"', 'xyz="0.4 0"', "0.4 0", "3 numbers"),
     ("urdf-bad-number", URDF, 'xyz="0.4 0 0"', 'xyz="${l} 0 0"', "${l}", "xacro"),
+    ("urdf-version", URDF, '<robot name="workbench">', '<robot name="workbench" version="2">', '2">', "1.0, 1.1 or 1.2"),
+    ("urdf-version", URDF, '<robot name="workbench">', '<robot name="workbench" version="1">', '1">', 'version="1.0"'),
     ("urdf-empty-name", URDF, '<link name="rod_tip"/>', '<link name=""/>', None, ""),
     ("urdf-empty-name", URDF, '<link name="rod_tip"/>', '<link name="&#9;"/>', None, ""),
+    ("urdf-two-orientations", URDF, *of_version("1.1", 'rpy="0 0 0" quat_xyzw="0 0 0 1"'), "0 0 0 1", "'rpy' and"),
+    ("urdf-zero-quaternion", URDF, *of_version("1.2", 'quat_xyzw="0 0 0 -0"'), "0 0 0 -0", "link 'base'"),
+    ("urdf-later-version", URDF, *of_version("1.0", 'quat_xyzw="1 0 0 0"'), "1 0 0 0", 'version="1.1"'),
+    ("urdf-later-version", URDF, '<box size="0.2 0.04 0.04"/>', '<capsule radius="1" length="1"/>', "<capsule", "no version"),
+    ("urdf-later-version", URDF, 'velocity="10"/>', 'velocity="10" jerk="1"/>', '1"/>', 'version="1.2"'),
     ("urdf-duplicate-link", URDF, '<link name="wrist_2"/>', '<link name="wrist_2"/>\n  <link name="wrist_2"/>', None, "'wrist_2'"),
     ("urdf-duplicate-joint", URDF, 'joint name="stage"', 'joint name="motor"', 'motor" type="prismatic"', "'motor'"),
     ("urdf-reserved-name", URDF, 'joint name="tip"', 'joint name="universe"', "universe", ""),

@@ -11,9 +11,10 @@ from xml.parsers import expat
 import numpy as np
 
 from eurdf_conformance.oracle.not_read import NotRead
-from eurdf_conformance.oracle.spatial import Array, from_rpy, pose, unit
+from eurdf_conformance.oracle.spatial import Array, from_quaternion, from_rpy, pose, unit
 
 _NUMBER = re.compile(r"[-+]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][-+]?[0-9]+)?")
+_VERSIONS = ("1.0", "1.1", "1.2")
 _TYPES = ("revolute", "continuous", "prismatic", "planar", "floating", "fixed")
 
 
@@ -115,6 +116,8 @@ class Element:
     name: str
     attributes: dict[str, str]
     children: list[Element]
+    #: The version of URDF of the file, EU-URD-037; 0.9 if it states none.
+    version: float = 0.9
 
     def all(self, name: str) -> list[Element]:
         """The children with a name."""
@@ -125,7 +128,7 @@ class Element:
         found = self.all(name)
         if len(found) > 1:
             raise NotRead(f"{len(found)} elements {name!r} in one {self.name!r}")
-        return found[0] if found else Element(name, {}, [])
+        return found[0] if found else Element(name, {}, [], self.version)
 
     def text(self, name: str) -> str:
         """A required attribute."""
@@ -156,7 +159,8 @@ def parse(source: bytes) -> Element:
     stack: list[Element] = []
 
     def start(name: str, attributes: dict[str, str]) -> None:
-        element = Element(name, attributes, [])
+        version = stack[-1].version if stack else version_of(attributes)
+        element = Element(name, attributes, [], version)
         (stack[-1].children if stack else top).append(element)
         stack.append(element)
 
@@ -172,6 +176,13 @@ def parse(source: bytes) -> Element:
     except expat.ExpatError as error:
         raise NotRead(str(error)) from error
     return top[0]
+
+
+def version_of(robot: dict[str, str]) -> float:
+    """The version of URDF that the attributes of the root element state, EU-URD-037."""
+    if robot.get("version", "1.0") not in _VERSIONS:
+        raise NotRead(f"the version {robot['version']!r} of URDF")
+    return float(robot.get("version", "0.9"))
 
 
 def read_urdf(path: Path) -> Urdf:
@@ -193,7 +204,13 @@ def read_urdf(path: Path) -> Urdf:
 def origin(element: Element) -> Array:
     """The pose in the `origin` of an element, or the identity."""
     found = element.one("origin")
-    return pose(from_rpy(found.numbers("rpy", [0.0] * 3)), found.numbers("xyz", [0.0] * 3))
+    R, p = from_rpy(found.numbers("rpy", [0.0] * 3)), found.numbers("xyz", [0.0] * 3)
+    if found.version >= 1.1 and "quat_xyzw" in found.attributes:
+        quaternion = found.numbers("quat_xyzw", [0.0] * 4)
+        if "rpy" in found.attributes or not np.any(quaternion):
+            raise NotRead("an origin with two orientations, or with a quaternion of zero")
+        R = from_quaternion(unit(quaternion))
+    return pose(R, p)
 
 
 def inertia(link: Element) -> Inertia | None:
@@ -228,7 +245,8 @@ def shapes(link: Element) -> list[Shape]:
 
 def shape(element: Element, use: str) -> Shape:
     """The one shape in a `visual` or `collision`."""
-    found = [each for each in element.one("geometry").children if each.name in _SIZES]
+    known = _SIZES.keys() - ({"capsule"} if element.version == 1.0 else set())
+    found = [each for each in element.one("geometry").children if each.name in known]
     if len(found) != 1:
         raise NotRead(f"{len(found)} shapes in one geometry")
     (only,) = found
@@ -261,7 +279,8 @@ def joint(element: Element) -> UrdfJoint:
     ranged = kind in ("revolute", "prismatic")
     if ranged and not limited:
         raise NotRead("a joint without the limit that it must have")
-    limit, dynamics = element.one("limit"), element.one("dynamics")
+    limit = limits(element.one("limit"), ranged) if element.all("limit") else {}
+    dynamics = element.one("dynamics")
     follows = mimic(element.one("mimic")) if element.all("mimic") else None
     return UrdfJoint(
         name=element.text("name"),
@@ -270,14 +289,24 @@ def joint(element: Element) -> UrdfJoint:
         child=element.one("child").text("link"),
         origin=origin(element),
         axis=unit(axis),
-        lower=limit.number("lower", 0.0) if ranged else None,
-        upper=limit.number("upper", 0.0) if ranged else None,
-        velocity=limit.number("velocity") if limited else None,
-        effort=limit.number("effort") if limited else None,
+        lower=limit.get("lower") if ranged else None,
+        upper=limit.get("upper") if ranged else None,
+        velocity=limit.get("velocity") if limited else None,
+        effort=limit.get("effort") if limited else None,
         damping=dynamics.number("damping", 0.0) if spoken_of else 0.0,
         friction=dynamics.number("friction", 0.0) if spoken_of else 0.0,
         mimic=None if kind == "fixed" else follows,
     )
+
+
+def limits(element: Element, ranged: bool) -> dict[str, float]:
+    """The limits that a `limit` states, with the defaults of its version."""
+    if element.version < 1.2:
+        found = {name: element.number(name, 0.0) for name in ("lower", "upper")}
+        return found | {name: element.number(name) for name in ("effort", "velocity")}
+    names = ("lower", "upper", "effort", "velocity", "acceleration", "deceleration", "jerk")
+    needed = ("lower", "upper") if ranged else ()
+    return {name: element.number(name) for name in names if name in element.attributes or name in needed}
 
 
 def mimic(element: Element) -> Mimic:

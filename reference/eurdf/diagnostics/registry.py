@@ -110,6 +110,7 @@ urdf-not-found             EU-FIL-004 error   The URDF file that the description
 xml-syntax                 EU-URD-001 error   The file is not well-formed XML.
 xml-doctype                EU-URD-002 error   The XML has a document type declaration.
 urdf-root-element          EU-URD-003 error   The root element is not <robot>.
+urdf-version               EU-URD-037 error   The robot states an unknown version of URDF.
 urdf-missing-element       EU-URD-004 error   A required child element is missing.
 urdf-missing-attribute     EU-URD-005 error   A required attribute is missing.
 urdf-repeated-element      EU-URD-006 error   An element occurs more than once where only one is allowed.
@@ -118,6 +119,8 @@ urdf-empty-name            EU-URD-008 error   A name is empty.
 urdf-duplicate-link        EU-URD-009 error   Two links have the same name.
 urdf-duplicate-joint       EU-URD-010 error   Two joints have the same name.
 urdf-reserved-name         EU-URD-011 error   A link, joint or frame has a reserved name.
+urdf-two-orientations      EU-URD-040 error   An <origin> has both rpy and quat_xyzw.
+urdf-zero-quaternion       EU-URD-041 error   The quaternion of an <origin> is zero.
 urdf-joint-type            EU-URD-012 error   A joint has an unknown type.
 urdf-zero-axis             EU-URD-013 error   The axis of a moving joint is zero.
 urdf-unknown-link          EU-URD-014 error   A joint names a link that does not exist.
@@ -126,7 +129,7 @@ urdf-two-parents           EU-URD-016 error   A link is the child of two joints.
 urdf-cycle                 EU-URD-017 error   Joints form a cycle, so the robot is not a tree.
 urdf-two-roots             EU-URD-018 error   More than one link has no parent.
 urdf-reversed-limits       EU-URD-019 error   A lower limit is above the upper limit.
-urdf-negative-limit        EU-URD-020 error   A velocity limit, effort limit, damping or friction is negative.
+urdf-negative-limit        EU-URD-020 error   A limit of velocity, acceleration or effort, damping or friction is negative.
 urdf-mimic-unknown         EU-URD-021 error   A joint mimics a joint that does not exist.
 urdf-mimic-cycle           EU-URD-022 error   Joints mimic one another in a cycle.
 urdf-mimic-kind            EU-URD-023 error   A mimic joint or its leader does not have exactly one coordinate.
@@ -134,6 +137,7 @@ urdf-mimic-fixed           EU-URD-036 warning A fixed joint has a <mimic>, which
 urdf-geometry              EU-URD-024 error   A geometry is not exactly one shape with valid dimensions.
 urdf-no-range              EU-URD-025 warning A revolute or prismatic joint has the position limits 0 and 0.
 urdf-unknown-element       EU-URD-026 warning An unknown element or attribute has a name similar to one of URDF.
+urdf-later-version         EU-URD-038 warning The URDF has an attribute or a shape of a later version of URDF.
 urdf-closure-ignored       EU-URD-027 warning The URDF contains a closure of another dialect, which has no effect.
 urdf-mesh-missing          EU-URD-028 warning A mesh file is not found.
 urdf-unknown-material      EU-URD-029 warning A material is used but not defined.

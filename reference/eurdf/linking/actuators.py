@@ -127,6 +127,9 @@ def with_motor(joint: Joint, entry: ActuatorEntry, *, armature_given: bool) -> J
         (rotor,) * nv,
         own.stiffness,
         own.rest,
+        own.acceleration,
+        own.deceleration,
+        own.jerk,
     )
     return joint.with_properties(motor)
 

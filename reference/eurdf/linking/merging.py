@@ -118,6 +118,9 @@ def merge(chain: Chain, name: str) -> tuple[Joint, Joint, Joint]:
         name: tuple(getattr(joint.properties, name)[0] for joint in nearest)
         for name in ("velocity", "effort", "damping", "friction", "armature")
     }
+    for rate in ("acceleration", "deceleration", "jerk"):
+        if any(getattr(joint.properties, rate) for joint in nearest):
+            by_axis[rate] = tuple((getattr(joint.properties, rate) or (math.inf,))[0] for joint in nearest)
     properties = replace(JointProperties.unlimited(JointType.SPHERICAL), **by_axis)
     ball = Joint(name, JointType.SPHERICAL, first.parent, third.child, zero, offset, properties=properties)
     return fixed(first), fixed(second), ball

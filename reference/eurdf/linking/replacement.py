@@ -309,6 +309,9 @@ class _Replacement:
                 own.armature * nv,
                 own.gear_ratio * nv,
                 own.rotor_inertia * nv,
+                acceleration=own.acceleration * nv,
+                deceleration=own.deceleration * nv,
+                jerk=own.jerk * nv,
             )
         return Joint(joint.name, kind, joint.parent, joint.child, joint.placement, axes=axes, properties=properties)
 
@@ -385,7 +388,10 @@ class _Replacement:
         properties = joint.properties
         if joint.type is JointType.PRISMATIC:
             lead = pitch / (2.0 * math.pi)
-            limits = (*properties.lower, *properties.upper, *properties.velocity)
+            limits = (
+                *(*properties.lower, *properties.upper, *properties.velocity),
+                *(*properties.acceleration, *properties.deceleration, *properties.jerk),
+            )
             largest = max((abs(limit) for limit in limits if math.isfinite(limit)), default=0.0)
             if lead == 0.0 or not math.isfinite(largest / lead):
                 message = f"a limit of helical joint '{joint.name}', rad, is not finite: its pitch is {pitch:g} m"
@@ -411,6 +417,9 @@ class _Replacement:
                 effort=(turning["effort limit"][1],),
                 damping=(turning["damping"][1],),
                 friction=(turning["friction"][1],),
+                acceleration=tuple(limit / abs(lead) for limit in properties.acceleration),
+                deceleration=tuple(limit / abs(lead) for limit in properties.deceleration),
+                jerk=tuple(limit / abs(lead) for limit in properties.jerk),
             )
         return replace(joint, type=JointType.HELICAL, pitch=pitch, properties=properties)
 

@@ -30,7 +30,8 @@ def joint_of(joint: UrdfJoint) -> Joint:
     if kind not in _AXIAL:
         return Joint(joint.name, kind, joint.parent, joint.child, joint.placement, properties=properties)
     if joint.limit is not None or joint.damping or joint.friction:
-        lower, upper, velocity, effort = joint.limit or _UNLIMITED
+        lower, upper, velocity, effort, *rates = joint.limit or _UNLIMITED
+        acceleration, deceleration, jerk = (() if math.isinf(limit) else (limit,) for limit in rates)
         properties = JointProperties(
             properties.lower if kind is JointType.CONTINUOUS else (lower,),
             properties.upper if kind is JointType.CONTINUOUS else (upper,),
@@ -41,6 +42,9 @@ def joint_of(joint: UrdfJoint) -> Joint:
             properties.armature,
             properties.gear_ratio,
             properties.rotor_inertia,
+            acceleration=acceleration,
+            deceleration=deceleration,
+            jerk=jerk,
         )
     return Joint(
         joint.name,

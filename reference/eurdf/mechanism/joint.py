@@ -33,6 +33,9 @@ class JointProperties:
         stiffness: Stiffness k of a spring on each coordinate, N·m/rad or N/m: its force is -k (q - rest), its energy
             ½ k (q - rest)². Only for joints with as many coordinates as velocities, except planar ones.
         rest: Coordinate at which each of these springs has no force, rad or m.
+        acceleration: Acceleration limits, rad/s² or m/s²; inf where there is none. No equation of motion has these.
+        deceleration: Deceleration limits, rad/s² or m/s².
+        jerk: Jerk limits, rad/s³ or m/s³.
     """
 
     lower: tuple[float, ...] = ()
@@ -46,6 +49,9 @@ class JointProperties:
     rotor_inertia: tuple[float, ...] = ()
     stiffness: tuple[float, ...] = ()
     rest: tuple[float, ...] = ()
+    acceleration: tuple[float, ...] = ()
+    deceleration: tuple[float, ...] = ()
+    jerk: tuple[float, ...] = ()
 
     @classmethod
     @cache

@@ -45,6 +45,16 @@ class Pose:
         norm = math.sqrt(x * x + y * y + z * z + w * w)
         return cls(xyz, (x / norm, y / norm, z / norm, w / norm))
 
+    @classmethod
+    def from_xyz_quaternion(cls, xyz: Vector3, quaternion: Quaternion) -> Pose:
+        """EU-URD-039: pose with the orientation of a quaternion x, y, z, w of any length but zero."""
+        x, y, z, w = quaternion
+        if not 1e-290 < x * x + y * y + z * z + w * w < 1e290:  # its square is out of range
+            largest = max(map(abs, quaternion))
+            x, y, z, w = x / largest, y / largest, z / largest, w / largest
+        norm = math.sqrt(x * x + y * y + z * z + w * w)
+        return cls(xyz, (x / norm, y / norm, z / norm, w / norm))
+
     def act(self, point: Vector3) -> Vector3:
         """Coordinates, in the outer frame, of a point of this frame."""
         x, y, z = self.rotate(point)

@@ -387,6 +387,9 @@ def _properties(
             of(armature),
             stiffness=before[name].stiffness,
             rest=before[name].rest,
+            acceleration=before[name].acceleration,
+            deceleration=before[name].deceleration,
+            jerk=before[name].jerk,
         )
     return found
 

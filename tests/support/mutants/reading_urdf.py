@@ -407,3 +407,69 @@ def axes_are_snapped(robot: Any) -> None:
 def universe_in_any_case_is_reserved(data: Any, robot: Any) -> bool:
     """`Universe` is reserved too."""
     return any(name.lower() == "universe" for name in robot.xpath("(link|joint)/@name"))
+
+
+# -- Versions of URDF -------------------------------------------------------------------------------------------------
+
+
+@reads_urdf("EU-URD-037")
+def versions_are_compared_as_numbers(robot: Any) -> None:
+    """A version may be written as any text of the same number, such as `1.10`."""
+    try:
+        robot.set("version", str(float(robot.get("version", ""))))
+    except ValueError:
+        pass
+
+
+def _quaternions(robot: Any) -> list[tuple[Any, list[str]]]:
+    return [(origin, origin.get("quat_xyzw").split()) for origin in robot.iterfind(".//origin[@quat_xyzw]")]
+
+
+@reads_urdf("EU-URD-039")
+def quaternions_begin_with_w(robot: Any) -> None:
+    """The first number of a quaternion is w, as in MJCF."""
+    for origin, numbers in _quaternions(robot):
+        origin.set("quat_xyzw", " ".join(numbers[1:] + numbers[:1]))
+
+
+@reads_urdf("EU-URD-039", level=Level.STRUCTURE)
+def quaternions_of_joints_alone_are_read(robot: Any) -> None:
+    """The quaternions of shapes and inertias have no effect."""
+    for origin, _ in _quaternions(robot):
+        if origin.getparent().tag != "joint":
+            del origin.attrib["quat_xyzw"]
+
+
+@refuses("EU-URD-039")
+def quaternions_are_of_unit_length(data: Any, robot: Any) -> bool:
+    """A quaternion whose norm differs from 1 by more than 1e-3 is refused."""
+    quaternions = robot.xpath("/robot[@version >= 1.1]//origin/@quat_xyzw")
+    return any(abs(math.hypot(*map(float, text.split())) - 1.0) > 1e-3 for text in quaternions)
+
+
+@reads_urdf("EU-URD-039")
+def quaternions_have_an_effect_in_every_version(robot: Any) -> None:
+    """A quaternion is read before version 1.1 too."""
+    if robot.get("version", "1.0") == "1.0" and _quaternions(robot):
+        robot.set("version", "1.1")
+
+
+@refuses("EU-URD-005")
+def limits_of_every_version_need_an_effort(data: Any, robot: Any) -> bool:
+    """A limit must have an effort in version 1.2 too."""
+    return any("effort" not in limit.attrib for limit in robot.iterfind("joint/limit"))
+
+
+@reads_urdf("EU-URD-005")
+def ranges_of_every_version_are_0(robot: Any) -> None:
+    """A position limit that is left out is 0 in version 1.2 too."""
+    for limit in robot.iterfind("joint/limit") if robot.get("version") == "1.2" else ():
+        for side in ("lower", "upper"):
+            limit.set(side, limit.get(side, "0"))
+
+
+@reads_urdf("EU-URD-019")
+def limits_of_continuous_joints_may_be_reversed(robot: Any) -> None:
+    """The position limits of a continuous joint are not compared."""
+    for limit in robot.iterfind("joint[@type='continuous']/limit"):
+        limit.attrib.pop("lower", None)

@@ -1,9 +1,13 @@
-// The URDF as a tree of links and joints, EU-URD-003 to -024. Mimic joints depend on the version: see mimic.mjs.
+// The URDF as a tree of links and joints, EU-URD-003 to -024, and -037 to -041. Mimic joints depend on the version of the
+// description: see mimic.mjs.
 
 import { fail } from "./invalid.mjs";
-import { fromOrigin } from "./spatial.mjs";
+import { fromOrigin, fromQuaternion } from "./spatial.mjs";
 
-const POSE = { origin: { numbers: { xyz: 3, rpy: 3 } } };
+const VERSIONS = ["1.0", "1.1", "1.2"];
+const RATES = ["acceleration", "deceleration", "jerk"];
+
+const POSE = { origin: { numbers: { xyz: 3, rpy: 3, quat_xyzw: 4 }, check: checkOrientation } };
 const MATERIAL = { elements: { color: { needs: ["rgba"], numbers: { rgba: 4 } }, texture: {} } };
 const SHAPES = {
   box: { needs: ["size"], numbers: { size: 3 } },
@@ -51,7 +55,9 @@ const ROBOT = {
         parent: LINKED,
         child: LINKED,
         axis: { needs: ["xyz"], numbers: { xyz: 3 } },
-        limit: { needs: ["effort", "velocity"], numbers: { effort: 1, velocity: 1, lower: 1, upper: 1 } },
+        limit: {
+          numbers: { effort: 1, velocity: 1, lower: 1, upper: 1, acceleration: 1, deceleration: 1, jerk: 1 },
+        },
         dynamics: { numbers: { damping: 1, friction: 1 } },
         mimic: { needs: ["joint"], names: ["joint"], numbers: { multiplier: 1, offset: 1 } },
       },
@@ -68,10 +74,30 @@ const NUMBER = /^[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?$/;
 /** `{name, links, joints, root}`: links and joints are Maps by name; `root` is the name of the root link. */
 export function readUrdf(root) {
   if (root.name !== "robot") fail(`urdf: the root element is <${root.name}>, not <robot>`);
+  const version = versionOf(root);
+  dropLater(root, version);
   check(root, ROBOT, "<robot>");
   const links = byName(root, "link", linkOf);
-  const joints = byName(root, "joint", jointOf);
+  const joints = byName(root, "joint", (element, name) => jointOf(element, name, version));
   return { name: root.attributes.get("name"), links, joints, root: rootOf(links, joints) };
+}
+
+/** The version of URDF as a number; 0.9 if the robot states none. */
+function versionOf(root) {
+  const stated = root.attributes.get("version");
+  if (stated === undefined) return 0.9;
+  if (!VERSIONS.includes(stated)) fail(`urdf: URDF has no version '${stated}'`);
+  return Number(stated);
+}
+
+/** Removes what the version does not have. Only a robot that states version 1.0 has no capsules. */
+function dropLater(element, version) {
+  if (element.name === "origin" && version < 1.1) element.attributes.delete("quat_xyzw");
+  if (element.name === "limit" && version < 1.2) RATES.forEach((rate) => element.attributes.delete(rate));
+  if (element.name === "geometry" && version === 1.0) {
+    element.children = element.children.filter(({ name }) => name !== "capsule");
+  }
+  for (const child of element.children) dropLater(child, version);
 }
 
 function check(element, table, where) {
@@ -109,6 +135,13 @@ function numbers(element, name, count, where) {
   return values;
 }
 
+function checkOrientation(element, where) {
+  const quaternion = numbers(element, "quat_xyzw", 4, where);
+  if (!quaternion) return;
+  if (element.attributes.has("rpy")) fail(`urdf: ${where} has both rpy and quat_xyzw`);
+  if (quaternion.every((number) => number === 0)) fail(`urdf: the quaternion of ${where} is zero`);
+}
+
 function checkGeometry(element, where) {
   const shapes = element.children.filter((child) => Object.hasOwn(SHAPES, child.name));
   if (shapes.length !== 1) fail(`urdf: ${where} contains ${shapes.length} shapes, not one`);
@@ -142,7 +175,10 @@ function numbersOf(element, tag, name, absent) {
 }
 
 function originOf(element) {
-  return fromOrigin(numbersOf(element, "origin", "xyz", [0, 0, 0]), numbersOf(element, "origin", "rpy", [0, 0, 0]));
+  const xyz = numbersOf(element, "origin", "xyz", [0, 0, 0]);
+  const quaternion = numbersOf(element, "origin", "quat_xyzw", [0, 0, 0, 1]);
+  if (child(element, "origin")?.attributes.has("quat_xyzw")) return { R: fromQuaternion(quaternion), p: xyz };
+  return fromOrigin(xyz, numbersOf(element, "origin", "rpy", [0, 0, 0]));
 }
 
 function linkOf(element, name) {
@@ -169,7 +205,7 @@ function shapeOf(element) {
 }
 
 /** Limits, damping and friction are numbers, or null where there is no limit. */
-function jointOf(element, name) {
+function jointOf(element, name, version) {
   const type = element.attributes.get("type");
   if (!TYPES.includes(type)) fail(`urdf: joint '${name}' has the type '${type}', not one of ${TYPES.join(", ")}`);
   const limit = child(element, "limit");
@@ -177,23 +213,29 @@ function jointOf(element, name) {
   const axis = numbersOf(element, "axis", "xyz", [1, 0, 0]);
   if (WITH_AXIS.includes(type) && axis.every((number) => number === 0))
     fail(`urdf: the axis of joint '${name}' is zero`);
-  const [lower] = numbersOf(element, "limit", "lower", [0]);
-  const [upper] = numbersOf(element, "limit", "upper", [0]);
-  if (WITH_RANGE.includes(type) && lower > upper) fail(`urdf: joint '${name}' has lower ${lower} > upper ${upper}`);
+  const later = version >= 1.2;
+  const ranged = WITH_RANGE.includes(type);
+  for (const key of later ? (ranged ? ["lower", "upper"] : []) : ["effort", "velocity"]) {
+    if (limit && !limit.attributes.has(key)) fail(`urdf: the <limit> of joint '${name}' has no ${key}`);
+  }
+  const [lower] = numbersOf(element, "limit", "lower", [later ? -Infinity : 0]);
+  const [upper] = numbersOf(element, "limit", "upper", [later ? Infinity : 0]);
+  if ((later || ranged) && lower > upper) fail(`urdf: joint '${name}' has lower ${lower} > upper ${upper}`);
   const [effort] = numbersOf(element, "limit", "effort", [null]);
   const [velocity] = numbersOf(element, "limit", "velocity", [null]);
   const [damping] = numbersOf(element, "dynamics", "damping", [0]);
   const [friction] = numbersOf(element, "dynamics", "friction", [0]);
-  if ([effort, velocity, damping, friction].some((number) => number < 0)) {
-    fail(`urdf: joint '${name}' has a negative effort, velocity, damping or friction`);
+  const rates = RATES.map((rate) => numbersOf(element, "limit", rate, [0])[0]);
+  if ([effort, velocity, ...rates, damping, friction].some((number) => number < 0)) {
+    fail(`urdf: joint '${name}' has a negative limit, damping or friction`);
   }
   const mimic = child(element, "mimic");
   return {
     name,
     type,
     axis,
-    lower: WITH_RANGE.includes(type) ? lower : null,
-    upper: WITH_RANGE.includes(type) ? upper : null,
+    lower: ranged ? lower : null,
+    upper: ranged ? upper : null,
     effort,
     velocity,
     damping,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from typing import NamedTuple
@@ -16,12 +17,18 @@ from eurdf.reading.xml_reader import XmlDocument
 
 
 class Limit(NamedTuple):
-    """A joint's ``limit``: positions in rad or m, velocity in rad/s or m/s, effort in N·m or N."""
+    """A joint's ``limit``: positions in rad or m, velocity in rad/s or m/s, effort in N·m or N; infinite if none.
+
+    Acceleration and deceleration are in rad/s² or m/s², jerk in rad/s³ or m/s³.
+    """
 
     lower: float
     upper: float
     velocity: float
     effort: float
+    acceleration: float = math.inf
+    deceleration: float = math.inf
+    jerk: float = math.inf
 
 
 class UrdfLink(NamedTuple):

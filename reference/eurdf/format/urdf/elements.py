@@ -49,10 +49,10 @@ _KNOWN_CHILDREN: dict[str, frozenset[str]] = {
 
 #: The optional attributes of each element.
 _OPTIONAL_ATTRIBUTES: dict[str, tuple[str, ...]] = {
-    "origin": ("xyz", "rpy"),
+    "origin": ("xyz", "rpy"),  # before URDF 1.1
     "mesh": ("scale",),
     "texture": ("filename",),
-    "limit": ("lower", "upper"),
+    "limit": ("lower", "upper"),  # before URDF 1.2
     "dynamics": ("damping", "friction"),
     "mimic": ("multiplier", "offset"),
 }
@@ -63,10 +63,20 @@ _REQUIRED_ATTRIBUTES: dict[str, tuple[str, ...]] = {
     "mimic": ("joint",),
 }
 
+#: Attributes that came with a later version of URDF.
+_LATER_ATTRIBUTES: dict[str, tuple[str, ...]] = {
+    "origin": ("quat_xyzw",),
+    "limit": ("acceleration", "deceleration", "jerk"),
+}
+
 #: All attributes of each of these elements, none of which is a near miss of another.
 _KNOWN_ATTRIBUTES: dict[str, frozenset[str]] = {
-    tag: frozenset((*optional, *_REQUIRED_ATTRIBUTES.get(tag, ()))) for tag, optional in _OPTIONAL_ATTRIBUTES.items()
+    tag: frozenset((*optional, *_REQUIRED_ATTRIBUTES.get(tag, ()), *_LATER_ATTRIBUTES.get(tag, ())))
+    for tag, optional in _OPTIONAL_ATTRIBUTES.items()
 }
+
+#: What `origin` may have from URDF 1.1 on.
+_OPTIONAL_IN_ORIGIN = ("xyz", "rpy", "quat_xyzw")
 
 #: The types of joints that move in a range, and so need a `limit`.
 RANGED = frozenset({JointType.REVOLUTE, JointType.PRISMATIC})
@@ -128,14 +138,17 @@ class UrdfReader:
     Attributes:
         reporter: Gets what is found.
         mimic_reporter: Gets what is wrong with mimic joints.
+        version: The version of URDF that the robot states, empty if it states none. Versions compare as texts.
     """
 
     def __init__(self, reporter: XmlReporter, mimic_reporter: XmlReporter) -> None:
         self.reporter = reporter
         self.mimic_reporter = mimic_reporter
+        self.version = ""
+        self._later: dict[tuple[str, str], list[tuple[Element, str | None]]] = {}
         self._floats: dict[str, tuple[float, ...] | None] = {}
         self._joined: dict[str, tuple[float, ...] | None] = {}
-        self._poses: dict[tuple[str | None, str | None], Pose] = {}
+        self._poses: dict[tuple[str | None, ...], Pose] = {}
         self._strange: dict[tuple[str, tuple[str, ...]], str | None] = {}
 
     def report(
@@ -191,19 +204,22 @@ class UrdfReader:
         values = self.numbers(element, attribute, text, 1)
         return None if values is None else values[0]
 
-    def single_numbers(self, element: Element, attributes: Mapping[str, str | None]) -> tuple[float, ...] | None:
+    def single_numbers(
+        self, element: Element, attributes: Mapping[str, str | None], optional: tuple[str, ...] | None = None
+    ) -> tuple[float, ...] | None:
         """Attributes of one number each; EU-URD-026: warns of other attributes whose names are near.
 
         Args:
             element: The element.
             attributes: The default of each; None if it is required. In the order in which most files have them.
+            optional: The optional attributes of the element, if its tag alone does not say.
         """
         texts: list[str | None]
         if element.keys() == [*attributes]:  # no other, and all at once, which takes half the time
             texts = element.values()  # type: ignore[assignment]
         else:
             if element.tag in _OPTIONAL_ATTRIBUTES:
-                self.attributes(element)
+                self.attributes(element, optional)
             get = element.get
             texts = [get(attribute, default) for attribute, default in attributes.items()]
         if None not in texts:
@@ -269,17 +285,17 @@ class UrdfReader:
         if hint := self.near_miss(tag, optional):
             self.report("urdf-unknown-element", f"<{parent.tag}> has an unknown element <{tag}>", child, hint=hint)
 
-    def attributes(self, element: Element) -> bool:
+    def attributes(self, element: Element, optional: tuple[str, ...] | None = None) -> bool:
         """EU-URD-026: warn of an unknown attribute whose name is near that of an optional one.
 
         Returns:
             Whether there is one.
         """
         tag = str(element.tag)
-        known = _KNOWN_ATTRIBUTES[tag]
+        known, optional = _KNOWN_ATTRIBUTES[tag], optional or _OPTIONAL_ATTRIBUTES[tag]
         is_misspelt = False
         for attribute in map(str, element.keys()):
-            if attribute not in known and (hint := self.near_miss(attribute, _OPTIONAL_ATTRIBUTES[tag])):
+            if attribute not in known and (hint := self.near_miss(attribute, optional)):
                 message = f"{named(element)} has an unknown attribute '{attribute}'"
                 self.report("urdf-unknown-element", message, element, hint=hint)
                 is_misspelt = True
@@ -306,15 +322,77 @@ class UrdfReader:
         """The pose of an ``origin``; the identity if there is none or it has an error (EU-FRM-006)."""
         if element is None:
             return IDENTITY
-        xyz_text, rpy_text = text = element.get("xyz"), element.get("rpy")
+        xyz_text, rpy_text = element.get("xyz"), element.get("rpy")
+        quaternion_text: str | None = None
         if len(element.attrib) > (xyz_text is not None) + (rpy_text is not None):
-            self.attributes(element)
+            if self.version < "1.1":
+                self.attributes(element)
+                self.later(element, "quat_xyzw", "1.1")
+            else:
+                self.attributes(element, _OPTIONAL_IN_ORIGIN)
+                quaternion_text = element.get("quat_xyzw")
+        text = (xyz_text, rpy_text, quaternion_text)
         pose = self._poses.get(text)
         if pose is None:
             xyz = _ZERO if xyz_text is None else self.numbers(element, "xyz", xyz_text, 3)
             rpy = _ZERO if rpy_text is None else self.numbers(element, "rpy", rpy_text, 3)
             if xyz is None or rpy is None:
                 return IDENTITY
+            if quaternion_text is None:
+                pose = Pose.from_xyz_rpy(xyz, rpy)  # type: ignore[arg-type]
+            else:
+                quaternion = self._quaternion(element, quaternion_text)
+                if quaternion is None:
+                    return IDENTITY
+                pose = Pose.from_xyz_quaternion(xyz, quaternion)  # type: ignore[arg-type]
             # The visual and the collision of a link often have the same pose.
-            pose = self._poses[text] = Pose.from_xyz_rpy(xyz, rpy)  # type: ignore[arg-type]
+            self._poses[text] = pose
         return pose
+
+    def _quaternion(self, element: Element, text: str) -> tuple[float, ...] | None:
+        """EU-URD-040, EU-URD-041: a quaternion is not zero, and the only orientation of its ``origin``."""
+        values = self.numbers(element, "quat_xyzw", text, 4)
+        if values is None:
+            return None
+        if "rpy" in element.attrib:
+            self.report(
+                "urdf-two-orientations",
+                f"{named(element)} has two orientations, 'rpy' and 'quat_xyzw'",
+                element,
+                "quat_xyzw",
+                "remove one of them",
+            )
+            return None
+        if not any(values):
+            self.report(
+                "urdf-zero-quaternion",
+                f"'quat_xyzw' of {named(element)} is zero, which is no orientation",
+                element,
+                "quat_xyzw",
+                "write 0 0 0 1 for no rotation",
+            )
+            return None
+        return values
+
+    def later(self, element: Element, attribute: str | None, version: str) -> None:
+        """EU-URD-038: note what a later version of URDF has: an attribute, if the element has it, or the element."""
+        if attribute is None:
+            self._later.setdefault((f"<{element.tag}>", version), []).append((element, None))
+        elif attribute in element.attrib:
+            self._later.setdefault((f"'{attribute}'", version), []).append((element, attribute))
+
+    def report_later(self) -> None:
+        """EU-URD-038: warn once of each attribute or shape of a later version of URDF."""
+        stated = f"version {self.version}" if self.version else "no version"
+        for (what, version), found in self._later.items():
+            element, attribute = found[0]
+            effect = "has no effect" if attribute else "is ignored by other parsers"
+            times = f" ({len(found)} times in the file)" if len(found) > 1 else ""
+            self.report(
+                "urdf-later-version",
+                f"{what} {effect} before URDF {version}, and <robot> has {stated}{times}",
+                element,
+                attribute,
+                f'write version="{version}" in <robot>'
+                + (", or state the orientation as 'rpy'" if attribute == "quat_xyzw" else ""),
+            )

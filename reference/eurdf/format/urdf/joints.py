@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 from eurdf.diagnostics import did_you_mean
@@ -17,6 +18,9 @@ _AXLESS = frozenset({JointType.FIXED, JointType.FLOATING})
 
 # Attributes of one number each, and their defaults.
 _LIMIT = {"lower": "0", "upper": "0", "effort": None, "velocity": None}
+_RANGE_1_2 = ("lower", "upper")
+_LIMIT_1_2 = ("effort", "velocity", "acceleration", "deceleration", "jerk")
+_NO_LIMIT = {"lower": -math.inf, "upper": math.inf, "velocity": math.inf, "effort": math.inf}
 _DYNAMICS = {"damping": "0", "friction": "0"}
 _MIMIC = {"multiplier": "1", "offset": "0"}
 
@@ -96,15 +100,33 @@ def _limit(
     if element is None:
         _check_needs_no_limit(reader, name, kind, joint)
         return None
+    limit = _limit_1_2(reader, kind, element) if reader.version >= "1.2" else _limit_1_0(reader, element)
+    if limit is None:
+        return None
+    if min(limit[2:]) < 0.0:
+        _report_negative(reader, element, **{key: getattr(limit, key) for key in _LIMIT_1_2})
+    if limit.lower > limit.upper and (kind in RANGED or reader.version >= "1.2"):
+        _report_reversed(reader, name, limit.lower, limit.upper, element)
+    return limit
+
+
+def _limit_1_0(reader: UrdfReader, element: Element) -> Limit | None:
+    """A ``limit`` before URDF 1.2."""
     values = reader.single_numbers(element, _LIMIT)
+    for attribute in _LIMIT_1_2[2:]:
+        reader.later(element, attribute, "1.2")
     if values is None:
         return None
     lower, upper, effort, velocity = values
-    if effort < 0.0 or velocity < 0.0:
-        _report_negative(reader, element, effort=effort, velocity=velocity)
-    if lower > upper and kind in RANGED:
-        _report_reversed(reader, name, lower, upper, element)
     return Limit(lower, upper, velocity, effort)
+
+
+def _limit_1_2(reader: UrdfReader, kind: JointType, element: Element) -> Limit | None:
+    """A ``limit`` from URDF 1.2 on: what is left out does not limit; a joint with a range of motion states it."""
+    required, optional = (_RANGE_1_2, _LIMIT_1_2) if kind in RANGED else ((), (*_RANGE_1_2, *_LIMIT_1_2))
+    stated = dict.fromkeys((*required, *(attribute for attribute in optional if attribute in element.attrib)))
+    values = reader.single_numbers(element, stated, optional)
+    return None if values is None else Limit(**{**_NO_LIMIT, **dict(zip(stated, values, strict=True))})
 
 
 def _check_needs_no_limit(reader: UrdfReader, name: str | None, kind: JointType, joint: Element) -> None:

@@ -18,6 +18,9 @@ from eurdf.reading.xml_reader import XmlDocument
 #: Elements by which other dialects state a closure or a coupling; a parser of this format would ignore them.
 _CLOSURE_DIALECTS = frozenset({"loop", "loop_joint", "constraint", "coupling"})
 
+#: The versions of URDF; a robot that states none has the rules of the first.
+_VERSIONS = ("1.0", "1.1", "1.2")
+
 #: Joints that a robot may have, fixed ones too (EU-FIL-002). A description adds joints to those of the URDF, where it
 #: splits one in two, and removes none: of three merged joints, two become fixed.
 JOINT_LIMIT = 10_000
@@ -50,7 +53,7 @@ def read_urdf(
 
 
 def _read_robot(reader: UrdfReader, root: Element, materials: Materials | None) -> Urdf | None:
-    if not _is_robot(reader, root):
+    if not _is_robot(reader, root) or not _has_known_version(reader, root):
         return None
     name = reader.name(root)
     elements: list[tuple[str, Element]] = []
@@ -77,6 +80,7 @@ def _read_robot(reader: UrdfReader, root: Element, materials: Materials | None) 
             joints.append(joint)
     if materials is not None:
         materials.report_textures()
+    reader.report_later()
     if name is None or len(links) + len(joints) < len(elements):
         return None
     return build_tree(reader, name, links, joints)
@@ -89,6 +93,19 @@ def _is_robot(reader: UrdfReader, root: Element) -> bool:
     found = of_root(str(root.tag))
     message = f"the root element is <{root.tag}>; it must be <robot>"
     reader.report("urdf-root-element", message, root, hint=found and found.hint)
+    return False
+
+
+def _has_known_version(reader: UrdfReader, root: Element) -> bool:
+    """EU-URD-037: whether the version that the robot states, if it states one, exists; the reader gets it."""
+    version = root.get("version")
+    if version is None or version in _VERSIONS:
+        reader.version = version or ""
+        return True
+    known = ", ".join(_VERSIONS[:-1]) + f" or {_VERSIONS[-1]}"
+    message = f"URDF has no version '{version}'; it must be {known}"
+    hint = f"write version=\"{version}.0\"" if f"{version}.0" in _VERSIONS else "leave it out for URDF 1.0"
+    reader.report("urdf-version", message, root, "version", hint)
     return False
 
 

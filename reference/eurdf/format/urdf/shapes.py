@@ -14,6 +14,7 @@ from eurdf.reading.reporter import Element
 _Primitive = Literal["box", "cylinder", "sphere", "capsule"]
 
 _SHAPES = (*get_args(_Primitive), "mesh")
+_SHAPES_1_0 = tuple(shape for shape in _SHAPES if shape != "capsule")
 
 # Attributes of one number each.
 _CYLINDER = {"radius": None, "length": None}
@@ -35,13 +36,19 @@ def read_shape(reader: UrdfReader, element: Element, materials: Materials) -> Sh
 
 def _only_shape(reader: UrdfReader, geometry: Element) -> Element | None:
     """EU-URD-024: a geometry contains one shape; elements of other programs are ignored."""
-    shapes = [child for child in geometry if child.tag in _SHAPES]
+    known = _SHAPES_1_0 if reader.version == "1.0" else _SHAPES
+    shapes = [child for child in geometry if child.tag in known]
     if len(shapes) == 1:
+        if not reader.version and shapes[0].tag == "capsule":
+            reader.later(shapes[0], None, "1.1")
         return shapes[0]
     other = None if shapes or len(geometry) != 1 else geometry[0]
     if other is None:
         message = f"<geometry> contains {len(shapes)} shapes; it must contain exactly one"
         reader.report("urdf-geometry", message, geometry)
+    elif other.tag in _SHAPES:
+        message = f"<{other.tag}> is a shape from URDF 1.1 on, and <robot> has version {reader.version}"
+        reader.report("urdf-geometry", message, other, hint='write version="1.1" in <robot>')
     else:
         message = f"<{other.tag}> is not a shape; it must be box, cylinder, sphere, capsule or mesh"
         reader.report("urdf-geometry", message, other, hint=did_you_mean(str(other.tag), _SHAPES))
