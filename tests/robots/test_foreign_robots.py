@@ -1,0 +1,53 @@
+"""Robots that nobody here wrote, exported to every format and read back by the program that the file is for."""
+
+from __future__ import annotations
+
+import pytest
+
+import eurdf
+from eurdf.exporting.formats import FORMATS
+from support.foreign import INVALID, PACKAGE_DIRS, ROBOTS
+
+pytestmark = pytest.mark.slow
+
+if not ROBOTS:
+    pytest.skip(
+        "no published robots: install example-robot-data, name its folder robots in EURDF_EXAMPLE_ROBOT_DATA, or put a "
+        "folder at ../shared/wild, beside the checkout",
+        allow_module_level=True,
+    )
+
+#: Formats whose meshes are converted, which takes up to a minute: robots are exported to them without shapes.
+CONVERTED = ("usd", "drake")
+
+
+def exported(name: str, to: str) -> eurdf.Export:
+    if to in CONVERTED:
+        return eurdf.export(eurdf.load(ROBOTS[name], geometry=False), to)
+    return eurdf.export(ROBOTS[name], to, package_dirs=PACKAGE_DIRS)
+
+
+@pytest.mark.parametrize("to", FORMATS)
+@pytest.mark.parametrize("name", [name for name in ROBOTS if name not in INVALID])
+def test_start_is_closed_and_within_limits(name: str, to: str) -> None:
+    try:
+        export = exported(name, to)
+        found = export.verify(seconds=0.0)
+    except eurdf.MissingExtra as missing:
+        pytest.skip(str(missing))
+    assert found.refused == ""
+    assert [each for each in found.openings if max(each.position, each.angle) > 1e-8] == []
+    assert found.beyond_limits == ()
+    losses = {loss.code for loss in export.losses}
+    read, own = found.mass
+    if not losses & {"export-massless-base", "export-massless-link"}:
+        assert read == pytest.approx(own, rel=1e-6)
+        if "export-inertia" not in losses:
+            assert found.mass_matrix_error < 1e-6
+
+
+@pytest.mark.parametrize("name", sorted(ROBOTS.keys() & INVALID.keys()))
+def test_invalid_robot_is_refused(name: str) -> None:
+    with pytest.raises(eurdf.InvalidRobot) as error:
+        eurdf.load(ROBOTS[name])
+    assert {each.code for each in error.value.diagnostics if each.severity == "error"} == {INVALID[name]}
