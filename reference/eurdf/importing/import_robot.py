@@ -32,12 +32,14 @@ from eurdf.kinematics.residual import closure_openings, residual
 from eurdf.linking.description import Unlinked, describe
 from eurdf.loss import Effect, Loss, Losses, LossKind
 from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.spanning_tree import rigid_poses
 from eurdf.mesh_files.folders import Folders
 from eurdf.pinocchio.robot import build_robot
 from eurdf.reading.resource import FileFinder
 from eurdf.writing.assembled import NAME as ASSEMBLED
 from eurdf.writing.assembled import beyond_limits
 from eurdf.writing.description import DescriptionFiles, NotWritable, describe_mechanism, version_needed
+from eurdf.writing.joined_closures import join_points
 from eurdf.writing.output_folder import write_files
 
 #: Losses of every format.
@@ -48,6 +50,20 @@ COMMON = (
         Effect.DROPPED,
         "no configuration was found that closes the loops within the limits of the joints",
         "correct limits or frames, and find one with `eurdf assemble`",
+    ),
+    LossKind(
+        "import-joined-points",
+        "3d closure",
+        Effect.EXACT,
+        "is one hinge or 6d closure with others of the same two bodies: their points are as far apart in both",
+        "use the hinge or the 6d closure: it has no redundant rows",
+    ),
+    LossKind(
+        "import-points-apart",
+        "3d closure",
+        Effect.EXACT,
+        "stays as it is: another one joins the same two bodies, and both cannot be closed",
+        "correct the points in the file",
     ),
     LossKind(
         "import-open-assembled",
@@ -189,10 +205,11 @@ def _import(format_: str, path: Path, read: RobotRead, folders: Folders) -> Impo
     # First: no number that the format refuses, such as an infinite one, may reach the kinematics.
     _description(path, format_, read.mechanism, read)
     _must_be_coordinates(path, start, coordinates)
-    robot = build_robot(read.mechanism, geometry=False)
+    mechanism = _with_points_joined(read.mechanism, losses)
+    robot = build_robot(mechanism, geometry=False)
     q = robot.configuration(coordinates)
     opened = closure_openings(robot, q)
-    mechanism = _without_open_assembled(read.mechanism, losses)
+    mechanism = _without_open_assembled(mechanism, losses)
     closes = True
     if mechanism.constraints and ASSEMBLED not in mechanism.configurations:
         found = next((each for limits in (True, False) if (each := assemble(robot, q, limits=limits)).closes), None)
@@ -215,6 +232,15 @@ def _import(format_: str, path: Path, read: RobotRead, folders: Folders) -> Impo
     found_losses = (*read.losses, *losses.found)
     files = _files(path, format_, mechanism, read, found_losses, opened, licence)
     return Import(format_, mechanism, found_losses, MappingProxyType(files), start, opened, closes, read.sources)
+
+
+def _with_points_joined(mechanism: Mechanism, losses: Losses) -> Mechanism:
+    found = join_points(mechanism.closures, rigid_poses(mechanism.bodies[0].name, mechanism.joints))
+    for joined in found.joined:
+        losses.add("import-joined-points", joined.closure.name, str(joined))
+    for apart in found.apart:
+        losses.add("import-points-apart", apart.names[1], f"stays as it is: {apart}")
+    return replace(mechanism, closures=found.closures)
 
 
 def _without_open_assembled(mechanism: Mechanism, losses: Losses) -> Mechanism:
