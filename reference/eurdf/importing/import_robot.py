@@ -6,7 +6,7 @@ import math
 import os
 import re
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
@@ -22,6 +22,7 @@ from eurdf.exceptions import RobotNotFound
 from eurdf.format.schema import FILES, SchemaVersion, json_schema, schema_text
 from eurdf.importing.exceptions import CannotImport
 from eurdf.importing.formats import FORMATS
+from eurdf.importing.loop_axes import allowed_axes, with_axes
 from eurdf.importing.places import places_of_names
 from eurdf.importing.readme import licence_file, readme
 from eurdf.importing.recognition import recognized
@@ -197,7 +198,7 @@ def _relative(found: Diagnostic, folder: str) -> Diagnostic:
 
 
 def _import(format_: str, path: Path, read: RobotRead, folders: Folders) -> Import:
-    losses = Losses(COMMON)
+    losses = Losses((*COMMON, *FORMATS[format_].losses))
     licence = licence_file(path, folders)
     for outside in folders.let_through:
         losses.add("import-file-outside", outside)
@@ -206,6 +207,8 @@ def _import(format_: str, path: Path, read: RobotRead, folders: Folders) -> Impo
     _description(path, format_, read.mechanism, read)
     _must_be_coordinates(path, start, coordinates)
     mechanism = _with_points_joined(read.mechanism, losses)
+    if read.without_axis:
+        mechanism = _with_axes(path, mechanism, read, losses)
     robot = build_robot(mechanism, geometry=False)
     q = robot.configuration(coordinates)
     opened = closure_openings(robot, q)
@@ -241,6 +244,25 @@ def _with_points_joined(mechanism: Mechanism, losses: Losses) -> Mechanism:
     for apart in found.apart:
         losses.add("import-points-apart", apart.names[1], f"stays as it is: {apart}")
     return replace(mechanism, closures=found.closures)
+
+
+def _with_axes(path: Path, mechanism: Mechanism, read: RobotRead, losses: Losses) -> Mechanism:
+    """The mechanism with the one axis that it allows each hinge of which the file states none.
+
+    Raises:
+        CannotImport: It allows a hinge several axes, or none.
+    """
+    axes = allowed_axes(mechanism, read.without_axis, read.start[1])
+    for name in read.without_axis:
+        if name not in axes:
+            raise CannotImport(
+                path,
+                f"{_where(read, [name])}the loop joint '{name}' is revolute and has no <axis>, and the rest of the "
+                "mechanism does not let its links turn about exactly one axis of its frames; add the axis, such as "
+                '<axis xyz="0 0 1"/>',
+            )
+        losses.add("import-loop-axis", name, f"has no axis: {axes[name]} is taken, the only one that it can turn about")
+    return with_axes(mechanism, axes)
 
 
 def _without_open_assembled(mechanism: Mechanism, losses: Losses) -> Mechanism:
@@ -298,11 +320,16 @@ def _description(
     found = describe(written.yaml, urdf=written.urdf.decode())
     if isinstance(found, Unlinked):
         message = found.diagnostics.errors[0].message
-        places = places_of_names(read.sources)
-        place = next((places[name] for name in re.findall("'([^']*)'", message) if name in places), None)
-        where = "" if place is None else f"{Path(place.file).name}:{place.line}: "
+        where = _where(read, re.findall("'([^']*)'", message))
         raise CannotImport(path, f"{where}it has no valid description: {message}")
     return written, schema
+
+
+def _where(read: RobotRead, names: Sequence[str]) -> str:
+    """File and line of the first of some names that a file states, to begin a message with; empty if none does."""
+    places = places_of_names(read.sources)
+    place = next((places[name] for name in names if name in places), None)
+    return "" if place is None else f"{Path(place.file).name}:{place.line}: "
 
 
 def _must_be_coordinates(path: Path, start: str, coordinates: Mapping[str, tuple[float, ...]]) -> None:
