@@ -101,11 +101,17 @@ def test_loop_joint_with_several_possible_axes_is_refused(tmp_path: Path) -> Non
         imported(tmp_path, turned_loops(text, 0).decode())
 
 
-def test_loop_joint_that_cannot_turn_is_refused(tmp_path: Path) -> None:
-    text = robot('<loop_joint name="l" type="revolute"><link1 link="top"/><link2 link="right"/></loop_joint>')
-    slides = f'{TURN}<limit lower="-1" upper="1" effort="1" velocity="1"/>'
-    with pytest.raises(eurdf.CannotImport, match="exactly one axis"):
-        imported(tmp_path, text.replace("continuous", "prismatic").replace(TURN, slides))
+@pytest.mark.parametrize(
+    ("place", "slides", "why"), [("0 0 1", True, "exactly one axis"), ("9 0 0", False, "no configuration was found")]
+)
+def test_loop_joint_that_shows_no_axis_is_refused(place: str, slides: bool, why: str, tmp_path: Path) -> None:
+    ends = f'<link1 link="top" xyz="1 0 0"/><link2 link="right" xyz="{place}"/>'
+    text = robot(f'<loop_joint name="l" type="revolute">{ends}</loop_joint>')
+    if slides:
+        text = text.replace("continuous", "prismatic")
+        text = text.replace(TURN, f'{TURN}<limit lower="-1" upper="1" effort="1" velocity="1"/>')
+    with pytest.raises(eurdf.CannotImport, match=why):
+        imported(tmp_path, text)
 
 
 def test_axis_of_a_loop_joint_may_be_stated(tmp_path: Path) -> None:

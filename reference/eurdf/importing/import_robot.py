@@ -250,16 +250,19 @@ def _with_axes(path: Path, mechanism: Mechanism, read: RobotRead, losses: Losses
     """The mechanism with the one axis that it allows each hinge of which the file states none.
 
     Raises:
-        CannotImport: It allows a hinge several axes, or none.
+        CannotImport: It allows a hinge several axes, or none, or its loops cannot be closed.
     """
-    axes = allowed_axes(mechanism, read.without_axis, read.start[1])
+    found = allowed_axes(mechanism, read.without_axis, read.start[1])
+    why = "the rest of the mechanism does not let its links turn about exactly one axis of its frames"
+    if found is None:
+        why = "no configuration was found that closes the loops, which would show it"
+    axes = found or {}
     for name in read.without_axis:
         if name not in axes:
             raise CannotImport(
                 path,
-                f"{_where(read, [name])}the loop joint '{name}' is revolute and has no <axis>, and the rest of the "
-                "mechanism does not let its links turn about exactly one axis of its frames; add the axis, such as "
-                '<axis xyz="0 0 1"/>',
+                f"{_where(read, [name])}the loop joint '{name}' is revolute and has no <axis>, and {why}; "
+                'add the axis, such as <axis xyz="0 0 1"/>',
             )
         losses.add("import-loop-axis", name, f"has no axis: {axes[name]} is taken, the only one that it can turn about")
     return with_axes(mechanism, axes)

@@ -21,8 +21,8 @@ _PARALLEL = 1e-4
 
 def allowed_axes(
     mechanism: Mechanism, names: Collection[str], coordinates: Mapping[str, tuple[float, ...]]
-) -> dict[str, Literal["x", "y", "z"]]:
-    """For each hinge, the axis of its two frames that it can have; none where that is not one axis.
+) -> dict[str, Literal["x", "y", "z"]] | None:
+    """For each hinge, the axis of its two frames that it can have, if that is one axis.
 
     With only their points closed, the other joints and closures decide how the links turn against each other. They must
     turn about one axis that is fixed in both links, and is x, y or z of both frames.
@@ -31,12 +31,15 @@ def allowed_axes(
         mechanism: The mechanism, in which the axes of these hinges have no meaning.
         names: Of the hinges.
         coordinates: Where to start closing the loops.
+
+    Returns:
+        The axes of the hinges that have one; None if the loops cannot be closed.
     """
     points = tuple(each.with_orientation_free() if each.name in names else each for each in mechanism.closures)
     robot = build_robot(replace(mechanism, closures=points), geometry=False)
     assembly = assemble(robot, robot.configuration(coordinates), limits=False)
     if not assembly.closes:
-        return {}
+        return None
     hinges = with_hinges(robot, assembly.q)[0].mechanism.closures
     found: dict[str, Literal["x", "y", "z"]] = {}
     for closure in hinges:
