@@ -184,11 +184,30 @@ def test_onshape_revolute_mate_is_a_hinge() -> None:
     frames = ["closing_pin_1", "closing_pin_2"]
     assert closure == {"name": "closing_pin", "type": "hinge", "frames": frames, "axis": [0, 0, 1]}
     (note,) = generation.notes
-    assert note.endswith("it is a hinge, which needs version 2.1")
+    assert note.startswith("'closing_pin' and 'closing_pin_z' are one hinge, which needs version 2.1")
     assert generation.mechanism is not None
     assert [closure.type for closure in generation.mechanism.closures] == ["hinge"]
-    askew = read_back(generate(mate("0 0.1 0", "0.3 0 0.4"), conventions()).text)["closures"][0]
+    askew = read_back(generate(mate("0 0.1 0", "0.06 0 0.08"), conventions()).text)["closures"][0]
     assert askew["axes"] == [[0, 1, 0], pytest.approx([0.6, 0, 0.8])]
+
+
+def test_two_points_are_a_hinge_by_their_distance() -> None:
+    text = urdf_text(*LEG[:3], *(frame.replace("_z", "b") for frame in HINGE))
+    text = text.replace("closing_pin_1b", "closedloop3D_2A").replace("closing_pin_2b", "closedloop3D_2B")
+    text = text.replace("closing_pin_1", "closedloop3D_1A").replace("closing_pin_2", "closedloop3D_1B")
+    robot = etree.fromstring(text)
+    for side in "AB":
+        (joint,) = robot.xpath(f"joint[@name='closedloop3D_2{side}_frame']")
+        etree.SubElement(joint, "origin", xyz="0 0.1 0")
+    found = generate(read(etree.tostring(robot, encoding="unicode")), conventions()).found
+    assert [(closure.type, closure.axes) for closure in found.closures] == [("hinge", ((0, 1, 0), (0, 1, 0)))]
+
+
+def test_points_of_unequal_distance_are_reported() -> None:
+    generation = generate(mate("0 0 0.1", "0 0 0.2"), conventions())
+    assert [closure.type for closure in generation.found.closures] == ["3d", "3d"]
+    (note,) = generation.notes
+    assert "are 0.1 m apart in one and 0.2 m in the other" in note
 
 
 @pytest.mark.parametrize("version", ["1", "2", None])
@@ -203,7 +222,7 @@ def test_revolute_mate_is_two_3d_closures_where_no_hinge_can_be(version: Literal
     assert generation.found.warnings == ()
     assert 'extended_urdf: "2.1"' not in generation.text
     (note,) = generation.notes
-    assert note.startswith("'closing_pin' is a revolute mate")
+    assert note.startswith("'closing_pin' and 'closing_pin_z' ")
 
 
 def test_half_an_axis_is_reported() -> None:

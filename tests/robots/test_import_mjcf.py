@@ -16,6 +16,7 @@ from eurdf.mechanism.constraint import Coupling, DistanceClosure, PointClosure
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.motor import Motor
+from eurdf.pinocchio.robot import build_robot
 from support.imported import Beside, model_without_meshes
 
 TETRAHEDRON = "0 0 0 0.1 0 0 0 0.1 0 0 0 0.1"
@@ -517,7 +518,11 @@ PUBLIC = {
     "AH_Right/mjcf/robot.xml": 1e-6,
     "toddlerbot/toddlerbot_scene.xml": 2e-6,
     "reachy_mini/mjcf/reachy_mini.xml": 1e-6,
+    "spm/robot.xml": 1e-5,
 }
+
+#: Of models of onshape-to-robot: the closures that are hinges, each two <connect> in the file, and the mobility.
+HINGES = {"AH_Right/mjcf/robot.xml": (8, 16), "spm/robot.xml": (2, 3)}
 
 
 @pytest.mark.slow
@@ -529,6 +534,10 @@ def test_public_model_is_the_same(name: str, tmp_path: Path) -> None:
         pytest.skip(f"{name} is not in the folder")
     imported = eurdf.import_robot(found[0])
     assert imported.closes
+    hinges = sum(closure.type == "hinge" for closure in imported.mechanism.closures)
+    if name in HINGES:
+        analysis = eurdf.analyze(build_robot(imported.mechanism, geometry=False))
+        assert (hinges, analysis.mobility) == HINGES[name]
     assert max(max(each.position, each.angle) for each in imported.opened) <= PUBLIC[name]
     imported.write(tmp_path / "out")
     assert eurdf.check(tmp_path / "out").ok

@@ -5,11 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 import pytest
+from lxml import etree
 
 import eurdf
+from eurdf.loss import Effect
 from eurdf.mechanism.constraint import Coupling, FrameClosure, HingeClosure, PointClosure
 from eurdf.mechanism.joint_type import JointType
+from eurdf.pinocchio.robot import build_robot
 from support.plain_urdf import inertial, joint_element, link_element
 
 LINKS = "".join(link_element(name, inertial(1.0)) for name in ("base", "left", "top", "right"))
@@ -52,11 +56,62 @@ def test_loop_joint_of_isaac_is_a_closure(tmp_path: Path, kind: str, second: str
     assert (closure.a.body, closure.a.pose.xyz) == ("top", (1, 0, 0))
     assert (closure.b.body, closure.b.pose.xyz) == ("right", (0, 0, 1))
     if isinstance(closure, HingeClosure):
-        assert closure.axes == ((1, 0, 0), (1, 0, 0))  # x, the default of USD
+        assert closure.axes == ((0, 1, 0), (0, 1, 0))  # that of the other joints
     assert found.mechanism.frames[0].pose.xyz == (0, 0, 2)
     assert found.closes
     found.write(tmp_path / "out")
     assert eurdf.check(tmp_path / "out").ok
+
+
+def turned_loops(text: bytes, axis: int) -> bytes:
+    """A URDF of ours as Isaac Sim writes it: loop joints in single precision, without axis, about x, y or z."""
+    root = etree.fromstring(text)
+    turn = np.roll(np.eye(3), -axis, axis=1)  # its column of the axis is x, the axis in the file
+    for loop in root.iter("loop_joint"):
+        for stated in loop.findall("axis"):
+            loop.remove(stated)
+        for end in loop:
+            R = pin.rpy.rpyToMatrix(np.array([float(word) for word in end.get("rpy").split()])) @ turn.T
+            end.set("rpy", " ".join(map(str, pin.rpy.matrixToRpy(R).astype(np.float32).tolist())))
+            end.set("xyz", " ".join(str(float(np.float32(word))) for word in end.get("xyz").split()))
+    return etree.tostring(root)
+
+
+def mobility(found: eurdf.Import) -> int | None:
+    return eurdf.analyze(build_robot(found.mechanism, geometry=False)).mobility
+
+
+@pytest.mark.parametrize(
+    ("name", "axis"), [("four_bar", 0), ("doggo_leg", 1), ("screw_press", 2), ("toddlerbot_2legs", 2)]
+)
+def test_loop_joint_without_axis_has_the_one_that_moves(name: str, axis: int, tmp_path: Path) -> None:
+    text = eurdf.export(name, "loop-joint", closures="hinge").main
+    found = imported(tmp_path, turned_loops(text, axis).decode())
+    hinges = [closure for closure in found.mechanism.closures if isinstance(closure, HingeClosure)]
+    assert hinges
+    assert {closure.axes for closure in hinges} == {(tuple(np.eye(3)[axis]),) * 2}
+    losses = {loss.name: loss.effect for loss in found.losses if loss.code == "import-loop-axis"}
+    assert losses == dict.fromkeys((closure.name for closure in hinges), Effect.APPROXIMATE)
+    assert mobility(found) == mobility(imported(tmp_path, text.decode()))
+
+
+def test_loop_joint_with_several_possible_axes_is_refused(tmp_path: Path) -> None:
+    text = eurdf.export("double_wishbone", "loop-joint").main
+    with pytest.raises(eurdf.CannotImport, match=r"robot\.urdf:\d+: the loop joint 'upper_bush' .* add the axis"):
+        imported(tmp_path, turned_loops(text, 0).decode())
+
+
+@pytest.mark.parametrize(
+    ("place", "slides", "why"), [("0 0 1", True, "exactly one axis"), ("9 0 0", False, "no configuration was found")]
+)
+def test_loop_joint_that_shows_no_axis_is_refused(place: str, slides: bool, why: str, tmp_path: Path) -> None:
+    ends = f'<link1 link="top" xyz="1 0 0"/><link2 link="right" xyz="{place}"/>'
+    text = robot(f'<loop_joint name="l" type="revolute">{ends}</loop_joint>')
+    if slides:
+        text = text.replace("continuous", "prismatic")
+        text = text.replace(TURN, f'{TURN}<limit lower="-1" upper="1" effort="1" velocity="1"/>')
+    with pytest.raises(eurdf.CannotImport, match=why):
+        imported(tmp_path, text)
 
 
 def test_axis_of_a_loop_joint_may_be_stated(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Collection, Sequence
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from eurdf.commands.cannot_run import CannotRun
@@ -17,13 +18,15 @@ from eurdf.reading.given import shown
 
 if TYPE_CHECKING:
     from eurdf.writing.generation import Generation
+    from eurdf.writing.naming_conventions import GeneratedVersion
 
 _DESCRIPTION = """\
 Write a description from the names in a URDF.
 
   closures    closedloop1_A with closedloop1_B, or closing_knee_1 with closing_knee_2: names of links or joints.
               3d or 6d in the name is the type: closedloop3D_1A, closedloop1_A_3D. closing_knee_1_z and
-              closing_knee_2_z, which onshape-to-robot adds on the axis of a revolute mate, make it a hinge.
+              closing_knee_2_z, which onshape-to-robot adds on the axis of a revolute mate, are a second point. Closures
+              of type 3d that join the same two parts at points that are as far apart in both are one hinge.
   motors      joints whose name begins or ends with the word mot or motor: motor_knee, mot1, left_motor_hip, hip_motor.
   sphericals  joints with spherical in their name.
 
@@ -32,8 +35,8 @@ depend on one another, and with 3d they do not. A note gives the reason; --type 
 
 Three consecutive revolute joints whose axes intersect, with massless links between them, become one spherical joint.
 
-The description is of version 2.0, or of version 2.1 if it has a hinge. In versions 1 and 2.0, two 3d closures hold
-the hinge: one at its point, and one at the other point on its axis.
+The description is of version 2.0, or of version 2.1 if it has a hinge. In versions 1 and 2.0, the 3d closures hold the
+hinge.
 
 PATTERNs are regular expressions that replace these conventions. A closure pattern matches a whole name. Its group side
 distinguishes the two frames, the group loop (optional) is their common part, and the group type (optional) is 3d or 6d.
@@ -85,7 +88,6 @@ def run(args: argparse.Namespace) -> int:
     from eurdf.linking.description import read_urdf_alone
     from eurdf.writing.generation import generate
     from eurdf.writing.naming_conventions import BadPattern, conventions, hints
-    from eurdf.writing.revolute_mates import lowest_version
 
     if args.version == "1" and args.root != "fixed":
         raise CannotRun("version 1 cannot state a floating root; use version 2")
@@ -100,14 +102,21 @@ def run(args: argparse.Namespace) -> int:
     if urdf is None:
         show_refusal(shown(args.urdf), tuple(diagnostics), args.json)
         return 1
-    source, schema = urdf.document.source, None
-    version = args.version or ("2" if args.type else lowest_version(urdf, convention))
+    source = urdf.document.source
     urdf_path = urdf_named(args.output or args.urdf, source)
     if args.output is not None:
         refuse_to_replace(args.output, args.force)
-        schema = schema_beside(args.output, version, args.schema, urdf, args.force)
-    reference = None if schema is None else schema.reference
-    generation = generate(urdf, convention, version, args.root, urdf_path, reference, args.type)
+
+    @cache
+    def beside(version: GeneratedVersion) -> EditorSchema | None:
+        return None if args.output is None else schema_beside(args.output, version, args.schema, urdf, args.force)
+
+    def reference(version: GeneratedVersion) -> str | None:
+        schema = beside(version)
+        return None if schema is None else schema.reference
+
+    generation = generate(urdf, convention, args.version, args.root, urdf_path, reference, args.type)
+    schema = beside(generation.version)
     advice = hints(urdf, generation.found, convention)
     if generation.mechanism is None:
         show_refusal(shown(args.urdf), tuple(generation.diagnostics), args.json)

@@ -6,7 +6,7 @@ import math
 import os
 import re
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
@@ -22,6 +22,7 @@ from eurdf.exceptions import RobotNotFound
 from eurdf.format.schema import FILES, SchemaVersion, json_schema, schema_text
 from eurdf.importing.exceptions import CannotImport
 from eurdf.importing.formats import FORMATS
+from eurdf.importing.loop_axes import allowed_axes, with_axes
 from eurdf.importing.places import places_of_names
 from eurdf.importing.readme import licence_file, readme
 from eurdf.importing.recognition import recognized
@@ -32,12 +33,14 @@ from eurdf.kinematics.residual import closure_openings, residual
 from eurdf.linking.description import Unlinked, describe
 from eurdf.loss import Effect, Loss, Losses, LossKind
 from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.spanning_tree import rigid_poses
 from eurdf.mesh_files.folders import Folders
 from eurdf.pinocchio.robot import build_robot
 from eurdf.reading.resource import FileFinder
 from eurdf.writing.assembled import NAME as ASSEMBLED
 from eurdf.writing.assembled import beyond_limits
 from eurdf.writing.description import DescriptionFiles, NotWritable, describe_mechanism, version_needed
+from eurdf.writing.joined_closures import join_points
 from eurdf.writing.output_folder import write_files
 
 #: Losses of every format.
@@ -48,6 +51,20 @@ COMMON = (
         Effect.DROPPED,
         "no configuration was found that closes the loops within the limits of the joints",
         "correct limits or frames, and find one with `eurdf assemble`",
+    ),
+    LossKind(
+        "import-joined-points",
+        "3d closure",
+        Effect.EXACT,
+        "is one hinge or 6d closure with others of the same two bodies: their points are as far apart in both",
+        "use the hinge or the 6d closure: it has no redundant rows",
+    ),
+    LossKind(
+        "import-points-apart",
+        "3d closure",
+        Effect.EXACT,
+        "stays as it is: another one joins the same two bodies, and both cannot be closed",
+        "correct the points in the file",
     ),
     LossKind(
         "import-open-assembled",
@@ -181,7 +198,7 @@ def _relative(found: Diagnostic, folder: str) -> Diagnostic:
 
 
 def _import(format_: str, path: Path, read: RobotRead, folders: Folders) -> Import:
-    losses = Losses(COMMON)
+    losses = Losses((*COMMON, *FORMATS[format_].losses))
     licence = licence_file(path, folders)
     for outside in folders.let_through:
         losses.add("import-file-outside", outside)
@@ -189,10 +206,13 @@ def _import(format_: str, path: Path, read: RobotRead, folders: Folders) -> Impo
     # First: no number that the format refuses, such as an infinite one, may reach the kinematics.
     _description(path, format_, read.mechanism, read)
     _must_be_coordinates(path, start, coordinates)
-    robot = build_robot(read.mechanism, geometry=False)
+    mechanism = _with_points_joined(read.mechanism, losses)
+    if read.without_axis:
+        mechanism = _with_axes(path, mechanism, read, losses)
+    robot = build_robot(mechanism, geometry=False)
     q = robot.configuration(coordinates)
     opened = closure_openings(robot, q)
-    mechanism = _without_open_assembled(read.mechanism, losses)
+    mechanism = _without_open_assembled(mechanism, losses)
     closes = True
     if mechanism.constraints and ASSEMBLED not in mechanism.configurations:
         found = next((each for limits in (True, False) if (each := assemble(robot, q, limits=limits)).closes), None)
@@ -215,6 +235,37 @@ def _import(format_: str, path: Path, read: RobotRead, folders: Folders) -> Impo
     found_losses = (*read.losses, *losses.found)
     files = _files(path, format_, mechanism, read, found_losses, opened, licence)
     return Import(format_, mechanism, found_losses, MappingProxyType(files), start, opened, closes, read.sources)
+
+
+def _with_points_joined(mechanism: Mechanism, losses: Losses) -> Mechanism:
+    found = join_points(mechanism.closures, rigid_poses(mechanism.bodies[0].name, mechanism.joints))
+    for joined in found.joined:
+        losses.add("import-joined-points", joined.closure.name, str(joined))
+    for apart in found.apart:
+        losses.add("import-points-apart", apart.names[1], f"stays as it is: {apart}")
+    return replace(mechanism, closures=found.closures)
+
+
+def _with_axes(path: Path, mechanism: Mechanism, read: RobotRead, losses: Losses) -> Mechanism:
+    """The mechanism with the one axis that it allows each hinge of which the file states none.
+
+    Raises:
+        CannotImport: It allows a hinge several axes, or none, or its loops cannot be closed.
+    """
+    found = allowed_axes(mechanism, read.without_axis, read.start[1])
+    why = "the rest of the mechanism does not let its links turn about exactly one axis of its frames"
+    if found is None:
+        why = "no configuration was found that closes the loops, which would show it"
+    axes = found or {}
+    for name in read.without_axis:
+        if name not in axes:
+            raise CannotImport(
+                path,
+                f"{_where(read, [name])}the loop joint '{name}' is revolute and has no <axis>, and {why}; "
+                'add the axis, such as <axis xyz="0 0 1"/>',
+            )
+        losses.add("import-loop-axis", name, f"has no axis: {axes[name]} is taken, the only one that it can turn about")
+    return with_axes(mechanism, axes)
 
 
 def _without_open_assembled(mechanism: Mechanism, losses: Losses) -> Mechanism:
@@ -272,11 +323,16 @@ def _description(
     found = describe(written.yaml, urdf=written.urdf.decode())
     if isinstance(found, Unlinked):
         message = found.diagnostics.errors[0].message
-        places = places_of_names(read.sources)
-        place = next((places[name] for name in re.findall("'([^']*)'", message) if name in places), None)
-        where = "" if place is None else f"{Path(place.file).name}:{place.line}: "
+        where = _where(read, re.findall("'([^']*)'", message))
         raise CannotImport(path, f"{where}it has no valid description: {message}")
     return written, schema
+
+
+def _where(read: RobotRead, names: Sequence[str]) -> str:
+    """File and line of the first of some names that a file states, to begin a message with; empty if none does."""
+    places = places_of_names(read.sources)
+    place = next((places[name] for name in names if name in places), None)
+    return "" if place is None else f"{Path(place.file).name}:{place.line}: "
 
 
 def _must_be_coordinates(path: Path, start: str, coordinates: Mapping[str, tuple[float, ...]]) -> None:

@@ -25,6 +25,7 @@ class RobotRead:
             written, with ``/``.
         start: Name of the configuration to assemble from, and its coordinates as files have them.
         sources: Every file that was read, the main one first.
+        without_axis: Names of the hinges whose axis the file does not state; that in the mechanism has no meaning.
     """
 
     mechanism: Mechanism
@@ -32,6 +33,7 @@ class RobotRead:
     meshes: Mapping[str, bytes] = field(default_factory=dict)
     start: tuple[str, Mapping[str, tuple[float, ...]]] = ("the neutral configuration", MappingProxyType({}))
     sources: tuple[Path, ...] = ()
+    without_axis: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from operator import attrgetter
+from typing import Protocol
 
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.pose import IDENTITY, Pose
 
 
 def depth_first(root: str, joints: Iterable[Joint]) -> list[Joint]:
@@ -31,4 +33,26 @@ def rigid_roots(root: str, ordered: Iterable[Joint]) -> Mapping[str, str]:
     of = {root: root}
     for joint in ordered:
         of[joint.child] = of[joint.parent] if joint.type is JointType.FIXED else joint.child
+    return of
+
+
+class _Placed(Protocol):
+    """What a joint of a mechanism and one of a URDF have in common."""
+
+    @property
+    def parent(self) -> str: ...
+    @property
+    def child(self) -> str: ...
+    @property
+    def type(self) -> JointType: ...
+    @property
+    def placement(self) -> Pose: ...
+
+
+def rigid_poses(root: str, ordered: Iterable[_Placed]) -> Mapping[str, tuple[str, Pose]]:
+    """For each body the one of `rigid_roots`, and its pose in that one."""
+    of = {root: (root, IDENTITY)}
+    for joint in ordered:
+        body, pose = of[joint.parent]
+        of[joint.child] = (body, pose * joint.placement) if joint.type is JointType.FIXED else (joint.child, IDENTITY)
     return of

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from eurdf.dataclass import dataclass
@@ -25,7 +25,7 @@ from eurdf.writing.naming_conventions import (
     version2_text,
     with_type,
 )
-from eurdf.writing.revolute_mates import lowest_version, with_hinges
+from eurdf.writing.revolute_mates import Mates, revolute_mates
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +34,7 @@ class Generation:
 
     Attributes:
         text: Of the YAML file.
+        version: Of the description.
         found: What the names say.
         merges: For each spherical joint made of three revolutes whose axes meet, their names.
         mechanism: That the text describes; None where the names say what cannot be.
@@ -42,6 +43,7 @@ class Generation:
     """
 
     text: str
+    version: GeneratedVersion
     found: Found
     merges: Mapping[str, tuple[str, str, str]]
     mechanism: Mechanism | None
@@ -55,7 +57,7 @@ def generate(
     version: GeneratedVersion | None = None,
     root: Root = "fixed",
     urdf_path: str = "robot.urdf",
-    schema: str | None = None,
+    schema: Callable[[GeneratedVersion], str | None] = lambda _: None,
     closure_type: ClosureType | None = None,
 ) -> Generation:
     """Describe a robot by the names in its URDF.
@@ -69,55 +71,61 @@ def generate(
         version: Version of the description; by default the lowest version 2 that suffices.
         root: Whether the root is fixed or floating; version 1 can only say fixed.
         urdf_path: Path of the URDF from the folder of the description; version 1 cannot say it.
-        schema: Path of the schema from the folder of the description, for its first line; None for no such line.
+        schema: For a version, the path of its schema from the folder of the description, for the first line; None for
+            no such line.
         closure_type: Type of every closure; by default what their names say, and else what `choose_types` finds.
     """
     if version == "1" and root != "fixed":
         raise ValueError("version 1 cannot say that the root floats")
-    if version is None:
-        version = lowest_version(urdf, conventions) if closure_type is None else "2"
     found = find(urdf, conventions)
     if closure_type is not None:
         found = with_type(found, closure_type)
-    hinged = with_hinges(found, urdf)
-    if version == "2.1":
-        found = hinged
-    notes = _mate_notes(found, hinged)
-    merges = _merges(urdf, found, version)
 
-    def written(found: Found) -> tuple[str, Mechanism | None, Diagnostics]:
-        if version == "1":
-            text = version1_text(found, schema)
+    def written(found: Found) -> Generation:
+        mates = Mates(found, (), ()) if closure_type is not None else revolute_mates(found, urdf)
+        chosen = version or ("2.1" if mates.hinges else "2")
+        said = mates.found if chosen == "2.1" else found
+        merges = _merges(urdf, said, chosen)
+        if chosen == "1":
+            text = version1_text(said, schema(chosen))
         else:
-            text = version2_text(found, merges, root, urdf_path, schema, VERSION2_1 if version == "2.1" else VERSION2_0)
-        return text, *reread(text, urdf, "the description")
+            number = VERSION2_1 if chosen == "2.1" else VERSION2_0
+            text = version2_text(said, merges, root, urdf_path, schema(chosen), number)
+        mechanism, diagnostics = reread(text, urdf, "the description")
+        return Generation(text, chosen, said, merges, mechanism, diagnostics, _mate_notes(mates, chosen))
 
-    text, mechanism, diagnostics = written(found)
-    undecided = [index for index, closure in enumerate(found.closures) if closure.type is None]
-    if mechanism is not None and undecided:
-        # Version 1 has no names of closures; their order is that of the file in both versions.
-        names = {mechanism.closures[index].name: index for index in undecided}
-        choice = choose_types(mechanism, names, [closure.name for closure in found.closures])
-        closures = list(found.closures)
-        for name, kind in choice.types.items():
-            closures[names[name]] = replace(closures[names[name]], type=kind)
-        found, notes = replace(found, closures=tuple(closures)), (*notes, *choice.notes)
-        text, mechanism, diagnostics = written(found)
-    return Generation(text, found, merges, mechanism, diagnostics, notes)
+    generation = written(found)
+    undecided = [index for index, closure in enumerate(generation.found.closures) if closure.type is None]
+    if generation.mechanism is None or not undecided:
+        return generation
+    # Version 1 has no names of closures; their order is that of the file in both versions.
+    mechanism, closures = generation.mechanism, generation.found.closures
+    names = {mechanism.closures[index].name: closures[index].name for index in undecided}
+    choice = choose_types(mechanism, names, [closure.name for closure in closures])
+    types = {names[name]: kind for name, kind in choice.types.items()}
+    found = replace(
+        found, closures=tuple(replace(each, type=types.get(each.name, each.type)) for each in found.closures)
+    )
+    generation = written(found)
+    return replace(generation, notes=(*generation.notes, *choice.notes))
 
 
-def _mate_notes(found: Found, hinged: Found) -> tuple[str, ...]:
-    """What is said of revolute mates: that they are hinges, or that two points hold them."""
+def _mate_notes(mates: Mates, version: GeneratedVersion) -> tuple[str, ...]:
+    """What is said of revolute mates: that they are hinges, or that several points hold them."""
     notes = []
-    for closure in hinged.closures:
-        mate = f"'{closure.name}' is a revolute mate, since its frames have others on its axis"
-        points = f"'{closure.name}' and '{closure.name}_z' hold the hinge, each 3d"
-        if closure in found.closures and closure.type == "hinge":
-            notes.append(f"{mate}: it is a hinge, which needs version 2.1")
-        elif closure.type == "hinge":
-            notes.append(f"{mate}: {points}; --version 2.1 writes one hinge")
-        elif closure.hinge and any(other.name == f"{closure.name}_z" and other.hinge for other in found.closures):
-            notes.append(f"{mate}: {points}")
+    for points in mates.hinges:
+        names = " and ".join(f"'{name}'" for name in points)
+        if version == "2.1":
+            notes.append(f"{names} are one hinge, which needs version 2.1: their points are as far apart in both parts")
+        else:
+            notes.append(f"{names} hold a hinge, each 3d; --version 2.1 writes one hinge")
+    notes += [f"{apart}: correct the frames" for apart in mates.apart]
+    explained = {name for names in (*mates.hinges, *(apart.names for apart in mates.apart)) for name in names}
+    named = {closure.name for closure in mates.found.closures if closure.hinge} - explained
+    for closure in mates.found.closures:
+        second = f"{closure.name}_z"
+        if {closure.name, second} <= named:
+            notes.append(f"'{closure.name}' and '{second}' are named as a hinge, but state no axis: each is 3d")
     return tuple(notes)
 
 

@@ -1,8 +1,8 @@
 """URDF with ``<loop_joint>``, as Isaac Sim's exporter of URDF writes loops.
 
 Isaac's types of a loop joint are ``fixed``, ``spherical``, ``revolute`` and ``prismatic``; ``link1`` and ``link2``
-state the pose of the joint in two links. Isaac states no axis: that of USD is x unless it is stated. So the x axes of
-both poses are the axis here, which ``<axis>`` states for those who look for one, as older readers of the element did.
+state the pose of the joint in two links. Isaac writes no axis: that of USD is x unless it is stated. So the x axes of
+both poses are the axis here, and ``<axis>`` states it.
 """
 
 from __future__ import annotations

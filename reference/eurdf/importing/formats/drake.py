@@ -8,34 +8,28 @@ constraint holds a point of one body at a point of another; a tendon constraint 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-import numpy as np
 from lxml import etree
 
 from eurdf.importing.elements import Elements, local, named
 from eurdf.importing.locked import LOCKED, without_locks
-from eurdf.importing.orientation import orientation
 from eurdf.importing.robot_read import ImportFormat, RobotRead
 from eurdf.importing.urdf_tree import URDF_LOSSES, UrdfTree, read_tree
 from eurdf.loss import Effect, Losses, LossKind
-from eurdf.mechanism.constraint import Closure, Coupling, FrameClosure, HingeClosure, PointClosure
+from eurdf.mechanism.constraint import Closure, Coupling, PointClosure
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_type import COORDINATES, JointType
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
+from eurdf.mechanism.pose import IDENTITY, Pose
 from eurdf.reading.resource import FileFinder
 from eurdf.writing.names import UniqueNames
 from eurdf.writing.urdf_elements import LARGEST
 
 _WORLD = "world"
 _X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
-
-#: Distances of two points in two bodies, m, that differ by no more are equal.
-_SAME = 1e-9
 
 #: Elements of Drake that are read here, and those that have no effect on the robot alone.
 _KNOWN = (
@@ -195,68 +189,40 @@ def _frames(tree: UrdfTree, mechanism: Mechanism, losses: Losses) -> tuple[Frame
 
 
 def _closures(tree: UrdfTree, mechanism: Mechanism, names: UniqueNames) -> tuple[Closure, ...]:
-    """The ball constraints; several of one pair of bodies in a row, at points that are as far apart, are one closure.
-
-    A collision filter group of the two bodies names it, and ends it.
-    """
+    """The ball constraints. A collision filter group names those of its two bodies that are before it."""
     links = [body.name for body in mechanism.bodies]
     found: list[Closure] = []
-    group: list[tuple[Vector3, Vector3]] = []
-    bodies = ("", "")
+    group: list[tuple[Anchor, Anchor]] = []
 
     def close(name: str = "") -> None:
-        if group:
-            stated = names.new(name or f"{bodies[0]}_{bodies[1]}")
-            found.extend(_held(stated, bodies, group, names))
-            group.clear()
+        for number, (a, b) in enumerate(group, 1):
+            stated = name or f"{a.body}_{b.body}"
+            found.append(PointClosure(names.new(stated if number == 1 else f"{stated}_{number}"), a, b))
+        group.clear()
 
     for element in tree.root:
         tag = local(element) if isinstance(element.tag, str) else ""
+        bodies = [end.body for end in group[0]] if group else []
         if tag == "ball_constraint":
             parts = {local(child).removeprefix("ball_constraint_"): child for child in element}
             if missing := {"body_A", "body_B", "p_AP", "p_BQ"} - parts.keys():
                 raise tree.elements.refuse(element, f"<ball_constraint> has no <drake:ball_constraint_{min(missing)}>")
-            pair = tuple(tree.elements.link(element, parts[key].get("name"), links) for key in ("body_A", "body_B"))
-            points = tuple(tree.elements.vector(parts[key], "value") for key in ("p_AP", "p_BQ"))
-            if pair != bodies or not _congruent(group, (points[0], points[1])):
+            a, b = (
+                Anchor(
+                    tree.elements.link(element, parts[body].get("name"), links),
+                    Pose(tree.elements.vector(parts[point], "value")),
+                )
+                for body, point in (("body_A", "p_AP"), ("body_B", "p_BQ"))
+            )
+            if [a.body, b.body] != bodies:
                 close()
-            bodies = pair[0], pair[1]
-            group.append((points[0], points[1]))
+            group.append((a, b))
         elif tag == "collision_filter_group":
             members = {child.get("link") for child in element if local(child) == "member"}
             if members == set(bodies):
                 close(element.get("name", ""))
     close()
     return tuple(found)
-
-
-def _congruent(group: Sequence[tuple[Vector3, Vector3]], more: tuple[Vector3, Vector3]) -> bool:
-    return len(group) < 3 and all(
-        math.dist(p, more[0]) > _SAME and abs(math.dist(p, more[0]) - math.dist(q, more[1])) < _SAME for p, q in group
-    )
-
-
-def _held(
-    name: str, bodies: tuple[str, str], points: Sequence[tuple[Vector3, Vector3]], names: UniqueNames
-) -> list[Closure]:
-    """The closure that holds one, two or three points of a body at those of another."""
-    (p, q), *others = points
-    if not others:
-        return [PointClosure(name, Anchor(bodies[0], Pose(p)), Anchor(bodies[1], Pose(q)))]
-    differences = [tuple(np.subtract(each[side], points[0][side]) for each in others) for side in (0, 1)]
-    if len(others) == 1:
-        one, other = ((float(d[0][0]), float(d[0][1]), float(d[0][2])) for d in differences)
-        return [HingeClosure(name, Anchor(bodies[0], Pose(p)), Anchor(bodies[1], Pose(q)), (one, other))]
-    poses = []
-    for origin, (along, across) in zip((p, q), differences, strict=True):
-        x = along / np.linalg.norm(along)
-        y = across - (across @ x) * x
-        if np.linalg.norm(y) < _SAME:  # three points on a line hold a hinge
-            return _held(name, bodies, points[:2], names)
-        y = y / np.linalg.norm(y)
-        axes = (tuple(map(float, axis)) for axis in (x, y, np.cross(x, y)))
-        poses.append(Pose(origin, orientation(*axes).quaternion))  # type: ignore[arg-type]
-    return [FrameClosure(name, Anchor(bodies[0], poses[0]), Anchor(bodies[1], poses[1]))]
 
 
 def _couplings(tree: UrdfTree, mechanism: Mechanism, names: UniqueNames, losses: Losses) -> tuple[Coupling, ...]:

@@ -1,7 +1,7 @@
 """URDF with ``<loop_joint>``, the element of Isaac Sim for closed loops.
 
 ``link1`` and ``link2`` state the pose of the loop joint in two links; the documentation of Isaac also has two
-``link1``. Isaac states no axis: that of USD is x unless ``<axis>`` states another one, in both poses.
+``link1``. Isaac writes no axis, though USD has one, x, y or z of both poses. Others write ``<axis>``, in both poses.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from lxml import etree
 from eurdf.importing.elements import named
 from eurdf.importing.robot_read import ImportFormat, RobotRead
 from eurdf.importing.urdf_tree import URDF_LOSSES, UrdfTree, loop_left_out, read_tree
-from eurdf.loss import Losses
+from eurdf.loss import Effect, Losses, LossKind
 from eurdf.mechanism.constraint import Closure, FrameClosure, HingeClosure, PointClosure
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.reading.resource import FileFinder
@@ -22,6 +22,14 @@ from eurdf.writing.names import UniqueNames
 
 LOSSES = (
     loop_left_out("loop joint"),
+    LossKind(
+        "import-loop-axis",
+        "loop joint",
+        Effect.APPROXIMATE,
+        "is revolute and has no axis: the only axis is taken about which the rest of the mechanism lets it turn",
+        'compare it with physics:axis of the joint in USD, and add <axis xyz="…"/>',
+        error="none, if it is that of the original",
+    ),
     *URDF_LOSSES,
 )
 
@@ -35,13 +43,15 @@ def read(path: Path, finder: FileFinder) -> RobotRead:
     losses = Losses(LOSSES)
     tree = read_tree(path, finder, losses, ("loop_joint", "fixed_frame"))
     names = UniqueNames(losses, code="import-name")
-    closures = [
-        closure
-        for element in tree.root.iterchildren("loop_joint")
-        if (closure := _closure(element, tree, names, losses))
-    ]
+    closures, without_axis = [], []
+    for element in tree.root.iterchildren("loop_joint"):
+        closure = _closure(element, tree, names, losses)
+        if closure is not None:
+            closures.append(closure)
+            if isinstance(closure, HingeClosure) and element.find("axis") is None:
+                without_axis.append(closure.name)
     mechanism = replace(tree.mechanism, closures=tuple(closures), frames=_frames(tree, losses))
-    return RobotRead(mechanism, losses.found, tree.copies.files, sources=(path,))
+    return RobotRead(mechanism, losses.found, tree.copies.files, sources=(path,), without_axis=tuple(without_axis))
 
 
 def _closure(element: etree._Element, tree: UrdfTree, names: UniqueNames, losses: Losses) -> Closure | None:
@@ -61,7 +71,9 @@ def _closure(element: etree._Element, tree: UrdfTree, names: UniqueNames, losses
             return FrameClosure(name, a, b)
         case "revolute" | "continuous":
             axis = element.find("axis")
-            xyz = (1.0, 0.0, 0.0) if axis is None else elements.axis(axis)
+            if axis is None:
+                return HingeClosure(name, a, b)
+            xyz = elements.axis(axis)
             return HingeClosure(name, a, b, (xyz, xyz))
     losses.add("import-loop", name, f"is left out: it has the type '{element.get('type')}'")
     return None

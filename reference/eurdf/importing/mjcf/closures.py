@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 from eurdf.importing.mjcf.reading import MjcfReading
-from eurdf.importing.mjcf.values import SAME, pose_from, vector
-from eurdf.mechanism.constraint import (
-    Closure,
-    DistanceClosure,
-    FrameClosure,
-    HingeClosure,
-    PointClosure,
-)
+from eurdf.importing.mjcf.values import pose_from, vector
+from eurdf.mechanism.constraint import Closure, DistanceClosure, FrameClosure, PointClosure
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.pose import Pose, Vector3
+from eurdf.mechanism.pose import Pose
 from eurdf.mechanism.spanning_tree import rigid_roots
 
 
@@ -24,7 +17,6 @@ def read_closures(reading: MjcfReading) -> list[Closure]:
     """The closures, in the order of the file."""
     model = reading.model
     found: list[Closure] = []
-    by_name = {name: index for index, name in enumerate(model.names["equality"]) if name}
     for index, kind in enumerate(model["eq_type"]):
         if index in reading.consumed:
             continue
@@ -37,16 +29,7 @@ def read_closures(reading: MjcfReading) -> list[Closure]:
             a, b = _anchors(reading, index)
             name = reading.equalities.new(name or f"{a.body}_{b.body}")
             reading.losses.add("import-softness", name)
-            if kind == "weld":
-                found.append(FrameClosure(name, a, b))
-                continue
-            second = by_name.get(f"{model.names['equality'][index]}/axis")
-            axes = None if second is None or not name else _hinge_axes(reading, a, b, second)
-            if axes is None or second is None:
-                found.append(PointClosure(name, a, b))
-            else:
-                reading.consumed.add(second)
-                found.append(HingeClosure(name, a, b, axes))
+            found.append((FrameClosure if kind == "weld" else PointClosure)(name, a, b))
         elif kind == "tendon" and (distance := _distance(reading, index)) is not None:
             reading.consumed.add(index)
             found.append(distance)
@@ -70,19 +53,6 @@ def _site_anchor(reading: MjcfReading, site: int) -> Anchor:
     model = reading.model
     pose = pose_from(model["site_pos"][site], model["site_quat"][site])
     return Anchor(reading.bodies[model["site_bodyid"][site]].name, pose)
-
-
-def _hinge_axes(reading: MjcfReading, a: Anchor, b: Anchor, second: int) -> tuple[Vector3, Vector3] | None:
-    """The axes of the hinge that a second point makes of a first one; None if it does not."""
-    model = reading.model
-    if model["eq_type"][second] != "connect" or not model["eq_active0"][second]:
-        return None
-    c, d = _anchors(reading, second)
-    one, other = a.pose.inverse().act(c.pose.xyz), b.pose.inverse().act(d.pose.xyz)
-    lengths = math.hypot(*one), math.hypot(*other)
-    if (a.body, b.body) != (c.body, d.body) or min(lengths) < SAME or abs(lengths[0] - lengths[1]) > SAME:
-        return None
-    return one, other
 
 
 def _distance(reading: MjcfReading, index: int) -> DistanceClosure | None:

@@ -1,0 +1,204 @@
+"""Several 3d closures of two bodies as the one closure that they are: a hinge, or 6d if the points are on no line."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Mapping, Sequence
+
+import numpy as np
+
+from eurdf.dataclass import dataclass
+from eurdf.kinematics.array import Matrix
+from eurdf.mechanism.constraint import RIGID, Closure, FrameClosure, HingeClosure, PointClosure
+from eurdf.mechanism.frame import Anchor
+from eurdf.mechanism.pose import Pose, Vector3, direction
+
+#: Distances in the two bodies that differ by no more are equal, m: files state positions with six digits.
+_ROUNDING = 1e-5
+
+#: The same, as a part of the distance of the points.
+_RELATIVE = 1e-4
+
+#: Points nearer to each other than this are one point, m.
+_SHORTEST = 1e-6
+
+#: A unit vector that is nearer than this to an axis of its frame is that axis: the rest is rounding.
+_ROUNDED = 1e-12
+
+
+@dataclass(frozen=True, slots=True)
+class Joined:
+    """A closure that takes the place of several.
+
+    Attributes:
+        closure: A hinge, or a 6d closure; its name and its origins are those of the first point.
+        points: Names of the 3d closures.
+    """
+
+    closure: Closure
+    points: tuple[str, ...]
+
+    def __str__(self) -> str:
+        kind = "hinge" if isinstance(self.closure, HingeClosure) else "6d closure"
+        names = [f"'{name}'" for name in self.points]
+        return f"{', '.join(names[:-1])} and {names[-1]} are one {kind}: their points are as far apart in both bodies"
+
+
+@dataclass(frozen=True, slots=True)
+class Apart:
+    """Two 3d closures of the same two bodies that cannot both be closed.
+
+    Attributes:
+        names: Of the closures.
+        distances: Of their points in one body and in the other, m.
+    """
+
+    names: tuple[str, str]
+    distances: tuple[float, float]
+
+    def __str__(self) -> str:
+        (one, other), (a, b) = self.names, self.distances
+        return f"'{one}' and '{other}' join the same bodies, but are {a:g} m apart in one and {b:g} m in the other"
+
+
+@dataclass(frozen=True, slots=True)
+class JoinedClosures:
+    """The closures of a mechanism, those of points joined.
+
+    Attributes:
+        closures: In the order of the first of each.
+        joined: Those that take the place of several.
+        apart: 3d closures that cannot be joined.
+    """
+
+    closures: tuple[Closure, ...]
+    joined: tuple[Joined, ...]
+    apart: tuple[Apart, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Point:
+    """A 3d closure of two rigid bodies, each of one or several links that are fixed to each other.
+
+    Attributes:
+        index: Of the closure.
+        closure: The closure, with frame A in the first body.
+        poses: Poses of its frames in the two bodies.
+    """
+
+    index: int
+    closure: PointClosure
+    poses: tuple[Pose, Pose]
+
+
+def join_points(closures: Sequence[Closure], poses: Mapping[str, tuple[str, Pose]]) -> JoinedClosures:
+    """Join the 3d closures of the same two bodies whose points are as far apart in both.
+
+    Two such points, and more on a line, hold a hinge; others fix one body to the other. As 3d closures, they have
+    redundant rows.
+
+    Args:
+        closures: The closures of a mechanism.
+        poses: As of `eurdf.mechanism.spanning_tree.rigid_poses`.
+    """
+    groups: dict[tuple[str, str], list[list[_Point]]] = {}
+    for index, closure in enumerate(closures):
+        if type(closure) is not PointClosure or closure.compliance != RIGID:
+            continue
+        (one, at), (other, beyond) = (poses[end.body] for end in closure.anchors)
+        if one == other:
+            continue
+        pair = (one, other)
+        if (other, one) in groups:
+            pair = (other, one)
+            closure = PointClosure(closure.name, closure.b, closure.a)
+            at, beyond = beyond, at
+        point = _Point(index, closure, (at * closure.a.pose, beyond * closure.b.pose))
+        found = groups.setdefault(pair, [])
+        together = next((group for group in found if _fits([*group, point])), None)
+        if together is None:
+            found.append([point])
+        else:
+            together.append(point)
+    kept = dict(enumerate(closures))
+    joined = []
+    for group in itertools.chain.from_iterable(groups.values()):
+        if len(group) > 1:
+            whole = _joined(group)
+            joined.append(Joined(whole, tuple(point.closure.name for point in group)))
+            kept[group[0].index] = whole
+            for point in group[1:]:
+                del kept[point.index]
+    apart = tuple(itertools.chain.from_iterable(map(_apart, groups.values())))
+    return JoinedClosures(tuple(kept.values()), tuple(joined), apart)
+
+
+def _apart(groups: Sequence[Sequence[_Point]]) -> Iterable[Apart]:
+    """The first points of groups that cannot both be closed; two at the same place are redundant, but can."""
+    for one, other in itertools.combinations((group[0] for group in groups), 2):
+        a, b = _distances(one, other)
+        if abs(a - b) > _tolerance(a, b):
+            yield Apart((one.closure.name, other.closure.name), (a, b))
+
+
+def _distances(one: _Point, other: _Point) -> tuple[float, float]:
+    a, b = (math.dist(one.poses[side].xyz, other.poses[side].xyz) for side in (0, 1))
+    return a, b
+
+
+def _tolerance(*distances: float) -> float:
+    return max(_SHORTEST, min(_ROUNDING, _RELATIVE * max(distances)))
+
+
+def _fits(group: Sequence[_Point]) -> bool:
+    """Whether the last point of a group is apart from the others, and a motion of the body takes all points there."""
+    *others, last = group
+    distances = [distance for point in others for distance in _distances(point, last)]
+    P, Q = (np.array([point.poses[side].xyz for point in group]) for side in (0, 1))
+    turned = _rotated(_rotation(P, Q), Q - Q.mean(axis=0))
+    error = float(np.linalg.norm(P - P.mean(axis=0) - turned, axis=1).max())
+    return min(distances) > _SHORTEST and error <= _tolerance(*distances)
+
+
+def _rotation(P: Matrix, Q: Matrix) -> Pose:
+    """The rotation that brings points Q (n, 3) nearest to points P, as Horn (1987) finds it: never a reflection."""
+    S = (Q - Q.mean(axis=0)).T @ (P - P.mean(axis=0))
+    N = np.empty((4, 4))
+    N[0, 0] = np.trace(S)
+    N[0, 1:] = N[1:, 0] = (S[1, 2] - S[2, 1], S[2, 0] - S[0, 2], S[0, 1] - S[1, 0])
+    N[1:, 1:] = S + S.T - np.trace(S) * np.eye(3)
+    w, x, y, z = map(float, np.linalg.eigh(N)[1][:, -1])
+    return Pose(quaternion=(x, y, z, w))
+
+
+def _rotated(rotation: Pose, points: Matrix) -> Matrix:
+    return np.array([rotation.rotate((float(x), float(y), float(z))) for x, y, z in points])
+
+
+def _joined(group: Sequence[_Point]) -> Closure:
+    first, *others = group
+    far = max(others, key=lambda point: _distances(first, point)[0])
+    axes = tuple(_axis(first.poses[side], far.poses[side].xyz) for side in (0, 1))
+    name, a, b = first.closure.name, first.closure.a, first.closure.b
+    at, beyond = first.poses
+    off = max(_off(at.xyz, far.poses[0].xyz, point.poses[0].xyz) for point in others)
+    if off <= _tolerance(*_distances(first, far)):
+        return HingeClosure(name, a, b, (axes[0], axes[1]))
+    P, Q = (np.array([point.poses[side].xyz for point in group]) for side in (0, 1))
+    # Frame B turns to where A is when the points meet.
+    turn = beyond.inverse() * _rotation(P, Q).inverse() * at
+    return FrameClosure(name, a, Anchor(b.body, b.pose * Pose(quaternion=turn.quaternion)))
+
+
+def _off(origin: Vector3, end: Vector3, point: Vector3) -> float:
+    """Distance of a point from the line through two others, m."""
+    along = np.subtract(end, origin)
+    return float(np.linalg.norm(np.cross(along, np.subtract(point, origin))) / np.linalg.norm(along))
+
+
+def _axis(frame: Pose, end: Vector3) -> Vector3:
+    """The unit vector in a frame from its origin to a point that is given where the frame is."""
+    x, y, z = direction(frame.inverse().act(end))
+    nearest: Vector3 = (float(round(x)), float(round(y)), float(round(z)))
+    return nearest if math.dist((x, y, z), nearest) < _ROUNDED else (x, y, z)
