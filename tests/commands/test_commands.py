@@ -1,5 +1,6 @@
 """The command line."""
 
+import glob
 import json
 import os
 import signal
@@ -251,6 +252,33 @@ def test_empty_folder_is_error_unless_allowed(folder: Path, run: Run) -> None:
     robot(folder / "arm")
     assert run("check", "--allow-none", ".")[1] == "./arm: sound\n"
     assert run("check", "--allow-none", "nowhere")[0] == 2
+
+
+def test_folders_without_robot_among_others_are_skipped(folder: Path, run: Run) -> None:
+    robot(folder / "robots" / "arm")
+    robot(folder / "robots" / "broken", ACTUATES_NOTHING)
+    robot(folder / "robots" / "group" / "leg")
+    for name, content in (("quality/__init__.py", ""), ("xacros/macros.xacro", "<robot/>"), ("meshes/deep/a.stl", "")):
+        (folder / "robots" / name).parent.mkdir(parents=True)
+        (folder / "robots" / name).write_text(content, encoding="utf-8")
+    paths = sorted(glob.glob("robots/*/"))
+    code, out, err = run("check", *paths)
+    assert (code, err) == (
+        1,
+        "skipped 3 folders without a robot: 'robots/meshes/', 'robots/quality/', 'robots/xacros/'\n",
+    )
+    assert "robots/arm/: sound" in out
+    assert "robots/group/leg: sound" in out
+    report = json.loads(run("check", *paths, "--format", "json")[1])
+    jsonschema.validate(report, output_schemas()["diagnostics-report.schema.json"])
+    assert report["skipped"] == ["robots/meshes/", "robots/quality/", "robots/xacros/"]
+    assert run("check", "robots/arm", "robots/quality")[0] == 0
+    for alone in (["robots/quality"], ["robots/quality", "robots/meshes"], ["robots/arm", "nowhere"]):
+        assert run("check", *alone)[0] == 2
+    (folder / "robots" / "quality" / "a.urdf").write_text(URDF, encoding="utf-8")
+    (folder / "robots" / "quality" / "b.urdf").write_text(URDF, encoding="utf-8")
+    code, _, err = run("check", *paths)
+    assert (code, "contains 2 URDFs; name the file" in err) == (2, True)
 
 
 # --- info ------------------------------------------------------------------------------------------------------------

@@ -244,6 +244,7 @@ def test_json_contains_all_fields() -> None:
             },
             {"path": "robots/hip", "ok": True, "diagnostics": []},
         ],
+        "skipped": [],
     }
 
 

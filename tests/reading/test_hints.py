@@ -262,11 +262,10 @@ def test_neighbouring_urdf_folder_is_searched(tmp_path: Path, monkeypatch: pytes
 
 
 @pytest.mark.parametrize("text", [VERSION2, "name_mot: []\n"], ids=["version 2", "version 1"])
-def test_nearby_xacro_is_suggested_with_option(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str) -> None:
+def test_nearby_xacro_is_suggested(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str) -> None:
     monkeypatch.chdir(tmp_path)
-    assert (
-        hint_of(Path(), ["leg.urdf.xacro"], text) == "there is 'leg.urdf.xacro': use the option --urdf leg.urdf.xacro"
-    )
+    fix = "write urdf: leg.urdf.xacro" if text == VERSION2 else "use the option --urdf leg.urdf.xacro"
+    assert hint_of(Path(), ["leg.urdf.xacro"], text) == f"there is 'leg.urdf.xacro': {fix}"
 
 
 def test_several_urdfs_suggest_none(tmp_path: Path) -> None:

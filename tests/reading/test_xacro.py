@@ -12,6 +12,7 @@ from eurdf.commands.main import main
 from eurdf.diagnostics.text import report_lines
 from eurdf.linking.description import describe
 from eurdf.reading import xacro
+from eurdf.viewing.files import RobotOnDisk
 
 pytest.importorskip("xacro", reason='xacro is not installed: pip install -e ".[xacro]"')
 
@@ -65,11 +66,96 @@ def test_given_xacro_is_urdf_of_description(folder: Path) -> None:
     assert robot.model.inertias[1].mass == 5
 
 
-def test_xacro_named_by_description_is_not_expanded(folder: Path) -> None:
+def describe_arm(folder: Path, content: str = ARM) -> None:
+    (folder / "arm.urdf.xacro").write_text(content, encoding="utf-8")
     (folder / "arm.yaml").write_text(DESCRIPTION + "urdf: arm.urdf.xacro\n", encoding="utf-8")
-    report = eurdf.check("arm.yaml")
-    assert "urdf-bad-number" in {found.code for found in report.errors}
-    assert any("xacro" in str(found.hint) for found in report.errors)
+
+
+def test_every_command_expands_the_xacro_that_a_description_names(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    describe_arm(folder)
+    for arguments, masses in (((), "2"), (("--xacro-arg", "mass:=5"), "5")):
+        assert main(["check", "arm.yaml", *arguments]) == 0
+        assert main(["info", "arm.yaml", *arguments]) == 0
+        assert f"{masses} kg" in capsys.readouterr().out
+        assert main(["export", "arm.yaml", *arguments, "--to", "urdf", "-o", "out", "--force"]) == 0
+        assert f'mass value="{masses}' in (folder / "out" / "robot.urdf").read_text(encoding="utf-8")
+        assert main(["migrate", "arm.yaml", *arguments]) == 0
+        assert eurdf.load("arm.yaml", xacro_args=dict.fromkeys(["mass"], masses)).actuation.joints == ("shoulder",)
+    with pytest.raises(eurdf.CannotExpand, match="did you mean 'mass'"):
+        eurdf.check("arm.yaml", xacro_args={"mas": "5"})
+
+
+def test_error_in_a_named_xacro_is_at_its_name(folder: Path) -> None:
+    describe_arm(folder, robot_with('<link name="${lenght}"/>'))
+    (found,) = eurdf.check("arm.yaml").diagnostics
+    assert (found.code, found.file, found.line, found.column) == ("file-unreadable", "arm.yaml", 3, 7)
+    assert "lenght" in found.message
+    describe_arm(folder, ARM.replace('"1"/></inertial>', '"one"/></inertial>'))
+    assert {found.file for found in eurdf.check("arm.yaml").errors} == {"arm.urdf.xacro (expanded)"}
+
+
+#: Through the frames of Python: the globals of the module xacro.
+GLOBALS = "(lambda l: [l.append((x.gi_frame.f_back.f_back.f_back.f_globals for x in l)), *l[0]])([])[1]"
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ('<link name="$(env SECRET)"/>', "it reads the environment variable 'SECRET'"),
+        ('<link name="$(optenv SECRET no)"/>', "it reads the environment variable 'SECRET'"),
+        ("<link name=\"${xacro.load_yaml('../secret.yaml')}\"/>", "secret.yaml', which is outside"),
+        ('<xacro:include filename="../secret.xacro"/>', "secret.xacro', which is outside"),
+        ('<xacro:include filename="../secret.xacro" optional="true"/><link name="a"/>', "secret.xacro', which is"),
+        ('<xacro:include filename="link.xacro"/>', "link.xacro', which is outside"),
+        (f"<link name=\"${{{GLOBALS}['os'].system('touch pwned')}}\"/>", "it uses '"),
+    ],
+)
+def test_named_xacro_does_nothing_but_read_files_of_the_robot(
+    folder: Path, content: str, message: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("SECRET", "swordfish")
+    (folder / "secret.yaml").write_text("swordfish\n")
+    (folder / "secret.xacro").write_text(robot_with('<link name="swordfish"/>'))
+    home = folder / "home"
+    home.mkdir()
+    monkeypatch.chdir(home)
+    (home / "link.xacro").symlink_to(folder / "secret.xacro")
+    describe_arm(home, robot_with(content))
+    (found,) = eurdf.check("arm.yaml").diagnostics
+    assert message in found.message
+    assert "--urdf" in found.message
+    assert "swordfish" not in str(found)
+    assert not (home / "pwned").exists()
+    if "os" not in content:  # the caller vouches for it
+        assert "file-unreadable" not in {each.code for each in eurdf.check("arm.yaml", "arm.urdf.xacro").diagnostics}
+    if "filename" in content or "load_yaml" in content:
+        assert "file-unreadable" not in {each.code for each in eurdf.check("arm.yaml", allow_outside=True).diagnostics}
+    (found,) = eurdf.check("arm.yaml", confined=True).diagnostics
+    assert "a xacro, which is a program" in found.message
+
+
+def test_links_of_an_installer_are_followed(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    describe_arm(folder, ARM.replace("<link", '<xacro:include filename="part.xacro"/>\n<link', 1))
+    (folder / "part.xacro").write_text(robot_with(""), encoding="utf-8")
+    share = folder / "install" / "share"
+    share.mkdir(parents=True)
+    for name in ("arm.yaml", "arm.urdf.xacro", "part.xacro"):
+        (share / name).symlink_to(folder / name)
+    assert [str(found) for found in eurdf.check(share / "arm.yaml").diagnostics] == []
+
+
+def test_files_of_a_xacro_are_watched(folder: Path) -> None:
+    part = robot_with('<xacro:property name="mass" value="2"/>')
+    (folder / "part.xacro").write_text(part, encoding="utf-8")
+    describe_arm(folder, ARM.replace("<link", '<xacro:include filename="part.xacro"/>\n<link', 1))
+    for path in ("arm.yaml", "arm.urdf.xacro"):
+        files = RobotOnDisk(path, {})
+        files.load()
+        assert not files.has_changed
+        (folder / "part.xacro").write_text(part + "\n" * len(path), encoding="utf-8")
+        assert files.has_changed
 
 
 def test_places_are_in_expanded_text(folder: Path) -> None:
@@ -207,11 +293,13 @@ def test_expansion_is_bounded_in_time_and_size(folder: Path, monkeypatch: pytest
     assert [found.code for found in eurdf.check("arm.urdf.xacro").diagnostics] == ["file-too-large"]
 
 
-def test_generating_from_xacro_names_urdf_to_write(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_generated_description_names_the_xacro(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     options = ("--motor", "shoulder", "--xacro-arg", "mass:=3", "-o", "arm.yaml")
     assert main(["generate", "arm.urdf.xacro", *options]) == 0
+    assert "use --xacro-arg each time" in capsys.readouterr().err
+    assert eurdf.load("arm.yaml").actuation.joints == ("shoulder",)
+    assert main(["generate", "arm.urdf.xacro", "--version", "1"]) == 0
     assert "write it to 'robot.urdf'" in capsys.readouterr().err
-    assert eurdf.load("arm.yaml", "arm.urdf.xacro").actuation.joints == ("shoulder",)
     assert main(["schema", "--for", "arm.urdf.xacro"]) == 0
     assert '"shoulder"' in capsys.readouterr().out
     assert main(["schema", "--xacro-arg", "mass:=3"]) == 2

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -40,6 +41,12 @@ def environment(**more: str) -> dict[str, str]:
 def test_hook_is_valid_for_pre_commit() -> None:
     pre_commit = [sys.executable, "-m", "pre_commit", "validate-manifest", str(HOOKS)]
     subprocess.run(pre_commit, check=True)
+
+
+def test_hook_runs_on_the_files_of_robots() -> None:
+    (hook,) = yaml.safe_load(HOOKS.read_text())
+    for name, is_run in (("robot.yaml", True), ("a/leg.urdf", True), ("leg.urdf.xacro", True), ("xacro.md", False)):
+        assert (re.search(hook["files"], name) is not None) == is_run
 
 
 def run_the_hook(folder: Path) -> subprocess.CompletedProcess[str]:

@@ -57,9 +57,10 @@ def load(
         strict: Whether to refuse every error, those of the inertia and closure phases too; this also checks the loops.
         package_dirs: Folders to look for the packages of meshes in, before ``ROS_PACKAGE_PATH`` and
             ``AMENT_PREFIX_PATH``.
-        xacro_args: Values of the arguments of a xacro.
-        confined: Whether it is an error if the description names a URDF outside its own folder, or the URDF a mesh
-            outside the robot's folder and the packages, symbolic links followed. The file is then not opened.
+        xacro_args: Values of the arguments of a xacro: the one that is given, or that the description names. The latter
+            may only read files of the robot and of packages.
+        confined: Whether it is an error if the description names a URDF outside its own folder or a xacro, or the URDF
+            a mesh outside the robot's folder and the packages, symbolic links followed. The file is then not opened.
         allow_outside: Whether meshes, and files that they name, are read that are neither in the robot's folder nor in
             a package. If not, they are left out, with a warning. The robot's folder is the nearest one, from that of
             the URDF upwards, with a ``package.xml``; without one, that of the URDF.

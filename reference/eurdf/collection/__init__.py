@@ -89,6 +89,15 @@ def find_robot(path: Given, urdf: Given | None = None) -> RobotFiles:
     raise RobotNotFound(name, f"there is no '{name}': it is not a file, a folder, or a robot of the collection; {hint}")
 
 
+def has_robot_file(folder: Path) -> bool:
+    """Whether a file in a folder may be a robot: a YAML file or a URDF.
+
+    Raises:
+        FileError: The folder cannot be read.
+    """
+    return any(path.suffix.lower() in (*_YAML, ".urdf") for path in _files(folder))
+
+
 def _files(folder: Path) -> list[Path]:
     """What is in a folder, except folders: a link to nothing, or a pipe, is an error where it is read.
 

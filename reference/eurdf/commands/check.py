@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.output import columns, has_boxes, is_terminal, write_json, write_lines
 from eurdf.commands.robot_options import add_robot_options, add_robot_path, ending, robot_options
-from eurdf.commands.selection import select
+from eurdf.commands.selection import select, without_robot
 from eurdf.reading.given import is_stream
 
 if TYPE_CHECKING:
@@ -24,11 +24,15 @@ a robot if its name is *.eurdf.yaml, or if it has the top-level key extended_urd
 pipe contains one text: a URDF, which begins with <, or a description, whose paths are relative to the working
 directory.
 
+Of several paths, a folder without a robot is skipped, and named on the standard error: eurdf check robots/*/. A single
+one is an error, and so is a folder with several files that may be the robot.
+
 A warning whose code begins with x- is advice: the file conforms, but is probably not what you intended.
 """
 _EPILOG = ending(
     "0 all robots pass, 1 errors found, 2 the check cannot run.",
     "eurdf check robots/",
+    "eurdf check robots/*/",
     "eurdf check leg.yaml --urdf leg.urdf.xacro --xacro-arg side:=left --package-dir ~/ws/src",
     "xacro leg.urdf.xacro side:=left | eurdf check -",
 )
@@ -60,7 +64,11 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(args: argparse.Namespace) -> int:
     """Check, write the diagnostics, and return the exit code."""
-    robots = select(args.paths, args.allow_none)
+    from eurdf.diagnostics import quoted
+    from eurdf.diagnostics.visible import visible
+
+    skipped = without_robot(args.paths)
+    robots = select([path for path in args.paths if path not in skipped], args.allow_none)
     options = robot_options(args)
     if len(robots) > 1 and args.urdf is not None and is_stream(args.urdf):
         raise CannotRun(
@@ -70,7 +78,7 @@ def run(args: argparse.Namespace) -> int:
     if args.format == "json":
         from eurdf.diagnostics.report import reports_to_json
 
-        write_json(reports_to_json(reports, args.strict))
+        write_json(reports_to_json(reports, args.strict, skipped))
     elif args.format == "sarif":
         from eurdf import __version__
         from eurdf.diagnostics.sarif import sarif_log
@@ -79,9 +87,11 @@ def run(args: argparse.Namespace) -> int:
     elif reports:
         write_reports(reports, args.strict)
     else:
-        from eurdf.diagnostics.visible import visible
-
         write_lines([[(f"{visible(path)}: no robot", "")] for path in args.paths], sys.stdout)
+    if skipped:
+        count = "1 folder" if len(skipped) == 1 else f"{len(skipped)} folders"
+        names = visible(quoted(skipped, len(skipped)))
+        write_lines([[(f"skipped {count} without a robot: {names}", "")]], sys.stderr)
     return 0 if all(report.passes(args.strict) for report in reports) else 1
 
 

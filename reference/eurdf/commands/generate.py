@@ -5,12 +5,13 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Collection, Sequence
+from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.editor_schema import NOT_BESIDE, EditorSchema, add_schema_option, schema_beside, write_described
-from eurdf.commands.migrate import not_in_a_file, print_notes, report_schema, show_refusal, urdf_named, write_yaml
+from eurdf.commands.migrate import print_notes, report_schema, show_refusal, urdf_named, urdf_notes, write_yaml
 from eurdf.commands.output import write_json
 from eurdf.commands.output_file import add_output_option, refuse_to_replace
 from eurdf.commands.robot_options import add_urdf_options, add_urdf_path, ending, require_urdf, urdf_options
@@ -103,6 +104,8 @@ def run(args: argparse.Namespace) -> int:
         show_refusal(shown(args.urdf), tuple(diagnostics), args.json)
         return 1
     source = urdf.document.source
+    if args.version == "1":  # which cannot name a xacro
+        source = replace(source, made_from=())
     urdf_path = urdf_named(args.output or args.urdf, source)
     if args.output is not None:
         refuse_to_replace(args.output, args.force)
@@ -126,8 +129,7 @@ def run(args: argparse.Namespace) -> int:
         write_described(args.output, generation.text, schema, args.force)
     warnings = [found.message for found in diagnostics if found.code == "x-xacro-warning"]
     warnings += generation.found.warnings
-    if not source.is_file:
-        warnings.append(not_in_a_file(source, urdf_path))
+    warnings += urdf_notes(source, urdf_path, options["xacro_args"])
     if args.version == "1" and urdf_path != "robot.urdf":
         warnings.append(f"version 1 cannot name its URDF; rename '{urdf_path}' to robot.urdf, beside the description")
     if args.json:

@@ -7,6 +7,7 @@ import contextlib
 import io
 import os
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -58,7 +59,8 @@ def run(args: argparse.Namespace) -> int:
     from eurdf.writing.migration import migrate
 
     path = select_one(args.path)
-    description = describe(path, **robot_options(args))
+    options = robot_options(args)
+    description = describe(path, **options)
     path = description.path
     if isinstance(description, Unlinked) or description.diagnostics.refused:
         show_refusal(path, tuple(description.diagnostics), args.json)
@@ -91,8 +93,7 @@ def run(args: argparse.Namespace) -> int:
             where = f"{source.file}:{line}" if line else source.file
             raise CannotRun(f"cannot migrate: {where}: {reason}") from None
         text, notes, written = migration.text, migration.notes, migration.mechanism.version
-        if not urdf.is_file:
-            notes = (*notes, not_in_a_file(urdf, urdf_path))
+        notes = (*notes, *urdf_notes(urdf, urdf_path, options["xacro_args"]))
         if output is not None:
             write_described(output, text, schema, args.force)
         elif reference is None and args.schema != "none":
@@ -132,13 +133,20 @@ def write_yaml(text: str) -> None:
 
 
 def urdf_named(description: str | os.PathLike[str], urdf: Source) -> str:
-    """The name of the URDF in a description; ``robot.urdf`` if the URDF is not a file."""
-    return urdf_from(description, urdf.file) if urdf.is_file else "robot.urdf"
+    """The name of the URDF, or of its xacro, in a description; ``robot.urdf`` if it is not a file."""
+    return urdf_from(description, urdf.files[0]) if urdf.files else "robot.urdf"
 
 
-def not_in_a_file(urdf: Source, name: str) -> str:
-    """The note if the URDF of a description did not come from a file."""
-    return f"the URDF came from {urdf.file}; write it to '{name}', which the description names, or use --urdf each time"
+def urdf_notes(urdf: Source, name: str, xacro_args: Mapping[str, str]) -> tuple[str, ...]:
+    """The notes if the URDF of a description is more than a file that the description names."""
+    if not urdf.files:
+        return (
+            f"the URDF came from {urdf.file}; write it to '{name}', which the description names, or use --urdf each "
+            "time",
+        )
+    if xacro_args:
+        return (f"the description names '{name}' without arguments; use --xacro-arg each time",)
+    return ()
 
 
 def urdf_from(description: str | os.PathLike[str], urdf: str | os.PathLike[str]) -> str:

@@ -46,8 +46,8 @@ def add_robot_options(parser: argparse.ArgumentParser) -> None:
     places.add_argument(
         "--confined",
         action="store_true",
-        help="refuse a description that names a URDF outside its own folder, and a URDF that names a mesh outside the "
-        "robot's folder",
+        help="refuse a description that names a URDF outside its own folder or a xacro, and a URDF that names a mesh "
+        "outside the robot's folder",
     )
     places.add_argument("--allow-outside", action="store_true", help="read meshes that are outside the robot's folder")
     add_urdf_options(parser)
@@ -70,7 +70,7 @@ def add_urdf_options(parser: argparse.ArgumentParser) -> None:
         type=_xacro_arg,
         action="append",
         default=[],
-        help="an argument of a .xacro file (repeatable)",
+        help="an argument of the .xacro file that is given, or that the description names (repeatable)",
     )
 
 

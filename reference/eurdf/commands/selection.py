@@ -5,10 +5,10 @@ from __future__ import annotations
 import contextlib
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from eurdf.collection import find_robot
+from eurdf.collection import find_robot, has_robot_file
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.diagnostics import FileError
 from eurdf.exceptions import RobotNotFound
@@ -42,6 +42,28 @@ def select(paths: Iterable[str], allow_none: bool = False) -> list[str]:
         CannotRun: A folder cannot be read.
     """
     return list(dict.fromkeys(robot for path in paths for robot in _robots_at(path, allow_none)))
+
+
+def without_robot(paths: Sequence[str]) -> list[str]:
+    """The folders without a robot among several paths: those that ``robots/*/`` also stands for.
+
+    Empty if no path is left without them: that is an error of the caller.
+
+    Args:
+        paths: The paths that the user gave.
+
+    Raises:
+        CannotRun: A folder cannot be read.
+    """
+    found = [path for path in paths if os.path.isdir(path) and not _has_robot(path)]
+    return [] if len(found) == len(paths) else list(dict.fromkeys(found))
+
+
+def _has_robot(folder: str) -> bool:
+    try:
+        return has_robot_file(Path(folder)) or bool(_robots_below(folder))
+    except FileError:
+        return True  # it is reported when the robot is checked
 
 
 def select_one(path: str) -> str:

@@ -53,15 +53,17 @@ class Report:
         }
 
 
-def reports_to_json(reports: Iterable[Report], strict: bool = False) -> dict[str, Any]:
+def reports_to_json(reports: Iterable[Report], strict: bool = False, skipped: Iterable[str] = ()) -> dict[str, Any]:
     """The diagnostics of any number of robots as one object; `report_schema` describes it.
 
     Args:
         reports: One for each robot, in the order to show.
         strict: Whether a warning makes ``ok`` false, too; severities do not change.
+        skipped: Folders without a robot that were given among others.
     """
     robots = [report.to_json(strict) for report in reports]
-    return {"version": REPORT_VERSION, "ok": all(robot["ok"] for robot in robots), "robots": robots}
+    ok = all(robot["ok"] for robot in robots)
+    return {"version": REPORT_VERSION, "ok": ok, "robots": robots, "skipped": [encodable(path) for path in skipped]}
 
 
 def _diagnostic_to_json(found: Diagnostic) -> dict[str, Any]:
@@ -169,6 +171,12 @@ def report_schema() -> dict[str, Any]:
                 "version": {"const": REPORT_VERSION, "description": "Version of this form."},
                 "ok": {"type": "boolean", "description": "Whether every robot passes."},
                 "robots": {"type": "array", "items": robot, "description": "One entry for each robot."},
+                "skipped": {
+                    "type": "array",
+                    "items": {"type": "string"},
+                    "description": "Folders without a robot that were given among others.",
+                    "examples": [["robots/textures"]],
+                },
             },
         ),
     }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Literal, NamedTuple
@@ -27,7 +28,7 @@ from eurdf.reading.xacro import expand, is_xacro
 from eurdf.reading.xml_reader import read_xml
 from eurdf.reading.yaml_reader import YamlDocument, read_yaml
 
-_NO_XACRO = "only a .xacro file accepts arguments; give one as the robot or as its URDF"
+_NO_XACRO = "only a .xacro file accepts arguments; give one as the robot or as its URDF, or name one under 'urdf'"
 
 #: What to do about errors of mimic joints: report them and refuse the URDF, report them only, or ignore them.
 _MimicErrors = Literal["refused", "kept", "ignored"]
@@ -131,8 +132,6 @@ def describe(
     except FileError as error:
         diagnostics.add(error.diagnostic)
         return Unlinked(name, diagnostics)
-    if given is None and xacro_args:
-        raise CannotExpand(name, _NO_XACRO)
     if files.description is None:
         assert given is not None
         read, extension = partial(_own_source, given, confined), None
@@ -150,6 +149,15 @@ def describe(
                 return Unlinked(name, diagnostics)
             # Another file that the description names may be anyone's: no line of it is shown.
             read = partial(read_source, named, is_quoted=is_inside)
+            if is_xacro(named):
+                if extension is None:
+                    return Unlinked(name, diagnostics)
+                real = Path(os.path.realpath(named)).parent
+                finder = FileFinder(named.parent, package_dirs, real_folder=real, allow_outside=allow_outside)
+                folders = None if confined else finder.folders
+                read = partial(_named_xacro, named, extension, diagnostics, package_dirs, xacro_args, folders)
+            elif extension is not None and xacro_args:
+                raise CannotExpand(name, _NO_XACRO)
         # Without a version, whether a mimic has an effect is not known.
         version = extension.version if extension is not None else document and version_of(document)
         mimic_errors = "ignored" if version in (None, "1") else "refused" if mimic else "kept"
@@ -221,12 +229,53 @@ def _expanded(
     """A URDF that the caller gave, or that a xacro is expanded to."""
     if isinstance(urdf, Path) and is_xacro(urdf) and os.path.lexists(urdf):
         source, warnings = expand(urdf, xacro_args, package_dirs)
-        if warnings:
-            diagnostics.report("x-xacro-warning", f"xacro warns: {' '.join(warnings.split())}", Place(os.fspath(urdf)))
+        _add_warnings(urdf, warnings, diagnostics)
         return source
     if xacro_args:
         raise CannotExpand(name, _NO_XACRO)
     return urdf
+
+
+def _named_xacro(
+    urdf: Path,
+    extension: Extension,
+    diagnostics: Diagnostics,
+    package_dirs: Sequence[str | os.PathLike[str]],
+    xacro_args: Mapping[str, str] | None,
+    folders: Folders | None,
+) -> Source:
+    """The URDF that a xacro is expanded to which the description names.
+
+    Args:
+        urdf: The xacro.
+        extension: The description.
+        diagnostics: Gets the warnings of xacro.
+        package_dirs: Folders to look for packages in.
+        xacro_args: Values of its arguments.
+        folders: Where the files that it reads may be; None if files are confined.
+
+    Raises:
+        CannotExpand: It has an error, and arguments are given, which may be the reason.
+        FileError: ``file-unreadable``: it has an error, or files are confined; or ``file-too-large``.
+        MissingExtra: The extra ``xacro`` is not installed.
+    """
+    place = extension.document.place(("urdf",))
+    if folders is None:
+        message = f"the URDF '{urdf}' is a xacro, which is a program, and files are confined to their folder"
+        raise FileError("file-unreadable", message, place, "expand it, and name the result")
+    try:
+        source, warnings = expand(urdf, xacro_args, package_dirs, folders)
+    except CannotExpand as error:
+        if xacro_args:
+            raise
+        raise FileError("file-unreadable", str(error), place) from None
+    _add_warnings(urdf, warnings, diagnostics)
+    return replace(source, is_quoted=_is_inside(urdf, extension.document.source.folder))
+
+
+def _add_warnings(xacro: Path, warnings: str, diagnostics: Diagnostics) -> None:
+    if warnings:
+        diagnostics.report("x-xacro-warning", f"xacro warns: {' '.join(warnings.split())}", Place(os.fspath(xacro)))
 
 
 def _read_urdf(
@@ -349,17 +398,16 @@ def _urdf_hint(path: Path, home: Path, extension: Extension) -> str:
 
     from eurdf.format.yaml_text import scalar
 
-    near = _files_near(path, home, ".urdf")
-    xacro = None if near else next(iter(_files_near(path, home, ".xacro")), None)
-    if xacro is not None:
-        return f"there is '{xacro}': use the option --urdf {shlex.quote(os.path.normpath(home / xacro))}"
+    near = _files_near(path, home, ".urdf") or _files_near(path, home, ".xacro")
     likely = near[0] if len(near) == 1 else None
     if len(near) > 1:
         alike = difflib.get_close_matches(path.stem, [Path(other).stem for other in near], n=1)
         likely = next((other for other in near if alike and Path(other).stem == alike[0]), None)
     meant = likely or (near[0] if near else None)
     option = f"the option --urdf {'FILE' if meant is None else shlex.quote(os.path.normpath(home / meant))}"
-    if extension.version == "1":
+    if extension.version == "1" and meant is not None and is_xacro(meant):
+        fix = f"use {option}"
+    elif extension.version == "1":
         fix = f"version 1 cannot name the URDF; save it as robot.urdf beside this file, or use {option}"
     elif meant is None:
         fix = f"write its path from this file under the key 'urdf', or use {option}"
@@ -420,7 +468,7 @@ def find_meshes(
         The files, with one diagnostic for all meshes, one for all textures of a kind.
     """
     source = urdf.document.source
-    real = Path(os.path.realpath(source.file)).parent if source.is_file and not confined else source.folder
+    real = Path(os.path.realpath(source.files[0])).parent if source.files and not confined else source.folder
     finder = FileFinder(source.folder, package_dirs, real_folder=real, allow_outside=allow_outside)
     shapes = [shape for link_ in urdf.links.values() for shape in (*link_.visuals, *link_.collisions)]
     paths: dict[str, str] = {}

@@ -29,6 +29,7 @@ class Source:
         data: The same as UTF-8 bytes.
         base: Folder that relative paths in a text start from which is not in a file; None for a file.
         is_quoted: Whether diagnostics show lines of the text.
+        made_from: Paths of the files that a text was made from which is not in a file, the main one first.
     """
 
     file: str
@@ -36,6 +37,7 @@ class Source:
     data: bytes
     base: Path | None = field(default=None, compare=False)
     is_quoted: bool = True
+    made_from: tuple[str, ...] = field(default=(), compare=False)
     lines: Lines = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -45,6 +47,11 @@ class Source:
     def is_file(self) -> bool:
         """Whether `file` is a path at which the text can be read again."""
         return self.base is None
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Paths of the files that the text depends on."""
+        return (self.file,) if self.is_file else self.made_from
 
     @property
     def folder(self) -> Path:

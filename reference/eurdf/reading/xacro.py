@@ -1,8 +1,8 @@
 """Expanding a xacro file into the URDF that it means.
 
-A xacro is a program: its expressions are evaluated, and it includes other files. So it is expanded only where the
-caller names it, never where a description does (EU-SEC-001, EU-SEC-002), and in a process of its own, bounded in time
-and memory.
+A xacro is a program: its expressions are evaluated, and it includes other files. So it is expanded in a process of its
+own, bounded in time and memory. Where a description names it, and not the caller, that process reads only files of the
+robot (EU-SEC-001).
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from typing import Any
 
 from eurdf.diagnostics import did_you_mean
 from eurdf.exceptions import CannotExpand, MissingExtra
+from eurdf.mesh_files.folders import Folders
 from eurdf.program import command_of
 from eurdf.reading.resource import package_homes
 from eurdf.reading.source import FILE_LIMIT, Source, too_large
@@ -35,6 +36,7 @@ def expand(
     path: str | os.PathLike[str],
     arguments: Mapping[str, str] | None = None,
     package_dirs: Sequence[str | os.PathLike[str]] = (),
+    folders: Folders | None = None,
 ) -> tuple[Source, str]:
     """Expand a xacro file.
 
@@ -45,6 +47,8 @@ def expand(
         path: The file.
         arguments: Values of its arguments, ``xacro:arg``.
         package_dirs: Folders to look for packages in, ``$(find package)``.
+        folders: Where the files that it reads must be, for a xacro that its caller does not vouch for: it then also
+            reads no environment variable. None for no such limits.
 
     Returns:
         The URDF, and what xacro warned of (empty for nothing).
@@ -66,6 +70,7 @@ def expand(
         "file": file,
         "arguments": dict(arguments or {}),
         "homes": [str(home) for home in package_homes(folder, package_dirs)],
+        "folders": None if folders is None else ["/"] if folders.allow_outside else folders.real,
         "limit": FILE_LIMIT,
     }
     answer = _answer(file, request)
@@ -79,7 +84,8 @@ def expand(
     if answer["error"]:
         raise CannotExpand(file, answer["error"])
     text = answer["urdf"]
-    return Source(f"{file} (expanded)", text, text.encode(), folder), answer["warnings"]
+    source = Source(f"{file} (expanded)", text, text.encode(), folder, made_from=(file, *answer["files"]))
+    return source, answer["warnings"]
 
 
 def _answer(file: str, request: Mapping[str, object]) -> dict[str, Any]:

@@ -106,11 +106,11 @@ class RobotOnDisk:
 
 
 def _files(description: Linked | Unlinked) -> set[str]:
-    """The description and the URDF."""
+    """The description and the URDF, or the files that a xacro includes."""
     sources = [] if description.urdf is None else [description.urdf.document.source]
     if isinstance(description, Described):
         sources.append(description.extension.document.source)
-    return {source.file for source in sources if source.is_file}
+    return {file for source in sources for file in source.files}
 
 
 def _meshes(robot: Robot) -> set[str]:

@@ -183,9 +183,7 @@ class UrdfReader:
         if "," in text:
             hint = "write a point, not a comma, and separate numbers by spaces"
         elif "${" in text or "$(" in text:
-            hint = (
-                "this looks like xacro: expand it first, or give the .xacro file, with --urdf if there is a description"
-            )
+            hint = "this looks like xacro: expand it first, or give the file a name that ends with .xacro"
         shown = text if len(text) <= 40 else text[:37] + "..."
         self.report(
             "urdf-bad-number",
