@@ -7,6 +7,7 @@ import json
 import struct
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import islice
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as ET
@@ -161,6 +162,15 @@ def test_every_kind_of_loss_occurs() -> None:
         if name not in MISSING
     }
     assert not any(missing.values()), missing
+
+
+@pytest.mark.parametrize("name", [name for name in FORMATS if name not in MISSING])
+def test_actuators_are_named_as_the_description_names_them(name: str) -> None:
+    _, rich = (mechanism for mechanism, _ in islice(robots(), 2))
+    losses = eurdf.export(build_robot(rich, geometry=False), name).losses
+    named = {loss.name for loss in losses if loss.concept in ("actuator", "control range", "gear ratio")}
+    assert named
+    assert named <= {motor.name for motor in rich.motors.values()}
 
 
 @pytest.mark.parametrize(("name", "code", "kind"), [("four_bar", "hinge", "revolute"), ("delta", "ball", "spherical")])

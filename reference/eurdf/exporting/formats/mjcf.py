@@ -36,6 +36,7 @@ from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic, drivers
+from eurdf.mechanism.motor import Motor
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.writing.names import UniqueNames
 from eurdf.writing.xml_text import file_content, numbers, representable
@@ -665,8 +666,8 @@ class _Writer:
 
     def _actuator(self, name: str, actuator: etree._Element) -> None:
         mechanism = self.mechanism
-        motor = mechanism.motors.get(name)
-        shown = name if motor is None else motor.name
+        motor = mechanism.motors.get(name, Motor(name))
+        shown, control = motor.name, motor.control
         if self.given.actuators == "none":
             self.losses.add("export-no-actuator", shown)
             return
@@ -676,7 +677,6 @@ class _Writer:
         if joint.type in (JointType.PLANAR, JointType.FLOATING):
             self.losses.add("export-force-axes", shown)
         count = joint.coordinates.nv
-        control = None if motor is None else motor.control
         for piece in self.pieces[name]:
             for index in piece.velocities:
                 attributes = {"name": self.actuators.new(shown if count == 1 else f"{shown}_{index + 1}")}

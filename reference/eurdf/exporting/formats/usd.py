@@ -41,6 +41,7 @@ from eurdf.mechanism.joint_transform import joint_transform
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic, drivers
+from eurdf.mechanism.motor import Motor
 from eurdf.mechanism.pose import IDENTITY, Pose, Quaternion, Vector3, direction
 from eurdf.mechanism.spanning_tree import rigid_roots
 from eurdf.writing.names import UniqueNames
@@ -572,9 +573,9 @@ class _Writer:
             if damping or stiffness:
                 self.stage.drive(path, freedom.axis, stiffness, damping, target, math.inf)
             return
-        motor = self.mechanism.motors.get(joint.name)
+        motor = self.mechanism.motors.get(joint.name, Motor(joint.name))
         most = effort if effort > 0.0 else math.inf
-        if motor is not None and motor.control is not None:
+        if motor.control is not None:
             lower, upper = motor.control
             if lower != -upper:
                 self.losses.add("export-control-range", shown)
@@ -592,8 +593,7 @@ class _Writer:
         """The name of the actuator of a joint, if it is to have one; with what is lost of it."""
         if joint.name not in self.mechanism.actuators:
             return None
-        motor = self.mechanism.motors.get(joint.name)
-        shown = joint.name if motor is None else motor.name
+        shown = self.mechanism.motors.get(joint.name, Motor(joint.name)).name
         if self.given.actuators == "none":
             self.losses.add("export-no-actuator", shown)
             return None
