@@ -16,7 +16,7 @@ from pathlib import PurePosixPath
 from lxml import etree
 
 from eurdf.exporting.coordinates import Coordinates, Part
-from eurdf.exporting.inertia import accepted_inertia
+from eurdf.exporting.inertia import accepted_inertia, has_inertia
 from eurdf.exporting.urdf_tree import AXES, URDF_LOSSES, Step, UrdfTree, plain_steps
 from eurdf.exporting.written import Exportable, Format, Written
 from eurdf.loss import CONVERSION, Effect, Losses, LossKind
@@ -256,9 +256,7 @@ class _Tree(UrdfTree):
             self._coupling(coupling)
 
     def inertia(self, body: Body) -> Inertia | None:
-        if body.inertia is None or not (body.inertia.mass or any(body.inertia.moments)):
-            return body.inertia
-        return accepted_inertia(body, self.losses, LEAST)
+        return accepted_inertia(body, self.losses, LEAST) if has_inertia(body) else body.inertia
 
     # -- joints -----------------------------------------------------------------------------------------------------
 

@@ -22,7 +22,7 @@ from eurdf.exceptions import MissingExtra
 from eurdf.exporting.contacts import neighbours
 from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.exceptions import CannotExport
-from eurdf.exporting.inertia import about_centre, accepted_inertia
+from eurdf.exporting.inertia import about_centre, accepted_inertia, has_inertia
 from eurdf.exporting.mesh_file import mesh_names, report_unread
 from eurdf.exporting.servo import position_gain
 from eurdf.exporting.written import Exportable, Format, Written
@@ -484,8 +484,7 @@ class _Writer:
 
     def _joint(self, joint: Joint, body: Body) -> None:
         steps = _steps(joint)
-        massless = body.inertia is None or not (body.inertia.mass or any(body.inertia.moments))
-        if joint.type is JointType.FIXED and massless:
+        if joint.type is JointType.FIXED and not has_inertia(body):
             self._fixed_frame(body, joint.parent, joint.placement * joint.offset)
             return
         if len(steps) > 1:
