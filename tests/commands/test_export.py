@@ -56,17 +56,20 @@ def test_files_are_written_to_a_folder_named_after_the_robot(here: Path, capsys:
     assert "3d closure: approximate [export-soft-3d]" in out
 
 
-def test_json_lists_every_loss_with_its_place(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["export", "kangaroo_leg", "--to", "mjcf", "--format", "json"]) == 0
+@pytest.mark.parametrize(("name", "to"), [("kangaroo_leg", "mjcf"), ("excavator", "urdf")])
+def test_json_lists_every_loss_with_its_place(capsys: pytest.CaptureFixture[str], name: str, to: str) -> None:
+    assert main(["export", name, "--to", to, "--format", "json"]) == 0
     found = json.loads(capsys.readouterr().out)
     jsonschema.Draft202012Validator(output_schemas()["export.schema.json"]).validate(found)
-    assert (found["format"], found["refused"]) == ("mjcf", None)
+    assert (found["format"], found["refused"]) == (to, None)
     assert all(Path(file).is_file() for file in found["files"])
-    losses = eurdf.export("kangaroo_leg", "mjcf").losses
+    losses = eurdf.export(name, to).losses
     assert [(each["code"], each["name"]) for each in found["losses"]] == [(loss.code, loss.name) for loss in losses]
+    motors = {motor.name: joint for joint, motor in eurdf.load(name, geometry=False).mechanism.motors.items()}
     for each in found["losses"]:
-        if each["concept"] == "velocity limit":
-            assert f'<joint name="{each["name"]}"' in Path(each["file"]).read_text().splitlines()[each["line"] - 1]
+        if each["concept"] in ("velocity limit", "actuator"):
+            joint = motors.get(each["name"], each["name"])
+            assert f'<joint name="{joint}"' in Path(each["file"]).read_text().splitlines()[each["line"] - 1]
 
 
 def test_existing_file_is_kept_without_force(here: Path, capsys: pytest.CaptureFixture[str]) -> None:

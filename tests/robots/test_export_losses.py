@@ -8,6 +8,7 @@ import math
 import struct
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import islice
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as ET
@@ -189,6 +190,15 @@ def test_limits_of_zero_are_written_as_none(name: str) -> None:
     kinds = {joint.name: joint.coordinates for joint in mechanism.joints}
     assert losses == {name for name, kind in kinds.items() if kind.names and kind.quaternion is None}
     assert [loss for loss in zero.losses if loss.code != "export-no-range"] == list(none.losses)
+
+
+@pytest.mark.parametrize("name", [name for name in FORMATS if name not in MISSING])
+def test_actuators_are_named_as_the_description_names_them(name: str) -> None:
+    _, rich = (mechanism for mechanism, _ in islice(robots(), 2))
+    losses = eurdf.export(build_robot(rich, geometry=False), name).losses
+    named = {loss.name for loss in losses if loss.concept in ("actuator", "control range", "gear ratio")}
+    assert named
+    assert named <= {motor.name for motor in rich.motors.values()}
 
 
 @pytest.mark.parametrize(("name", "code", "kind"), [("four_bar", "hinge", "revolute"), ("delta", "ball", "spherical")])

@@ -390,13 +390,21 @@ def test_neighbours_do_not_collide() -> None:
     assert [sorted(model.geom(g).bodyid[0] for g in contact.geom) for contact in data.contact] == [[0, 2]]  # base, hand
 
 
+def assert_read_by_pinocchio(robot: Robot, folder: Path) -> None:
+    export = eurdf.export(robot, "mjcf")
+    (path,) = export.write(folder)
+    model = pin.buildModelFromMJCF(str(path))
+    assert (model.nq, model.nv) == (export.coordinates.nq, export.coordinates.nv)
+    assert pin.computeTotalMass(model) == pytest.approx(pin.computeTotalMass(robot.model), rel=1e-9)
+
+
 @pytest.mark.parametrize("name", ["digit_2legs", "stewart_platform", "four_bar"])
 def test_pinocchio_reads_closures_and_masses(name: str, tmp_path: Path) -> None:
-    robot = eurdf.load(name, geometry=False)
-    (path,) = eurdf.export(robot, "mjcf").write(tmp_path)
-    model = pin.buildModelFromMJCF(str(path))
-    assert model.nv == robot.model.nv
-    assert pin.computeTotalMass(model) == pytest.approx(pin.computeTotalMass(robot.model), rel=1e-9)
+    assert_read_by_pinocchio(eurdf.load(name, geometry=False), tmp_path)
+
+
+def test_pinocchio_reads_all_bodies_on_a_base_without_mass(tmp_path: Path) -> None:
+    assert_read_by_pinocchio(eurdf.load(hanging('<mimic joint="j"/>'), geometry=False), tmp_path)
 
 
 def test_massless_moving_link_is_a_loss() -> None:

@@ -24,7 +24,7 @@ from eurdf.mechanism.pose import IDENTITY, Pose, direction
 from eurdf.mechanism.spanning_tree import rigid_roots
 from eurdf.pinocchio.robot import Robot, build_robot
 from support.described import mass_matrix
-from support.exported import random_robot, without_armature
+from support.exported import random_robot, values_of_parts, without_armature
 from support.same_mechanism import unlike
 
 
@@ -152,10 +152,8 @@ def test_robot_of_the_collection_comes_back_from_mjcf(name: str, tmp_path: Path)
 
 def there(export: eurdf.Export, found: Robot, q: Any) -> Any:
     """The configuration of the imported robot that is q of the exported one: by the names of the joints of the file."""
-    values = export.coordinates.to_q(q).tolist()
     coordinates: dict[str, list[float]] = {}
-    for part in export.coordinates.parts:
-        mine, values = values[: part.nq], values[part.nq :]
+    for part, mine in zip(export.coordinates.parts, values_of_parts(export.coordinates, q), strict=True):
         if part.mimics:
             continue
         names = list(part.names) if part.joint != ROOT_JOINT else [ROOT_JOINT]

@@ -19,7 +19,7 @@ from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.spanning_tree import rigid_roots
 from eurdf.pinocchio.robot import Robot, build_robot
-from support.exported import random_robot
+from support.exported import random_robot, values_of_parts
 
 #: Kinds of constraint that a format states.
 KINDS = {
@@ -41,7 +41,7 @@ def matched(export: eurdf.Export, there: Robot, robot: Robot, q: Any) -> Any:
     if export.format == "mjcf":
         return there.configuration({name: c for name, c in robot.coordinates(q).items() if name in _known(there)})
     map_ = export.coordinates
-    values, coordinates, at = map_.to_q(q).tolist(), {}, 0
+    values, coordinates, at = [value for mine in values_of_parts(map_, q) for value in mine], {}, 0
     for part in map_.parts:
         if part.joint == ROOT_JOINT:
             w, x, y, z = values[:4] if part.orientation_first else values[3:7]

@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 
 import eurdf
+from eurdf.exporting.coordinates import Coordinates
 from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_type import JointType
@@ -85,6 +86,17 @@ def without_armature(robot: Robot) -> Robot:
         for joint in robot.mechanism.joints
     )
     return build_robot(replace(robot.mechanism, joints=joints), geometry=False)
+
+
+def values_of_parts(coordinates: Coordinates, q: Any) -> list[list[float]]:
+    """The configuration of an exported model, part by part, with angles where it has cosines and sines."""
+    values, found = coordinates.to_q(q).tolist(), []
+    for part in coordinates.parts:
+        mine, values = values[: part.nq], values[part.nq :]
+        for index in part.circular:
+            mine[index : index + 2] = [float(np.arctan2(mine[index + 1], mine[index]))]
+        found.append(mine)
+    return found
 
 
 class InMuJoCo:

@@ -141,6 +141,8 @@ def _place(loss: Loss, description: Linked) -> Place | None:
         return None
     if loss.concept in ("inertia", "link without mass"):
         return urdf.document.place(urdf.links[name].element, None) if name in urdf.links else None
+    if loss.concept in ("actuator", "control range", "gear ratio"):
+        name = next((joint for joint, motor in description.mechanism.motors.items() if motor.name == name), name)
     if name in urdf.joints:
         return urdf.document.place(urdf.joints[name].element, None)
     return None

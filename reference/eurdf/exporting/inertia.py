@@ -25,6 +25,11 @@ ROUNDING = 1e-12
 _UNSURE = 1e-6
 
 
+def has_inertia(body: Body) -> bool:
+    """Whether a body has a mass or a moment of inertia."""
+    return body.inertia is not None and bool(body.inertia.mass or any(body.inertia.moments))
+
+
 def accepted_inertia(body: Body, losses: Losses, least: float, least_moment: float = 0.0) -> Inertia:
     """The inertia of a body, or one near it that a format accepts; what changes is a loss.
 

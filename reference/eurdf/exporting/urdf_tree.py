@@ -18,6 +18,7 @@ from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.mimic import Mimic
+from eurdf.mechanism.motor import Motor
 from eurdf.mechanism.pose import IDENTITY, Vector3
 from eurdf.writing.names import UniqueNames
 from eurdf.writing.urdf_elements import add_dynamics, add_inertial, add_joint, add_limit, add_mimic, add_shape
@@ -342,11 +343,11 @@ class PlainTree(UrdfTree):
             if any(joint.properties.armature):
                 losses.add("export-armature", joint.name)
             if any(ratio != 1.0 for ratio in joint.properties.gear_ratio) or any(joint.properties.rotor_inertia):
-                losses.add("export-gear-ratio", joint.name)
+                losses.add("export-gear-ratio", mechanism.motors.get(joint.name, Motor(joint.name)).name)
         for name in mechanism.actuators:
-            losses.add("export-actuators", name)
-            motor = mechanism.motors.get(name)
-            if motor is not None and motor.control is not None:
+            motor = mechanism.motors.get(name, Motor(name))
+            losses.add("export-actuators", motor.name)
+            if motor.control is not None:
                 losses.add("export-control-range", motor.name)
         if mechanism.root == "floating":
             losses.add("export-floating-root", mechanism.bodies[0].name)

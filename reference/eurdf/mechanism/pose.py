@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import field
 
 from eurdf.dataclass import dataclass
 
@@ -17,14 +18,17 @@ class Pose:
     Attributes:
         xyz: Origin, in metres.
         quaternion: Orientation as a unit quaternion x, y, z, w.
+        rpy: Roll, pitch and yaw that the quaternion was computed from, rad, so that what is written can be read as the
+            same quaternion to the last bit; None for other quaternions.
     """
 
     xyz: Vector3 = (0.0, 0.0, 0.0)
     quaternion: Quaternion = (0.0, 0.0, 0.0, 1.0)
+    rpy: Vector3 | None = field(default=None, compare=False, repr=False)
 
-    def __reduce__(self) -> str | tuple[type[Pose], tuple[Vector3, Quaternion]]:
+    def __reduce__(self) -> str | tuple[type[Pose], tuple[Vector3, Quaternion, Vector3 | None]]:
         """What is pickled and copied: `IDENTITY` stays one object, as others ask whether a pose is this object."""
-        return "IDENTITY" if self is IDENTITY else (Pose, (self.xyz, self.quaternion))
+        return "IDENTITY" if self is IDENTITY else (Pose, (self.xyz, self.quaternion, self.rpy))
 
     @classmethod
     def from_xyz_rpy(cls, xyz: Vector3, rpy: Vector3) -> Pose:
@@ -43,7 +47,7 @@ class Pose:
         z = cr * cp * sy - sr * sp * cy
         w = cr * cp * cy + sr * sp * sy
         norm = math.sqrt(x * x + y * y + z * z + w * w)
-        return cls(xyz, (x / norm, y / norm, z / norm, w / norm))
+        return cls(xyz, (x / norm, y / norm, z / norm, w / norm), rpy)
 
     @classmethod
     def from_xyz_quaternion(cls, xyz: Vector3, quaternion: Quaternion) -> Pose:

@@ -8,10 +8,13 @@ from eurdf.mechanism.pose import Pose, Vector3
 
 
 def rpy_of(pose: Pose) -> Vector3:
-    """Roll, pitch and yaw of an orientation, rad: the shortest numbers that give exactly its quaternion, if any do.
+    """Roll, pitch and yaw of an orientation, rad: those that it was read from, if any.
 
-    Yaw is 0 where it can be, as where the pitch is ±π/2, which leaves it open; else the pitch is between these two.
+    Of other orientations, the shortest numbers that give exactly its quaternion, if any do. Yaw is 0 where it can be,
+    as where the pitch is ±π/2, which leaves it open; else the pitch is between these two.
     """
+    if pose.rpy is not None:
+        return pose.rpy
     x, y, z = (pose.rotate(axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
     exact = angles_with_yaw(math.atan2(x[1], x[0]), x, y, z)
     level = angles_with_yaw(0.0, x, y, z)

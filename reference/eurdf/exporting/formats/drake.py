@@ -16,7 +16,7 @@ from pathlib import PurePosixPath
 from lxml import etree
 
 from eurdf.exporting.coordinates import Coordinates, Part
-from eurdf.exporting.inertia import accepted_inertia
+from eurdf.exporting.inertia import accepted_inertia, has_inertia
 from eurdf.exporting.urdf_tree import AXES, URDF_LOSSES, Step, UrdfTree, plain_steps
 from eurdf.exporting.written import Exportable, Format, Written
 from eurdf.loss import CONVERSION, Effect, Losses, LossKind
@@ -26,6 +26,7 @@ from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.mimic import drivers
+from eurdf.mechanism.motor import Motor
 from eurdf.mechanism.pose import IDENTITY, Vector3, direction
 from eurdf.writing.angles import rpy_of
 from eurdf.writing.urdf_elements import add_dynamics, add_joint
@@ -255,9 +256,7 @@ class _Tree(UrdfTree):
             self._coupling(coupling)
 
     def inertia(self, body: Body) -> Inertia | None:
-        if body.inertia is None or not (body.inertia.mass or any(body.inertia.moments)):
-            return body.inertia
-        return accepted_inertia(body, self.losses, LEAST)
+        return accepted_inertia(body, self.losses, LEAST) if has_inertia(body) else body.inertia
 
     # -- joints -----------------------------------------------------------------------------------------------------
 
@@ -341,9 +340,9 @@ class _Tree(UrdfTree):
             if any(armature):
                 self.losses.add("export-armature", joint.name)
             return
-        motor = mechanism.motors.get(joint.name)
-        shown = joint.name if motor is None else motor.name
-        if motor is not None and motor.control is not None:
+        motor = mechanism.motors.get(joint.name, Motor(joint.name))
+        shown = motor.name
+        if motor.control is not None:
             self.losses.add("export-control-range", shown)
         efforts = properties.effort or (math.inf,) * joint.coordinates.nv
         if joint.type not in _ONE_FREEDOM or min(efforts) <= 0.0:

@@ -18,7 +18,7 @@ from eurdf.dataclass import dataclass
 from eurdf.exporting.contacts import neighbours
 from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.exceptions import CannotExport
-from eurdf.exporting.inertia import accepted_inertia, along_principal_axes
+from eurdf.exporting.inertia import accepted_inertia, along_principal_axes, has_inertia
 from eurdf.exporting.mesh_file import MeshFiles
 from eurdf.exporting.servo import position_gain
 from eurdf.exporting.written import Exportable, Format, Written
@@ -36,6 +36,7 @@ from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic, drivers
+from eurdf.mechanism.motor import Motor
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.writing.names import UniqueNames
 from eurdf.writing.xml_text import file_content, numbers, representable
@@ -395,7 +396,8 @@ class _Writer:
 
     def _fixed(self, body: Body, host: etree._Element, pose: Pose) -> None:
         """A link that is fixed to its host: a body, or a site if it has no mass."""
-        if body.inertia is None or not (body.inertia.mass or any(body.inertia.moments)):
+        # Of what is below the world, Pinocchio reads one body alone: a base that carries several is a body.
+        if not has_inertia(body) and not (host is self.world and self._branches() > 1):
             self._content(body, host, pose)
             if not body.virtual:
                 self._site(body.name, IDENTITY, body.name)
@@ -403,6 +405,17 @@ class _Writer:
         element = etree.SubElement(host, "body", {"name": self.bodies.new(body.name), **_placed(pose)})
         self._inertial(body, element, 0.0)
         self._content(body, element, IDENTITY)
+
+    def _branches(self) -> int:
+        """Number of bodies on the base and on the links without mass that are fixed to it."""
+        base, number = {self.mechanism.bodies[0].name}, 0
+        for joint, body in zip(self.mechanism.joints, self.mechanism.bodies[1:], strict=True):
+            if joint.parent in base:
+                if joint.type is JointType.FIXED and not has_inertia(body):
+                    base.add(body.name)
+                else:
+                    number += 1
+        return number
 
     def _content(self, body: Body, element: etree._Element, pose: Pose) -> None:
         """The shapes of a link, which is at a pose in the element."""
@@ -667,8 +680,8 @@ class _Writer:
 
     def _actuator(self, name: str, actuator: etree._Element) -> None:
         mechanism = self.mechanism
-        motor = mechanism.motors.get(name)
-        shown = name if motor is None else motor.name
+        motor = mechanism.motors.get(name, Motor(name))
+        shown, control = motor.name, motor.control
         if self.given.actuators == "none":
             self.losses.add("export-no-actuator", shown)
             return
@@ -678,7 +691,6 @@ class _Writer:
         if joint.type in (JointType.PLANAR, JointType.FLOATING):
             self.losses.add("export-force-axes", shown)
         count = joint.coordinates.nv
-        control = None if motor is None else motor.control
         for piece in self.pieces[name]:
             for index in piece.velocities:
                 attributes = {"name": self.actuators.new(shown if count == 1 else f"{shown}_{index + 1}")}

@@ -22,7 +22,7 @@ from eurdf.exceptions import MissingExtra
 from eurdf.exporting.contacts import neighbours
 from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.exceptions import CannotExport
-from eurdf.exporting.inertia import about_centre, accepted_inertia
+from eurdf.exporting.inertia import about_centre, accepted_inertia, has_inertia
 from eurdf.exporting.mesh_file import mesh_names, report_unread
 from eurdf.exporting.servo import position_gain
 from eurdf.exporting.written import Exportable, Format, Written
@@ -41,6 +41,7 @@ from eurdf.mechanism.joint_transform import joint_transform
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic, drivers
+from eurdf.mechanism.motor import Motor
 from eurdf.mechanism.pose import IDENTITY, Pose, Quaternion, Vector3, direction
 from eurdf.mechanism.spanning_tree import rigid_roots
 from eurdf.writing.names import UniqueNames
@@ -484,8 +485,7 @@ class _Writer:
 
     def _joint(self, joint: Joint, body: Body) -> None:
         steps = _steps(joint)
-        massless = body.inertia is None or not (body.inertia.mass or any(body.inertia.moments))
-        if joint.type is JointType.FIXED and massless:
+        if joint.type is JointType.FIXED and not has_inertia(body):
             self._fixed_frame(body, joint.parent, joint.placement * joint.offset)
             return
         if len(steps) > 1:
@@ -576,9 +576,9 @@ class _Writer:
             if damping or stiffness:
                 self.stage.drive(path, freedom.axis, stiffness, damping, target, math.inf)
             return
-        motor = self.mechanism.motors.get(joint.name)
+        motor = self.mechanism.motors.get(joint.name, Motor(joint.name))
         most = effort if effort > 0.0 else math.inf
-        if motor is not None and motor.control is not None:
+        if motor.control is not None:
             lower, upper = motor.control
             if lower != -upper:
                 self.losses.add("export-control-range", shown)
@@ -596,8 +596,7 @@ class _Writer:
         """The name of the actuator of a joint, if it is to have one; with what is lost of it."""
         if joint.name not in self.mechanism.actuators:
             return None
-        motor = self.mechanism.motors.get(joint.name)
-        shown = joint.name if motor is None else motor.name
+        shown = self.mechanism.motors.get(joint.name, Motor(joint.name)).name
         if self.given.actuators == "none":
             self.losses.add("export-no-actuator", shown)
             return None
