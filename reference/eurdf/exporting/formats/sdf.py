@@ -22,7 +22,7 @@ from eurdf.exporting.exceptions import CannotExport
 from eurdf.exporting.inertia import Matrix, about_centre, physical
 from eurdf.exporting.mesh_file import MeshFiles
 from eurdf.exporting.written import Exportable, Format, Written
-from eurdf.loss import COMMON, NAMED_FILE, Effect, Losses, LossKind
+from eurdf.loss import ACCELERATION, COMMON, NAMED_FILE, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.constraint import Closure, Coupling, HingeClosure, PointClosure
 from eurdf.mechanism.frame import Anchor
@@ -192,6 +192,7 @@ LOSSES = (
     ),
     LossKind("export-texture", "texture", Effect.DROPPED, "is left out; the color is kept", "add a material"),
     NAMED_FILE,
+    ACCELERATION,
     *COMMON,
 )
 
@@ -453,6 +454,8 @@ class _Writer:
     def _report(self, joint: Joint) -> None:
         """Record what the joints of the file do not have."""
         properties = joint.properties
+        if properties.rates:
+            self.losses.add(ACCELERATION.code, joint.name)
         if any(properties.armature):
             self.losses.add("export-armature", joint.name)
         if any(ratio != 1.0 for ratio in properties.gear_ratio) or any(properties.rotor_inertia):
