@@ -64,9 +64,7 @@ class Elements:
         if element is None:
             return IDENTITY
         if element.get("quat_xyzw") is not None:
-            raise self.refuse(
-                element, f"{named(element)} has 'quat_xyzw'; only links and joints can; use 'rpy'"
-            )
+            raise self.refuse(element, f"{named(element)} has 'quat_xyzw'; only links and joints can; use 'rpy'")
         zero = (0.0, 0.0, 0.0)
         return Pose.from_xyz_rpy(self.vector(element, "xyz", zero), self.vector(element, "rpy", zero))
 
