@@ -35,6 +35,7 @@ CONCEPTS = (
     "position limit",
     "velocity limit",
     "effort limit",
+    "acceleration limit",
     "damping",
     "friction",
     "armature",
@@ -164,6 +165,15 @@ COMMON = (
         "copy it into the robot's folder",
         only="--allow-outside",
     ),
+)
+
+#: Of limits that URDF has from version 1.2 on.
+ACCELERATION = LossKind(
+    "export-acceleration-limit",
+    "acceleration limit",
+    Effect.DROPPED,
+    "limits of acceleration, deceleration and jerk are left out: the format has none",
+    "limit them where motions are planned",
 )
 
 #: Of a file that a mesh names, where meshes are copied.

@@ -95,6 +95,8 @@ def test_properties_of_every_joint_type_are_the_same(tmp_path: Path) -> None:
             key: tuple(random.uniform(0.5, 2.0, nv).tolist())
             for key in ("velocity", "effort", "damping", "friction", "armature")
         }
+        if joint.type not in (JointType.PLANAR, JointType.FLOATING):
+            changes |= {key: (random.uniform(0.5, 2.0),) * nv for key in ("acceleration", "deceleration", "jerk")}
         if joint.coordinates.quaternion is None and joint.type is not JointType.PLANAR:
             changes |= {key: tuple(random.uniform(0.5, 2.0, nv).tolist()) for key in ("stiffness", "rest")}
             if joint.type is not JointType.CONTINUOUS:

@@ -22,7 +22,17 @@ from eurdf.pinocchio.meshes import Mesh, read_meshes
 from eurdf.pinocchio.model import build_model
 from eurdf.pinocchio.robot import build_robot
 from support import by_hand
-from support.plain_urdf import POSITIVE, Root, joint_element, link_element, mechanism_of, origins, robot, vector
+from support.plain_urdf import (
+    POSITIVE,
+    VERSIONS,
+    Root,
+    joint_element,
+    link_element,
+    mechanism_of,
+    origins,
+    robot,
+    vector,
+)
 
 TETRAHEDRON = """solid tetrahedron
 {}endsolid tetrahedron
@@ -134,7 +144,7 @@ def test_shape_matches_pinocchio_parser(parts: Path, shape: str, material: str, 
 
 
 @st.composite
-def shapes(draw: st.DrawFn) -> str:
+def shapes(draw: st.DrawFn, version: str) -> str:
     size = draw(POSITIVE)
     solid = draw(
         st.sampled_from(
@@ -143,10 +153,11 @@ def shapes(draw: st.DrawFn) -> str:
                 f'<cylinder radius="{size}" length="3"/>',
                 f'<sphere radius="{size}"/>',
                 f'<mesh filename="package://parts/tetrahedron.stl" scale="{vector((size, 1, 2))}"/>',
+                *([f'<capsule radius="{size}" length="3"/>'] if version >= "1.1" else []),
             ]
         )
     )
-    return f"{draw(origins())}<geometry>{solid}</geometry>"
+    return f"{draw(origins(version))}<geometry>{solid}</geometry>"
 
 
 @given(data=st.data(), root=st.sampled_from(["fixed", "floating"]))
@@ -154,13 +165,13 @@ def shapes(draw: st.DrawFn) -> str:
 def test_tree_geometry_matches_pinocchio(
     parts: Path, tetrahedron: dict[str, Mesh], data: st.DataObject, root: Root
 ) -> None:
-    count = data.draw(st.integers(1, 6))
+    count, version = data.draw(st.integers(1, 6)), data.draw(VERSIONS)
     names = data.draw(st.permutations([f"j{index}" for index in range(1, count)]))
     links = [
         link_element(
             f"l{index}",
-            "".join(f"<visual>{shape}</visual>" for shape in data.draw(st.lists(shapes(), max_size=3)))
-            + "".join(f"<collision>{shape}</collision>" for shape in data.draw(st.lists(shapes(), max_size=2))),
+            "".join(f"<visual>{shape}</visual>" for shape in data.draw(st.lists(shapes(version), max_size=3)))
+            + "".join(f"<collision>{shape}</collision>" for shape in data.draw(st.lists(shapes(version), max_size=2))),
         )
         for index in range(count)
     ]
@@ -170,11 +181,12 @@ def test_tree_geometry_matches_pinocchio(
             data.draw(st.sampled_from(["revolute", "fixed", "planar"])),
             f"l{data.draw(st.integers(0, index))}",
             f"l{index + 1}",
-            origin=data.draw(origins()),
+            '<limit lower="0" upper="1"/>' if version == "1.2" else '<limit effort="1" velocity="1"/>',
+            origin=data.draw(origins(version)),
         )
         for index, name in enumerate(names)
     ]
-    text = robot(*links, *joints)
+    text = robot(*links, *joints, version=version)
     mechanism = mechanism_of(text, root)
     built = build_robot(mechanism, geometry=True, resolve=Finder(parts), meshes=tetrahedron)
     assert_same_geometry(built.visual_model, pinocchios_own_geometry(text, built.model, "visual", parts))

@@ -64,6 +64,7 @@ def every_property(joint: Joint) -> Joint:
         armature=some,
         gear_ratio=(2.0,) * n,
         rotor_inertia=some,
+        acceleration=some,
     )
     if joint.coordinates.quaternion is None:
         properties = replace(properties, lower=(-9.0,) * n, upper=(9.0,) * n)

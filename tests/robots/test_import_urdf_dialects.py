@@ -149,6 +149,10 @@ def test_other_elements_and_loops_are_losses(tmp_path: Path) -> None:
             '<loop_joint name="l"><link1 link="top" xyz="1 2"/><link2 link="right"/></loop_joint>',
             "'xyz' of <link1> is '1 2'; it must be 3 finite numbers",
         ),
+        (
+            '<loop_joint name="l"><link1 link="top" quat_xyzw="0 0 0 1"/><link2 link="right"/></loop_joint>',
+            "<link1> has 'quat_xyzw'; only links and joints can",
+        ),
         ('<loop name="l"><predecessor link="top"/></loop>', "<loop> 'l' has no <successor>"),
         ('<coupling name="g"><predecessor link="top"/><successor link="right"/></coupling>', "'g' has no <ratio>"),
         (
@@ -165,6 +169,16 @@ def test_bad_element_is_refused_with_file_and_line(tmp_path: Path, content: str,
         imported(tmp_path, text)
     assert message in str(refused.value)
     assert "\n" not in str(refused.value)
+
+
+def test_attribute_of_a_later_version_is_a_loss(tmp_path: Path) -> None:
+    loop = '<loop_joint name="l"><link1 link="top"/><link2 link="right"/></loop_joint>'
+    turned = robot(loop).replace('<origin xyz="0 0 1"/>', '<origin xyz="0 0 1" quat_xyzw="0 0 1 1"/>')
+    (loss,) = imported(tmp_path, turned).losses
+    assert (loss.code, loss.name) == ("import-later-version", "quat_xyzw")
+    stated = imported(tmp_path, turned.replace('name="r"', 'name="r" version="1.1"'))
+    assert not stated.losses
+    assert stated.mechanism.joints[1].placement.quaternion[2] == pytest.approx(0.5**0.5)
 
 
 def test_entities_are_refused(tmp_path: Path) -> None:
@@ -248,7 +262,8 @@ def test_joints_of_drake_get_their_type(tmp_path: Path) -> None:
         ends = f'<parent link="base"/><child link="{name}"/>'
         parts += f'<drake:joint name="j_{name}" type="{kind}">{ends}{more}</drake:joint>'
     parts += link_element("five", inertial(1.0)) + link_element("six", inertial(1.0))
-    parts += joint_element("free", "revolute", "base", "five", '<axis xyz="0 0 1"/><limit effort="5"/>')
+    limit = '<axis xyz="0 0 1"/><limit effort="5" drake:acceleration="7"/>'
+    parts += joint_element("free", "revolute", "base", "five", limit)
     parts += joint_element("stuck", "revolute", "base", "six", '<axis xyz="0 0 1"/><limit lower="0" upper="0"/>')
     motor = (
         '<transmission><type>t</type><joint name="a"/><actuator name="m"><drake:gear_ratio value="10"/>'
@@ -270,6 +285,7 @@ def test_joints_of_drake_get_their_type(tmp_path: Path) -> None:
     assert joints["free"].properties.effort == (5.0,)
     assert joints["stuck"].type is JointType.FIXED
     assert [loss.name for loss in found.losses if loss.code == "import-locked-joint"] == ["stuck"]
+    assert joints["free"].properties.acceleration == joints["free"].properties.deceleration == (7.0,)
     np.testing.assert_allclose(joints["a"].properties.armature, (2.0,))
     assert found.mechanism.actuators == ("a",)
     assert found.mechanism.motors["a"].name == "m"

@@ -31,8 +31,9 @@ def pinocchios_own(text: str, root: Root = "fixed", mimic: bool = True) -> Any:
     return pin.buildModelFromXML(text, pin.JointModelFreeFlyer(), mimic=mimic)
 
 
-def robot(*elements: str, name: str = "robot") -> str:
-    return f'<robot name="{name}">{"".join(elements)}</robot>'
+def robot(*elements: str, name: str = "robot", version: str = "") -> str:
+    stated = f' version="{version}"' if version else ""
+    return f'<robot name="{name}"{stated}>{"".join(elements)}</robot>'
 
 
 def link_element(name: str, content: str = "") -> str:
@@ -62,24 +63,41 @@ NUMBERS = st.one_of(
     st.floats(-3.0, 3.0, allow_subnormal=False).filter(lambda x: abs(x) > 1e-9),
 )
 VECTORS = st.tuples(NUMBERS, NUMBERS, NUMBERS)
+QUATERNIONS = st.tuples(*[NUMBERS] * 4).filter(any)
+VERSIONS = st.sampled_from(["", "1.0", "1.1", "1.2"])
 POSITIVE = st.floats(1e-3, 10.0)
 
 
 @st.composite
-def origins(draw: st.DrawFn) -> str:
+def origins(draw: st.DrawFn, version: str = "") -> str:
     xyz = f' xyz="{vector(draw(VECTORS))}"' if draw(st.booleans()) else ""
     rpy = f' rpy="{vector(draw(VECTORS))}"' if draw(st.booleans()) else ""
+    if version and draw(st.booleans()):
+        quaternion = f' quat_xyzw="{vector(draw(QUATERNIONS))}"'
+        rpy = quaternion if version >= "1.1" else rpy + quaternion
     return f"<origin{xyz}{rpy}/>" if xyz or rpy else ""
 
 
 @st.composite
-def inertials(draw: st.DrawFn) -> str:
+def inertials(draw: st.DrawFn, version: str = "") -> str:
     if draw(st.integers(0, 3)) == 0:
         return ""
     xx, yy, zz = draw(st.tuples(POSITIVE, POSITIVE, POSITIVE))
     xy, xz, yz = draw(st.tuples(*[st.floats(-1e-3, 1e-3) | NUMBERS] * 3))  # some are of no body
     mass = draw(st.sampled_from([0.0, 1.0]) | POSITIVE)
-    return inertial(mass, draw(origins()), (xx, xy, xz, yy, yz, zz))
+    return inertial(mass, draw(origins(version)), (xx, xy, xz, yy, yz, zz))
+
+
+@st.composite
+def limits(draw: st.DrawFn, kind: str, version: str) -> str:
+    lower, upper = sorted(draw(st.tuples(NUMBERS, NUMBERS)))
+    velocity, effort = draw(st.tuples(POSITIVE, POSITIVE))
+    position, rates = [f'lower="{lower!r}"', f'upper="{upper!r}"'], [f'velocity="{velocity!r}"', f'effort="{effort!r}"']
+    if version == "1.2":
+        rates = [text for text in rates if draw(st.booleans())]
+    if version == "1.2" and kind not in ("revolute", "prismatic"):
+        position = [text for text in position if draw(st.booleans())]
+    return f"<limit {' '.join(position + rates)}/>"
 
 
 @st.composite
@@ -92,21 +110,19 @@ def axes(draw: st.DrawFn) -> str:
 @st.composite
 def trees(draw: st.DrawFn) -> str:
     """A robot that Pinocchio's parser takes with ``mimic=True``; the order of names is not that of the file."""
-    count = draw(st.integers(1, 8))
+    count, version = draw(st.integers(1, 8)), draw(VERSIONS)
     names = draw(st.permutations([f"j{index}" for index in range(1, count)]))
     parents = [draw(st.integers(0, index)) for index in range(count - 1)]
     kinds = [
         draw(st.sampled_from(["revolute", "continuous", "prismatic", "planar", "floating", "fixed"])) for _ in names
     ]
-    elements = [link_element(f"l{index}", draw(inertials())) for index in range(count)]
+    elements = [link_element(f"l{index}", draw(inertials(version))) for index in range(count)]
     visited = _depth_first(names, parents)
     followers: set[str] = set()
     for index, (name, kind) in enumerate(zip(names, kinds, strict=True)):
         content = draw(axes())
         if kind in ("revolute", "prismatic") or draw(st.booleans()):
-            lower, upper = sorted(draw(st.tuples(NUMBERS, NUMBERS)))
-            velocity, effort = draw(st.tuples(POSITIVE, POSITIVE))
-            content += f'<limit lower="{lower!r}" upper="{upper!r}" velocity="{velocity!r}" effort="{effort!r}"/>'
+            content += draw(limits(kind, version))
         if draw(st.booleans()):
             damping, friction = draw(st.tuples(POSITIVE, POSITIVE))
             content += f'<dynamics damping="{damping!r}" friction="{friction!r}"/>'
@@ -128,8 +144,9 @@ def trees(draw: st.DrawFn) -> str:
             leader = draw(st.sampled_from(leaders))
             content += f'<mimic joint="{leader}" multiplier="{multiplier!r}" offset="{offset!r}"/>'
             followers.add(name)
-        elements.append(joint_element(name, kind, f"l{parents[index]}", f"l{index + 1}", content, draw(origins())))
-    return robot(*elements)
+        origin = draw(origins(version))
+        elements.append(joint_element(name, kind, f"l{parents[index]}", f"l{index + 1}", content, origin))
+    return robot(*elements, version=version)
 
 
 def _depth_first(names: list[str], parents: list[int]) -> list[str]:

@@ -129,7 +129,7 @@ urdf-two-parents           EU-URD-016 error   A link is the child of two joints.
 urdf-cycle                 EU-URD-017 error   Joints form a cycle, so the robot is not a tree.
 urdf-two-roots             EU-URD-018 error   More than one link has no parent.
 urdf-reversed-limits       EU-URD-019 error   A lower limit is above the upper limit.
-urdf-negative-limit        EU-URD-020 error   A limit of velocity, acceleration or effort, damping or friction is negative.
+urdf-negative-limit        EU-URD-020 error   A limit of a rate or an effort, damping or friction is negative.
 urdf-mimic-unknown         EU-URD-021 error   A joint mimics a joint that does not exist.
 urdf-mimic-cycle           EU-URD-022 error   Joints mimic one another in a cycle.
 urdf-mimic-kind            EU-URD-023 error   A mimic joint or its leader does not have exactly one coordinate.

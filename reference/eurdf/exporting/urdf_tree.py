@@ -12,7 +12,7 @@ from eurdf.dataclass import dataclass
 from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.mesh_file import MeshFiles
 from eurdf.exporting.written import Exportable
-from eurdf.loss import COMMON, NAMED_FILE, Effect, Losses, LossKind
+from eurdf.loss import ACCELERATION, COMMON, NAMED_FILE, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
@@ -21,7 +21,15 @@ from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.motor import Motor
 from eurdf.mechanism.pose import IDENTITY, Vector3
 from eurdf.writing.names import UniqueNames
-from eurdf.writing.urdf_elements import add_dynamics, add_inertial, add_joint, add_limit, add_mimic, add_shape
+from eurdf.writing.urdf_elements import (
+    add_dynamics,
+    add_inertial,
+    add_joint,
+    add_limit,
+    add_mimic,
+    add_shape,
+    state_version,
+)
 from eurdf.writing.xml_text import representable
 
 AXES: tuple[tuple[str, Vector3], ...] = (("_x", (1.0, 0.0, 0.0)), ("_y", (0.0, 1.0, 0.0)), ("_z", (0.0, 0.0, 1.0)))
@@ -130,6 +138,11 @@ PLAIN_LOSSES = (
         "set the armature in the simulator",
     ),
     *_ON_AXES,
+    replace(
+        ACCELERATION,
+        title="limits of acceleration, deceleration and jerk are left out: the three joints that it becomes have none",
+        only="spherical joints",
+    ),
     LossKind(
         "export-position-limit",
         "position limit",
@@ -318,8 +331,9 @@ class UrdfTree:
             position = joint.ranges[at]
         velocity = properties.velocity[at] if properties.velocity else math.inf
         effort = properties.effort[at] if properties.effort else math.inf
-        if position or math.isfinite(velocity) or math.isfinite(effort):
-            add_limit(element, position, effort, velocity)
+        rates = {name: values[at] for name, values in properties.rates.items() if math.isfinite(values[at])}
+        if position or math.isfinite(velocity) or math.isfinite(effort) or rates:
+            add_limit(element, position, effort, velocity, rates)
         damping = properties.damping[at] if properties.damping else 0.0
         friction = properties.friction[at] if properties.friction else 0.0
         add_dynamics(element, damping, friction)
@@ -331,6 +345,7 @@ class PlainTree(UrdfTree):
     def write(self) -> None:
         """Write links, joints and frames, and record what plain URDF loses."""
         super().write()
+        state_version(self.root)
         mechanism, losses = self.mechanism, self.losses
         for frame in mechanism.frames:
             name = self.names.new(frame.name)
@@ -372,6 +387,8 @@ class PlainTree(UrdfTree):
             return
         if any(math.isfinite(limit) for limits in joint.ranges for limit in limits):
             self.losses.add("export-position-limit", joint.name)
+        if properties.rates:
+            self.losses.add(ACCELERATION.code, joint.name)
         for word, values, none in (
             ("velocity", properties.velocity, math.inf),
             ("effort", properties.effort, math.inf),

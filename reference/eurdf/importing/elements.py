@@ -63,6 +63,8 @@ class Elements:
         """The pose in the attributes ``xyz`` and ``rpy`` of an element; the identity without it."""
         if element is None:
             return IDENTITY
+        if element.get("quat_xyzw") is not None:
+            raise self.refuse(element, f"{named(element)} has 'quat_xyzw'; only links and joints can; use 'rpy'")
         zero = (0.0, 0.0, 0.0)
         return Pose.from_xyz_rpy(self.vector(element, "xyz", zero), self.vector(element, "rpy", zero))
 

@@ -62,6 +62,13 @@ URDF_LOSSES = (
         "name the actuated joint in the description",
     ),
     LossKind(
+        "import-later-version",
+        "element",
+        Effect.DROPPED,
+        "has no effect: the file states no version of URDF that has it",
+        "state the version in <robot>, and import again",
+    ),
+    LossKind(
         "import-element",
         "element",
         Effect.DROPPED,
@@ -138,6 +145,9 @@ def read_tree(
         first = diagnostics.errors[0]
         where = f"{path.name}:{first.line}: " if first.line and plain is None else ""
         raise CannotImport(path, where + first.message)
+    for found in diagnostics:
+        if found.code == "urdf-later-version" and "<capsule>" not in found.message:
+            losses.add("import-later-version", found.message.partition(" ")[0].strip("'"), found.message)
     copies = MeshCopies(finder.folders, losses)
 
     def copied(shape: Shape) -> Shape:

@@ -53,6 +53,12 @@ class JointProperties:
     deceleration: tuple[float, ...] = ()
     jerk: tuple[float, ...] = ()
 
+    @property
+    def rates(self) -> dict[str, tuple[float, ...]]:
+        """The limits of acceleration, deceleration and jerk that the joint has, by name."""
+        found = {"acceleration": self.acceleration, "deceleration": self.deceleration, "jerk": self.jerk}
+        return {name: values for name, values in found.items() if any(map(math.isfinite, values))}
+
     @classmethod
     @cache
     def unlimited(cls, kind: JointType) -> JointProperties:

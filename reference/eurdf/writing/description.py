@@ -36,6 +36,7 @@ from eurdf.writing.urdf_elements import (
     add_material,
     add_mimic,
     add_shape,
+    state_version,
 )
 from eurdf.writing.xml_text import file_content, representable
 
@@ -96,7 +97,8 @@ def describe_mechanism(
 ) -> DescriptionFiles:
     """The two files of a mechanism. Read again, they are the same mechanism, but for what follows.
 
-    A limit that is infinite beside one that is not is the largest double. Where a child's frame is not that of its
+    A limit that is infinite beside one that is not is the largest double. Limits of acceleration, deceleration and jerk
+    that differ between the axes of a joint are left out. Where a child's frame is not that of its
     joint (`Joint.offset`), the joint carries a link without mass, to which the child is fixed. User data whose place
     does not exist in the new file are in ``x-own-data``, by their JSON pointer.
 
@@ -151,6 +153,7 @@ class _Urdf:
         for joint, body in zip(mechanism.joints, mechanism.bodies[1:], strict=True):
             self._joint(joint)
             self._link(body)
+        state_version(self.robot)
 
     def content(self, comments: Sequence[str]) -> bytes:
         """The bytes of the file."""
@@ -193,8 +196,9 @@ class _Urdf:
             if index is not None and properties.lower:
                 position = properties.lower[index], properties.upper[index]
         effort, velocity = _common(properties.effort, math.inf), _common(properties.velocity, math.inf)
-        if position is not None or math.isfinite(effort) or math.isfinite(velocity):
-            add_limit(element, position, effort, velocity)
+        rates = {name: values[0] for name, values in properties.rates.items() if len(set(values)) == 1}
+        if position is not None or math.isfinite(effort) or math.isfinite(velocity) or rates:
+            add_limit(element, position, effort, velocity, rates)
         add_dynamics(element, _common(properties.damping, 0.0), _common(properties.friction, 0.0))
 
 

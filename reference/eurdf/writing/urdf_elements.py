@@ -19,8 +19,13 @@ Color = tuple[float, float, float, float]
 
 NO_MATERIALS: Mapping[Color, str] = MappingProxyType({})
 
+NO_RATES: Mapping[str, float] = MappingProxyType({})
+
 #: What is written where there is no limit, but URDF wants a number: rad, m, their rates, N·m or N.
 LARGEST = sys.float_info.max
+
+#: Attributes of `limit` from version 1.2 on.
+_RATES = frozenset({"acceleration", "deceleration", "jerk"})
 
 _MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
@@ -97,7 +102,13 @@ def add_joint(
     return element
 
 
-def add_limit(joint: etree._Element, position: tuple[float, float] | None, effort: float, velocity: float) -> None:
+def add_limit(
+    joint: etree._Element,
+    position: tuple[float, float] | None,
+    effort: float,
+    velocity: float,
+    rates: Mapping[str, float] = NO_RATES,
+) -> None:
     """Add the limits of a joint, each of which may be infinite.
 
     Args:
@@ -105,13 +116,30 @@ def add_limit(joint: etree._Element, position: tuple[float, float] | None, effor
         position: Lower and upper limit, rad or m; None for a continuous joint.
         effort: N·m or N.
         velocity: rad/s or m/s.
+        rates: Finite limits of acceleration, deceleration and jerk, by the name of their attribute.
     """
     limit = {}
     if position is not None:
         lower, upper = (min(max(each, -LARGEST), LARGEST) for each in position)
         limit = {"lower": numbers((lower,)), "upper": numbers((upper,))}
     limit["effort"], limit["velocity"] = (numbers((min(each, LARGEST),)) for each in (effort, velocity))
+    limit |= {name: numbers((value,)) for name, value in rates.items()}
     etree.SubElement(joint, "limit", limit)
+
+
+def state_version(robot: etree._Element) -> None:
+    """State the lowest version of URDF that has what the robot has; none for 1.0, which most programs read.
+
+    From version 1.2 on, limits of effort and velocity that do not limit are left out.
+    """
+    if any(_RATES.intersection(map(str, limit.keys())) for limit in robot.iter("limit")):
+        robot.set("version", "1.2")
+        for limit in robot.iter("limit"):
+            for name in ("effort", "velocity"):
+                if float(limit.get(name, "0")) >= LARGEST:
+                    del limit.attrib[name]
+    elif next(robot.iter("capsule"), None) is not None:
+        robot.set("version", "1.1")
 
 
 def add_dynamics(joint: etree._Element, damping: float, friction: float) -> None:

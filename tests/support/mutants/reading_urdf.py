@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import re
 import unicodedata
@@ -415,10 +416,8 @@ def universe_in_any_case_is_reserved(data: Any, robot: Any) -> bool:
 @reads_urdf("EU-URD-037")
 def versions_are_compared_as_numbers(robot: Any) -> None:
     """A version may be written as any text of the same number, such as `1.10`."""
-    try:
+    with contextlib.suppress(ValueError):
         robot.set("version", str(float(robot.get("version", ""))))
-    except ValueError:
-        pass
 
 
 def _quaternions(robot: Any) -> list[tuple[Any, list[str]]]:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import PurePosixPath
 
 from lxml import etree
@@ -19,7 +20,7 @@ from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.inertia import accepted_inertia, has_inertia
 from eurdf.exporting.urdf_tree import AXES, URDF_LOSSES, Step, UrdfTree, plain_steps
 from eurdf.exporting.written import Exportable, Format, Written
-from eurdf.loss import CONVERSION, Effect, Losses, LossKind
+from eurdf.loss import ACCELERATION, CONVERSION, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Inertia
 from eurdf.mechanism.constraint import Closure, Coupling, DistanceClosure, FrameClosure, HingeClosure, PointClosure
 from eurdf.mechanism.joint import Joint
@@ -135,6 +136,11 @@ LOSSES = (
         "is left out: Drake has none for this type of joint",
         "limit velocities in the controller",
         only="spherical, planar, floating and helical joints",
+    ),
+    replace(
+        ACCELERATION,
+        title="limits of acceleration, deceleration and jerk are left out: Drake has one for both directions of q̈",
+        only="all but equal limits of acceleration and deceleration of joints with one axis",
     ),
     LossKind(
         "export-effort-limit",
@@ -320,6 +326,13 @@ class _Tree(UrdfTree):
             finite = {name: value for name, value in finite.items() if name == "effort"}
         if not (limited or step.type_name == "screw") and any(math.isfinite(value) for value in properties.effort):
             self.losses.add("export-effort-limit", joint.name)
+        rates = dict(properties.rates)
+        if limited and step.index is not None and rates.get("acceleration") == rates.get("deceleration"):
+            rates.pop("deceleration", None)
+            accelerations = rates.pop("acceleration", ())
+            finite |= {_tag("acceleration"): value for value in accelerations[step.index : step.index + 1]}
+        if rates:
+            self.losses.add(ACCELERATION.code, joint.name)
         if finite:
             attributes = {name: numbers((value,)) for name, value in finite.items()}
             etree.SubElement(element, "limit", attributes)

@@ -22,7 +22,7 @@ from eurdf.exporting.inertia import accepted_inertia, along_principal_axes, has_
 from eurdf.exporting.mesh_file import MeshFiles
 from eurdf.exporting.servo import position_gain
 from eurdf.exporting.written import Exportable, Format, Written
-from eurdf.loss import BEYOND_LIMITS, COMMON, CONVERSION, NAMED_FILE, Effect, Losses, LossKind
+from eurdf.loss import ACCELERATION, BEYOND_LIMITS, COMMON, CONVERSION, NAMED_FILE, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.constraint import (
     Closure,
@@ -251,6 +251,7 @@ LOSSES = (
     ),
     *CONVERSION,
     NAMED_FILE,
+    ACCELERATION,
     *COMMON,
 )
 
@@ -477,6 +478,8 @@ class _Writer:
 
     def _properties(self, joint: Joint, piece: _Piece) -> dict[str, str]:
         properties, found = joint.properties, {}
+        if properties.rates:
+            self.losses.add(ACCELERATION.code, joint.name)
         for attribute, values in (
             ("armature", properties.armature),
             ("damping", properties.damping),

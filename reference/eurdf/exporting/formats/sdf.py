@@ -22,7 +22,7 @@ from eurdf.exporting.exceptions import CannotExport
 from eurdf.exporting.inertia import accepted_inertia
 from eurdf.exporting.mesh_file import MeshFiles
 from eurdf.exporting.written import Exportable, Format, Written
-from eurdf.loss import BEYOND_LIMITS, COMMON, NAMED_FILE, Effect, Losses, LossKind
+from eurdf.loss import ACCELERATION, BEYOND_LIMITS, COMMON, NAMED_FILE, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.constraint import Closure, Coupling, HingeClosure, PointClosure
 from eurdf.mechanism.frame import Anchor
@@ -194,6 +194,7 @@ LOSSES = (
     LossKind("export-texture", "texture", Effect.DROPPED, "is left out; the color is kept", "add a material"),
     BEYOND_LIMITS,
     NAMED_FILE,
+    ACCELERATION,
     *COMMON,
 )
 
@@ -444,6 +445,8 @@ class _Writer:
     def _report(self, joint: Joint) -> None:
         """Record what the joints of the file do not have."""
         properties = joint.properties
+        if properties.rates:
+            self.losses.add(ACCELERATION.code, joint.name)
         if any(properties.armature):
             self.losses.add("export-armature", joint.name)
         if any(ratio != 1.0 for ratio in properties.gear_ratio) or any(properties.rotor_inertia):

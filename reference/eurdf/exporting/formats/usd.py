@@ -26,7 +26,7 @@ from eurdf.exporting.inertia import about_centre, accepted_inertia, has_inertia
 from eurdf.exporting.mesh_file import mesh_names, report_unread
 from eurdf.exporting.servo import position_gain
 from eurdf.exporting.written import Exportable, Format, Written
-from eurdf.loss import BEYOND_LIMITS, COMMON, NOT_REFERENCED, Effect, Losses, LossKind
+from eurdf.loss import ACCELERATION, BEYOND_LIMITS, COMMON, NOT_REFERENCED, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.constraint import (
     Closure,
@@ -322,6 +322,7 @@ LOSSES = (
         only="none is closed",
     ),
     NOT_REFERENCED,
+    ACCELERATION,
     *COMMON,
 )
 
@@ -616,6 +617,8 @@ class _Writer:
 
     def _numbers_of_simulators(self, joint: Joint, step: _Step, path: str) -> None:
         properties = joint.properties
+        if properties.rates:
+            self.losses.add(ACCELERATION.code, joint.name)
         ball = step.kind == "spherical"
         mine = [freedom.index for freedom in step.freedoms] or range(3)
 

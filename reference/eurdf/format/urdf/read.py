@@ -104,7 +104,7 @@ def _has_known_version(reader: UrdfReader, root: Element) -> bool:
         return True
     known = ", ".join(_VERSIONS[:-1]) + f" or {_VERSIONS[-1]}"
     message = f"URDF has no version '{version}'; it must be {known}"
-    hint = f"write version=\"{version}.0\"" if f"{version}.0" in _VERSIONS else "leave it out for URDF 1.0"
+    hint = f'write version="{version}.0"' if f"{version}.0" in _VERSIONS else "leave it out for URDF 1.0"
     reader.report("urdf-version", message, root, "version", hint)
     return False
 

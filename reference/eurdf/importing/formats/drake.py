@@ -68,11 +68,13 @@ class _Joints:
         kinds: By name, the type as written.
         pitches: By name, m per revolution.
         damping: By name, of a planar joint.
+        acceleration: By name, the limit of both acceleration and deceleration, rad/s² or m/s².
     """
 
     kinds: dict[str, str] = field(default_factory=dict)
     pitches: dict[str, float] = field(default_factory=dict)
     damping: dict[str, tuple[float, ...]] = field(default_factory=dict)
+    acceleration: dict[str, float] = field(default_factory=dict)
 
 
 #: The type that a joint of Drake has in the plain URDF, and the one that it becomes.
@@ -137,6 +139,9 @@ def _make_plain(root: etree._Element, elements: Elements, joints: _Joints) -> No
         if kind in ("revolute", "prismatic") and limit is None:
             limit = etree.SubElement(joint, "limit")
         if limit is not None:
+            for key in map(str, limit.keys()):
+                if key.endswith(("}acceleration", ":acceleration")):
+                    joints.acceleration[name] = elements.attribute(limit, key)
             unlimited = {"effort": f"{LARGEST!r}", "velocity": f"{LARGEST!r}"}
             if kind in ("revolute", "prismatic"):
                 unlimited |= {"lower": f"{-LARGEST!r}", "upper": f"{LARGEST!r}"}
@@ -149,7 +154,10 @@ def _as_in_drake(joint: Joint, joints: _Joints) -> Joint:
     """A joint with the type that it has in Drake."""
     stated = joints.kinds.get(joint.name)
     if stated is None:
-        return joint
+        if joint.name not in joints.acceleration:
+            return joint
+        limit = (joints.acceleration[joint.name],)
+        return joint.with_properties(replace(joint.properties, acceleration=limit, deceleration=limit))
     kind = _TYPES[stated][1]
     nv = COORDINATES[kind].nv
     own = joint.properties
