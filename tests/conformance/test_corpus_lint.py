@@ -82,6 +82,13 @@ BROKEN = [
     ("place", INVALID, "column: 5", "column: 13", "line 3 of 'robot.yaml' has no column 13"),
     ("place", INVALID, "line: 3", "line: 5", "'robot.yaml' has 4 lines, no line 5"),
     ("place", INVALID, "place: {file: robot.yaml", "place: {file: a.yaml", "'a.yaml' is not a file of the case"),
+    (
+        "expected loops",
+        VALID,
+        "actuators:",
+        "closures: [{name: a, type: 3d, frames: [base, {link: arm, xyz: [1, 0, 0]}]}]\n    actuators:",
+        "the least search does not close the loops",
+    ),
     ("expected", EXPECTED, '"name": "arm"', '"name": "leg"', "/name: name of the robot"),
     ("expected", EXPECTED, "bodies", "corpses", "ValidationError"),
 ]

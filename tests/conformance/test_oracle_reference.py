@@ -21,7 +21,11 @@ from eurdf_conformance.comparison.canonical import canonical_differences
 from eurdf_conformance.comparison.half_turn import is_half_turn
 from eurdf_conformance.corpus.case import ValidCase
 from eurdf_conformance.corpus.read import CorpusCase, all_cases
+from eurdf_conformance.fresh.draw import drawn_examples
+from eurdf_conformance.level import VERSIONS, Version
 from eurdf_conformance.oracle import OracleRobot, read
+from eurdf_conformance.properties.files import files_of
+from eurdf_conformance.properties.truth import truth
 from eurdf_conformance.protocol.message import Accepted, Quantity, Values
 from support.random_files import mechanisms
 from support.watchdog import watchdog
@@ -109,6 +113,22 @@ def test_oracle_and_reference_agree_on_dimensions(path: Path) -> None:
     found = eurdf.analyze(eurdf.load(path, geometry=False))
     given = (found.nv, found.nc, found.rank, found.mobility, found.uncontrolled)
     assert tuple(vars(oracle.dimensions(q)).values()) == given
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("version", VERSIONS)
+def test_reference_closes_what_the_least_search_closes(version: Version, tmp_path: Path) -> None:
+    """EU-CLO-016, of drawn mechanisms that are open at neutral, where the files state no configuration."""
+    closed = 0
+    for index, example in enumerate(drawn_examples(version, 0)):
+        mechanism = example.mechanism.replace(configurations={})
+        oracle, files = truth(mechanism, version), files_of(mechanism, version)
+        if not oracle.is_closed(oracle.neutral()) and oracle.least_search() is not None:
+            (tmp_path / str(index)).mkdir()
+            description, _ = files.write(tmp_path / str(index))
+            assert eurdf.assemble(eurdf.load(description, geometry=False)).closes, files.description.decode()
+            closed += 1
+    assert closed > 5
 
 
 @pytest.mark.parametrize("name", [name for name in FACTS if FACTS[name]["closes"]])

@@ -167,6 +167,24 @@ def test_dependent_actuators_are_named_if_no_closure_locks(advice) -> None:
     assert "only actuators that can move independently" in (found.hint or "")
 
 
+def test_advice_on_a_loop_ignores_couplings_beside_it(tmp_path: Path) -> None:
+    inertia = '<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
+    wheels = "".join(
+        f'<link name="{name}_body">{inertia}</link><joint name="{name}" type="continuous">'
+        f'<parent link="ground"/><child link="{name}_body"/></joint>'
+        for name in ("wheel_1", "wheel_2")
+    )
+    text = (ROBOTS / "four_bar" / "robot.urdf").read_text(encoding="utf-8")
+    (tmp_path / "robot.urdf").write_text(text.replace("</robot>", f"{wheels}</robot>"), encoding="utf-8")
+    description = yaml.safe_load((ROBOTS / "four_bar" / "robot.yaml").read_text(encoding="utf-8"))
+    description["extended_urdf"] = "2.1"
+    description["couplings"] = [{"name": "belt", "joints": {"wheel_1": 1, "wheel_2": -1}}]
+    description["actuators"] += ["free_rocker", "wheel_1"]
+    (tmp_path / "robot.yaml").write_text(yaml.safe_dump(description), encoding="utf-8")
+    (found,) = eurdf.check(tmp_path).diagnostics
+    assert (found.code, found.pointer) == ("x-dependent-actuators", "/actuators/1")
+
+
 @pytest.mark.parametrize(
     ("kind", "verb"), [("helical, pitch: 0.01", "cannot move: "), ("cylindrical", "independently: ")]
 )

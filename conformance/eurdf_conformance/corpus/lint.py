@@ -23,6 +23,7 @@ from eurdf_conformance.corpus.expect import stale
 from eurdf_conformance.corpus.lines import lines_of
 from eurdf_conformance.corpus.protocol_rule import OF_RUNNERS, RULES
 from eurdf_conformance.corpus.read import CASES, Cases, CorpusCase, NotACase, case_names
+from eurdf_conformance.oracle import NotRead, read
 
 #: Lines that the edit of an invalid case may replace.
 LINES = 7
@@ -189,6 +190,18 @@ def _expected(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
         yield from stale(case)
 
 
+def _loops(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
+    """EU-CLO-016: no case depends on how long a parser searches for a closed configuration."""
+    if isinstance(case.case, InvalidCase) and case.case.code != "closure-cannot-close":
+        return
+    try:
+        closes = read(case.description, case.urdf, case.case.version).loops_close()
+    except (OSError, NotRead):  # `files` and `expected` report it
+        return
+    if closes is not isinstance(case.case, ValidCase):
+        yield "the least search closes the loops" if closes else "the least search does not close the loops"
+
+
 #: Each rule by its name, which its fixture has too.
 RULES_OF_CASES: Mapping[str, Rule] = {
     "id": _id,
@@ -199,6 +212,7 @@ RULES_OF_CASES: Mapping[str, Rule] = {
     "files": _files,
     "place": _place,
     "expected": _expected,
+    "loops": _loops,
 }
 
 

@@ -8,8 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from eurdf_conformance.oracle import canonical, configuration, coupling, distance, hinge, mass_matrix
-from eurdf_conformance.oracle.closing import closed
+from eurdf_conformance.oracle import canonical, closing, configuration, coupling, distance, hinge, mass_matrix
 from eurdf_conformance.oracle.configuration import Configuration
 from eurdf_conformance.oracle.description import Description
 from eurdf_conformance.oracle.dimensions import Dimensions, dimensions
@@ -17,7 +16,7 @@ from eurdf_conformance.oracle.jacobian import jacobian
 from eurdf_conformance.oracle.joint_property import properties
 from eurdf_conformance.oracle.kinematics import Kinematics, kinematics
 from eurdf_conformance.oracle.residual import residual
-from eurdf_conformance.oracle.spatial import Array
+from eurdf_conformance.oracle.spatial import Array, inverse
 from eurdf_conformance.oracle.tree import Placed, Tree
 from eurdf_conformance.oracle.urdf import Inertia, Urdf
 from eurdf_conformance.protocol.message import CanonicalRobot, Jacobian, MassMatrix, Pose, Quantity, Values
@@ -132,7 +131,41 @@ class OracleRobot:
 
     def closed(self, q: Configuration) -> Configuration:
         """A configuration near q with all closures closed, or as nearly closed as possible."""
-        return closed(q, self.residual, self.jacobian, self.moved)
+        return closing.closed(q, self.residual, self.jacobian, self.moved)
+
+    def is_closed(self, q: Configuration) -> bool:
+        """EU-CLO-005: whether every closure and every coupling is within its bound."""
+        at, sizes, open_by = self.kinematics(q), self.row_sizes(1.0), [0.0]
+        for name, rows in self.residuals(q).items():
+            kind, *frames = self.closures.get(name, ("coupling",))
+            distance_and_angle = rows / sizes[name]
+            if kind == "6d":  # its first rows are no distance
+                a, b = (at.pose(frame) for frame in frames)
+                distance_and_angle[:3] = (inverse(a) @ b)[:3, 3]
+            open_by += [float(np.linalg.norm(part)) for part in (distance_and_angle[:3], distance_and_angle[3:])]
+        return max(open_by) <= closing.BOUND
+
+    def loops_close(self) -> bool:
+        """EU-CLO-005, EU-CLO-016: whether the robot is closed at `assembled`; if it has none, by the least search."""
+        assembled = self.description.configurations.get("assembled")
+        return self.least_search() is not None if assembled is None else self.is_closed(assembled)
+
+    def least_search(self) -> Configuration | None:
+        """EU-CLO-016: the closed configuration that every parser finds; None if this search finds none."""
+        size = np.array([each for sizes in self.row_sizes(1.0).values() for each in sizes])
+        neutral, ones = self.neutral(), np.ones(len(self.velocities))
+        starts = [neutral, *(self.moved(neutral, aside * ones) for aside in closing.ASIDE)]
+        found = (
+            closing.search(
+                q,
+                self.is_closed,
+                lambda q: self.residual(q) / size,
+                lambda q: self.jacobian(q) / size[:, None],
+                self.moved,
+            )
+            for q in starts
+        )
+        return next((q for q in found if q is not None), None)
 
     def mass_matrix(self, q: Configuration) -> Array:
         """M, with armatures."""

@@ -23,6 +23,8 @@ ROUNDED = 1e-4
 def closure_diagnostics(description: Linked, robot: Robot, assembly: Assembly | None = None) -> Diagnostics:
     """EU-CLO-005, EU-CLO-006: the loops close, at the assembled configuration where there is one.
 
+    EU-CLO-016: `assemble` starts at neutral, and searches longer than the least search of the specification.
+
     Args:
         description: The robot as read, with a mechanism.
         robot: The robot built from it, where there already is one.

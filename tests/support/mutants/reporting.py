@@ -5,10 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from pathlib import Path
+from unittest.mock import patch
 
 from lxml import etree
 
 from eurdf_conformance.level import Level
+from eurdf_conformance.oracle import NotRead, closing, read
 from eurdf_conformance.protocol.message import Issue
 from support.mutants.mutant import Members, reports
 
@@ -67,6 +69,21 @@ def open_loops_are_not_reported(found: list[Issue], *files: Path) -> list[Issue]
     """A robot with an error of inertia or closure is accepted without a word."""
     late = ("negative-mass", "inertia-not-psd", "leaf-without-inertia", "assembled-open", "closure-cannot-close")
     return [issue for issue in found if issue.code not in late]
+
+
+@reports("EU-CLO-016")
+def search_ends_after_one_step(found: list[Issue], *files: Path) -> list[Issue]:
+    """Loops that one step from each start does not close are reported."""
+    if found:
+        return found
+    try:
+        with patch.object(closing, "STEPS", 1):
+            closes = read(*files).loops_close()
+    except NotRead:
+        return found
+    line = {"file": files[0].name, "line": 1, "column": 1}
+    error = Issue(code="closure-cannot-close", severity="error", message="no configuration closes the loops", **line)
+    return [] if closes else [error]
 
 
 @reports("EU-INR-002")

@@ -68,7 +68,9 @@ def likely_hinge(
             hinge = HingeClosure(closure.name, closure.a, closure.b, axes=axes)
             closures = tuple(hinge if each is closure else each for each in group)
             trial = build_robot(replace(mechanism, closures=closures, couplings=coupled), geometry=False)
-            found = next((each for each in analyze(trial, q).loops if each.closures == loop.closures), None)
+            # The trial has the couplings of the group alone, and a continuous joint has other coordinates if coupled.
+            at = trial.configuration(robot.coordinates(q))
+            found = next((each for each in analyze(trial, at).loops if each.closures == loop.closures), None)
             if found is not None and found.finite_mobility == found.mobility and is_better(trial, found):
                 return LikelyHinge(closure.name, axes)
     return None
