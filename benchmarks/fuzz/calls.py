@@ -115,7 +115,7 @@ def _argument(name: str, robot: eurdf.Robot, chance: random.Random) -> Any:
         case "dissipation":
             return chance.choice((True, False, "no"))
         case "limits":
-            return chance.choice((True, False, "strict", "no", None))
+            return chance.choice((True, False, "no", None))
         case _:
             return chance.choice(_WRONG)
 

@@ -91,6 +91,14 @@ class LossKind:
 #: Losses that all formats to export to share.
 COMMON = (
     LossKind(
+        "export-no-range",
+        "position limit",
+        Effect.EXACT,
+        "its limits are 0 and 0, which is no range: it has no limit in the file",
+        "state 'lower' and 'upper', or make the joint 'fixed' to lock it",
+        only="limits that are both 0",
+    ),
+    LossKind(
         "export-name",
         "name",
         Effect.EXACT,
@@ -167,6 +175,17 @@ NAMED_FILE = LossKind(
     "copy it into the robot's folder, and name it by its path from the mesh",
     sayable=True,
     only="files that it names",
+)
+
+#: Of the configuration to start from, where it is written.
+BEYOND_LIMITS = LossKind(
+    "export-beyond-limits",
+    "configuration",
+    Effect.APPROXIMATE,
+    "has joints beyond their limits: no other one was found that closes the loops",
+    "widen the limits, or state a configuration 'assembled' within them",
+    error="a simulation that starts there pushes the joints back",
+    only="loops that close beyond the limits only",
 )
 
 #: Of a mesh that is converted though it should have been referenced.

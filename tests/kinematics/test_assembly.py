@@ -298,14 +298,15 @@ def test_impossible_loop_is_not_blamed_on_limits() -> None:
     assert (assembly.closes, assembly.reason, assembly.at_limits) == (False, "not closed", ())
 
 
-def test_zero_range_is_no_range_unless_strict() -> None:
+def test_equal_limits_lock_unless_both_are_zero() -> None:
     linkage = n_bar(4, away=0.7)
     linkage.model.lowerPositionLimit = linkage.model.upperPositionLimit = np.zeros(4)
     assert assemble(linkage, limits=True).converged
-    strict = assemble(linkage, limits="strict")
-    assert (strict.closes, strict.reason) == (False, "joint limits")
-    np.testing.assert_array_equal(strict.q, np.zeros(4))
-    with pytest.raises(ValueError, match="limits is 'none'; use True, False or 'strict'"):
+    linkage.model.lowerPositionLimit = linkage.model.upperPositionLimit = np.full(4, 0.1)
+    locked = assemble(linkage, limits=True)
+    assert (locked.closes, locked.reason) == (False, "joint limits")
+    np.testing.assert_array_equal(locked.q, np.full(4, 0.1))
+    with pytest.raises(ValueError, match="limits is 'none'; use True or False"):
         assemble(linkage, limits="none")  # type: ignore[arg-type]
 
 

@@ -193,14 +193,10 @@ def test_limits_are_hard_and_reported() -> None:
     assert inverse_kinematics(robot, {"end": [0.0, 2.0, 0.0]}, np.zeros(2), limits=False).converged
 
 
-def test_zero_range_is_no_range_unless_strict() -> None:
+def test_limits_that_are_both_zero_are_no_range() -> None:
     robot = arm(1.0, 1.0, limit=0.0)
     assert inverse_kinematics(robot, {"end": [0.0, 1.5, 0.0]}, np.zeros(2)).converged
-    strict = inverse_kinematics(robot, {"end": [0.0, 1.5, 0.0]}, np.zeros(2), "strict")
-    np.testing.assert_array_equal(strict.q, np.zeros(2))
-    assert (strict.converged, strict.reason) == (False, "joint limits")
-    assert [(found.joint, found.limit) for found in strict.at_limits] == [("j0", 0.0), ("j1", 0.0)]
-    with pytest.raises(ValueError, match="limits is 'all'; use True, False or 'strict'"):
+    with pytest.raises(ValueError, match="limits is 'all'; use True or False"):
         inverse_kinematics(robot, {}, limits="all")  # type: ignore[arg-type]
 
 

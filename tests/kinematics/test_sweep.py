@@ -211,8 +211,6 @@ def test_actuator_without_range_sweeps_half_turns(tmp_path):
     assert (found.lower.end, found.upper.end, found.periodic) == ("half turn", "half turn", True)
     assert found.bounds == pytest.approx((0.3 - math.pi, 0.3 + math.pi))
     assert (found.lower.reached, found.upper.reached) == pytest.approx(found.bounds)
-    strict = eurdf.sweep(robot, "crank", q0, limits="strict")
-    assert strict.bounds == (0.0, 0.0)
 
 
 def test_limits_can_be_ignored(tmp_path):
@@ -248,9 +246,8 @@ def test_passive_joint_beyond_limit_moves_back_only(tmp_path):
 def test_published_robot_is_swept_without_division_by_zero():
     # Warnings are errors here. Its ball joints are three revolutes, and the hip does not move one of them.
     robot = eurdf.load(WILD / "digit_like_2legs", geometry=False)
-    for limits in (True, "strict"):
-        found = eurdf.sweep(robot, "motor_hip_y", steps=20, limits=limits)
-        assert found.lower.end == ("half turn" if limits is True else "limit")
+    found = eurdf.sweep(robot, "motor_hip_y", steps=20)
+    assert found.lower.end == "half turn"
 
 
 def test_robot_that_cannot_close_is_refused(tmp_path):

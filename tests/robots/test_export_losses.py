@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import math
 import struct
 from collections.abc import Iterator
 from dataclasses import replace
@@ -26,7 +27,7 @@ from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.motor import Motor
 from eurdf.mechanism.pose import IDENTITY, Vector3
 from eurdf.pinocchio.meshes import read_meshes
-from eurdf.pinocchio.robot import build_robot
+from eurdf.pinocchio.robot import Robot, build_robot
 from support.exported import random_robot
 from support.hostile_meshes import gltf
 
@@ -70,6 +71,18 @@ def every_property(joint: Joint) -> Joint:
     return replace(joint, properties=properties)
 
 
+def with_limits(mechanism: Mechanism, lower: float, upper: float) -> Robot:
+    """The robot with these limits of each coordinate that can have some."""
+
+    def limited(joint: Joint) -> Joint:
+        n = len(joint.coordinates.names)
+        if joint.coordinates.quaternion is not None:
+            return joint
+        return joint.with_properties(replace(joint.properties, lower=(lower,) * n, upper=(upper,) * n))
+
+    return build_robot(replace(mechanism, joints=tuple(map(limited, mechanism.joints))), geometry=False)
+
+
 def robots() -> Iterator[tuple[Mechanism, dict[str, Any]]]:
     """Robots with every element that a format may lose, and options of the export."""
     mechanism = random_robot(3, "floating")[0].mechanism
@@ -98,6 +111,9 @@ def robots() -> Iterator[tuple[Mechanism, dict[str, Any]]]:
         replace(each, a=replace(each.a, pose=replace(each.a.pose, xyz=(1e3, 1e3, 0.0)))) for each in mechanism.closures
     )
     yield replace(mechanism, closures=far, couplings=(), configurations={}), {}
+    yield with_limits(mechanism, 0.0, 0.0).mechanism, {}
+    four_bar = eurdf.load("four_bar", geometry=False).mechanism
+    yield replace(with_limits(four_bar, 0.5, 0.6).mechanism, configurations={"other": {}}), {}
 
 
 def _couplings(mechanism: Mechanism) -> Iterator[Coupling]:
@@ -161,6 +177,18 @@ def test_every_kind_of_loss_occurs() -> None:
         if name not in MISSING
     }
     assert not any(missing.values()), missing
+
+
+@pytest.mark.parametrize("name", sorted(FORMATS.keys() - MISSING))
+def test_limits_of_zero_are_written_as_none(name: str) -> None:
+    mechanism = random_robot(3, "floating")[0].mechanism
+    none = eurdf.export(with_limits(mechanism, -math.inf, math.inf), name)
+    zero = eurdf.export(with_limits(mechanism, 0.0, 0.0), name)
+    assert zero.files == none.files
+    losses = {loss.name for loss in zero.losses if loss.code == "export-no-range"}
+    kinds = {joint.name: joint.coordinates for joint in mechanism.joints}
+    assert losses == {name for name, kind in kinds.items() if kind.names and kind.quaternion is None}
+    assert [loss for loss in zero.losses if loss.code != "export-no-range"] == list(none.losses)
 
 
 @pytest.mark.parametrize(("name", "code", "kind"), [("four_bar", "hinge", "revolute"), ("delta", "ball", "spherical")])

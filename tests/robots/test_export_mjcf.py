@@ -123,7 +123,7 @@ def test_robot_of_the_collection_is_the_same_in_mujoco(name: str) -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_loops_stay_closed_in_simulation(name: str) -> None:
     there = InMuJoCo(eurdf.load(name, geometry=False), eurdf.export(name, "mjcf"))
-    mujoco.mj_resetDataKeyframe(there.model, there.data, there.model.key("assembled").id)
+    mujoco.mj_resetDataKeyframe(there.model, there.data, 0)
     opening = 0.0
     while there.data.time < 2.0:
         mujoco.mj_step(there.model, there.data)
@@ -193,7 +193,7 @@ def test_hinge_holds_in_simulation() -> None:
 
 
 def assert_stays_closed_and_moves(there: InMuJoCo) -> None:
-    mujoco.mj_resetDataKeyframe(there.model, there.data, there.model.key("assembled").id)
+    mujoco.mj_resetDataKeyframe(there.model, there.data, 0)
     opening = moved = 0.0
     while there.data.time < 2.0:
         mujoco.mj_step(there.model, there.data)
@@ -452,6 +452,16 @@ def test_mesh_is_copied_under_a_plain_name(tmp_path: Path, loaded: bool) -> None
     model = mujoco.MjModel.from_xml_path(str(written[0]))
     assert model.nmesh == 1
     assert np.ptp(model.mesh_vert, axis=0).max() == pytest.approx(2.0 * np.sqrt(2.0), rel=0.5)
+
+
+def test_mesh_without_volume_is_compiled(tmp_path: Path) -> None:
+    path = with_mesh(tmp_path, "thin.stl", TETRAHEDRON)
+    path.write_text(
+        path.read_text(encoding="utf-8").replace('scale="2 2 2"', 'scale="1e-3 1e-3 1e-12"'), encoding="utf-8"
+    )
+    export = eurdf.export(path, "mjcf")
+    model = mujoco.MjModel.from_xml_string(export.main.decode(), {"thin.stl": export.files["meshes/thin.stl"]})
+    assert model.nmesh == 1
 
 
 def ascii_stl() -> bytes:

@@ -98,6 +98,26 @@ def test_links_are_where_they_are_computed_by_hand(tmp_path: Path) -> None:
     np.testing.assert_allclose(height - pose("five").translation[2], 0.01, atol=1e-12)
 
 
+def test_limits_of_zero_lock(tmp_path: Path) -> None:
+    zero = "<limit><lower>0</lower><upper>0</upper></limit>"
+    locked = CHAIN.replace("<limit><lower>-1</lower></limit>", zero)
+    locked = locked.replace(
+        axis("1 0 0") + axis("0 1 0", tag="axis2"), axis("1 0 0", zero) + axis("0 1 0", tag="axis2")
+    )
+    places = []
+    for text, cardan in ((CHAIN, (0.0, 0.4)), (locked, (0.4,))):
+        found = imported(tmp_path, text)
+        found.write(tmp_path / "out", force=True)
+        robot = eurdf.load(tmp_path / "out", geometry=False)
+        q = robot.configuration({"turn": (0.3,), "cardan": cardan, "screw": (0.2,)})
+        pin.framesForwardKinematics(robot.model, robot.data, q)
+        places.append(robot.data.oMf[robot.model.getFrameId("six", pin.FrameType.BODY)].homogeneous)
+    np.testing.assert_allclose(places[0], places[1], atol=1e-12)
+    types = {joint.name: joint.type for joint in robot.mechanism.joints}
+    assert (types["slide"], types["cardan"]) == (JointType.FIXED, JointType.CONTINUOUS)
+    assert [loss.name for loss in found.losses if loss.code == "import-locked-joint"] == ["slide", "cardan"]
+
+
 def test_joints_keep_type_limits_and_springs(tmp_path: Path) -> None:
     found = imported(tmp_path, CHAIN)
     joints = {joint.name: joint for joint in found.mechanism.joints}

@@ -192,12 +192,14 @@ def test_joints_of_drake_get_their_type(tmp_path: Path) -> None:
     ):
         ends = f'<parent link="base"/><child link="{name}"/>'
         parts += f'<drake:joint name="j_{name}" type="{kind}">{ends}{more}</drake:joint>'
-    joint = joint_element("free", "revolute", "base", "five", '<axis xyz="0 0 1"/><limit effort="5"/>')
+    parts += link_element("five", inertial(1.0)) + link_element("six", inertial(1.0))
+    parts += joint_element("free", "revolute", "base", "five", '<axis xyz="0 0 1"/><limit effort="5"/>')
+    parts += joint_element("stuck", "revolute", "base", "six", '<axis xyz="0 0 1"/><limit lower="0" upper="0"/>')
     motor = (
         '<transmission><type>t</type><joint name="a"/><actuator name="m"><drake:gear_ratio value="10"/>'
         '<drake:rotor_inertia value="0.02"/></actuator></transmission>'
     )
-    found = imported(tmp_path, robot(parts + link_element("five", inertial(1.0)) + joint + motor, DRAKE))
+    found = imported(tmp_path, robot(parts + motor, DRAKE))
     joints = {joint.name: joint for joint in found.mechanism.joints}
     assert {name: joints[f"j_{name}"].type for name in names} == {
         "one": JointType.SPHERICAL,
@@ -211,6 +213,8 @@ def test_joints_of_drake_get_their_type(tmp_path: Path) -> None:
     assert joints["j_four"].properties.damping == (1.0, 2.0, 3.0)
     assert joints["free"].type is JointType.CONTINUOUS
     assert joints["free"].properties.effort == (5.0,)
+    assert joints["stuck"].type is JointType.FIXED
+    assert [loss.name for loss in found.losses if loss.code == "import-locked-joint"] == ["stuck"]
     np.testing.assert_allclose(joints["a"].properties.armature, (2.0,))
     assert found.mechanism.actuators == ("a",)
     assert found.mechanism.motors["a"].name == "m"

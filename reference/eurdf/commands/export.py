@@ -60,7 +60,8 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--configuration",
         metavar="NAME",
         default="assembled",
-        help="configuration to start simulations from; default: assembled, which is searched if there is none",
+        help="configuration to start simulations from; default: assembled, which is searched within the limits if "
+        "there is none",
     )
     parser.add_argument(
         "--actuators", choices=ACTUATORS, default="motor", help="what actuators become in MJCF and USD; default: motor"

@@ -21,18 +21,23 @@ from eurdf.exporting.verification.verify import Verification, verify
 from eurdf.exporting.written import Actuators, ClosureChoice, Exportable, MeshFileChoice, Triangles
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import assemble
+from eurdf.kinematics.position_limit import position_limits
 from eurdf.linking.description import Linked, Unlinked, describe, find_meshes
-from eurdf.loss import COMMON, Effect, Loss, Losses
+from eurdf.loss import BEYOND_LIMITS, Effect, Loss, Losses
 from eurdf.mechanism.mechanism import ROOT_JOINT, Root
 from eurdf.mesh_files.folders import Folders, folders_of_files
 from eurdf.mesh_files.reader import MeshReader
 from eurdf.pinocchio.meshes import read_meshes
 from eurdf.pinocchio.robot import Robot, build_robot
 from eurdf.reading.given import Given
+from eurdf.writing.assembled import beyond_limits
 from eurdf.writing.output_folder import write_files
 
 #: The configuration to start from, unless another one is asked for.
 ASSEMBLED = "assembled"
+
+#: The configuration to start from of a robot without loops that has no `ASSEMBLED`.
+NEUTRAL = "neutral"
 
 #: What actuators can become.
 ACTUATORS: tuple[str, ...] = get_args(Actuators)
@@ -145,7 +150,8 @@ def export(
         urdf: As for `eurdf.load`; only if `robot` is not loaded yet, as all below but the next five and the last.
         root: As for `eurdf.load`.
         configuration: Name of the configuration to start a simulation from. If the description has none of the name
-            ``assembled``, one is searched.
+            ``assembled``, one is searched near the neutral configuration, within the limits of the joints; without
+            loops, it is called ``neutral``.
         actuators: What actuators become, in a format that distinguishes: ``motor`` (a force or torque on the joint),
             ``position`` or ``none``.
         closures: ``stated`` keeps the closures of the description; with ``hinge``, each 3d closure whose bodies turn
@@ -237,10 +243,17 @@ def _export(
             partial(_triangles, folders),
         )
     )
-    outside = Losses(COMMON)
+    kinds = FORMATS[to].losses
+    shared = Losses(kinds)
+    for joint in robot.mechanism.joints:
+        if joint.lacks_range:
+            shared.add("export-no-range", joint.name)
+    for name, coordinates in list(configurations.items())[:1] if BEYOND_LIMITS in kinds else ():
+        if beyond := beyond_limits(robot.mechanism, coordinates):
+            shared.add("export-beyond-limits", name, f"has joints beyond their limits: {', '.join(map(str, beyond))}")
     for path in folders.let_through:
-        outside.add("export-file-outside", path)
-    losses = replaced + written.losses + outside.found
+        shared.add("export-file-outside", path)
+    losses = replaced + written.losses + shared.found
     if choices.strict and (inexact := tuple(loss for loss in losses if loss.effect is not Effect.EXACT)):
         more = f"; and {len(inexact) - 1} more" if len(inexact) > 1 else ""
         raise CannotExport(f"'{robot.mechanism.name}' has losses in the format {to}: {inexact[0]}{more}", inexact)
@@ -261,15 +274,21 @@ def _own_vectors(robot: Robot) -> OwnVectors:
 
 
 def _configurations(robot: Robot, first: str) -> dict[str, Mapping[str, tuple[float, ...]]]:
-    """The configurations of the robot, the one to start from first; without one, a closed one that is found."""
+    """The configurations of the robot, the one to start from first.
+
+    If none is stated: near the neutral configuration, one within the limits of the joints that closes the loops.
+    """
     stated = robot.mechanism.configurations
     if first in stated:
         return {first: stated[first], **stated}
     if first != ASSEMBLED:
         hint = did_you_mean(first, stated) or f"the configurations are: {', '.join((ASSEMBLED, *stated))}"
         raise ValueError(f"there is no configuration '{first}'; {hint}")
+    start = position_limits(robot).clip(robot.tree.neutral())
+    if not robot.constraints:
+        return {NEUTRAL: robot.coordinates(start), **stated}
     for limits in (True, False):
-        assembly = assemble(robot, limits=limits)
+        assembly = assemble(robot, start, limits=limits)
         if assembly.closes:
             return {ASSEMBLED: robot.coordinates(assembly.q), **stated}
     return dict(stated)

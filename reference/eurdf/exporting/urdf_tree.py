@@ -308,9 +308,7 @@ class UrdfTree:
             at = 0
         position = None
         if step.type in (JointType.REVOLUTE, JointType.PRISMATIC):
-            lower = properties.lower[at] if properties.lower else -math.inf
-            upper = properties.upper[at] if properties.upper else math.inf
-            position = lower, upper
+            position = joint.ranges[at]
         velocity = properties.velocity[at] if properties.velocity else math.inf
         effort = properties.effort[at] if properties.effort else math.inf
         if position or math.isfinite(velocity) or math.isfinite(effort):
@@ -349,12 +347,23 @@ class PlainTree(UrdfTree):
             # The coordinates are those of the URDF once it is loaded as the hint says.
             self.parts.insert(0, Part((ROOT_JOINT,), ROOT_JOINT, JointType.FLOATING))
 
+    def steps(self, joint: Joint) -> Sequence[Step]:
+        """The joints, from the parent outwards, that a joint is: without limits, a revolute one is continuous.
+
+        Not where joints mimic: Pinocchio lets no revolute or prismatic joint mimic a continuous one.
+        """
+        if joint.type is not JointType.REVOLUTE or any(map(math.isfinite, joint.ranges[0])):
+            return super().steps(joint)
+        leaders = [other.mimic.joint for other in self.mechanism.joints if other.mimic is not None]
+        kind = joint.type if joint.mimic is not None or joint.name in leaders else JointType.CONTINUOUS
+        return [Step("", kind, joint.axes[0], 0)]
+
     def _report_axes(self, joint: Joint) -> None:
         """Record what the axes of a joint with several of them lose."""
         properties = joint.properties
         if joint.type not in (JointType.SPHERICAL, JointType.PLANAR, JointType.FLOATING):
             return
-        if any(map(math.isfinite, (*properties.lower, *properties.upper))):
+        if any(math.isfinite(limit) for limits in joint.ranges for limit in limits):
             self.losses.add("export-position-limit", joint.name)
         for word, values, none in (
             ("velocity", properties.velocity, math.inf),
@@ -376,11 +385,9 @@ class PlainTree(UrdfTree):
 
 def plain_steps(joint: Joint) -> Sequence[Step]:
     """The joints of plain URDF, from the parent outwards, that a joint is."""
-    properties = joint.properties
 
     def turning(index: int) -> JointType:
-        limits = (*properties.lower[index : index + 1], *properties.upper[index : index + 1])
-        return JointType.REVOLUTE if any(map(math.isfinite, limits)) else JointType.CONTINUOUS
+        return JointType.REVOLUTE if any(map(math.isfinite, joint.ranges[index])) else JointType.CONTINUOUS
 
     match joint.type:
         case JointType.FIXED:

@@ -21,7 +21,7 @@ from eurdf.kinematics.descent import Descent
 from eurdf.kinematics.evaluation import Evaluation, evaluations
 from eurdf.kinematics.loop import find_loops, independent_groups, merged
 from eurdf.kinematics.opening import CLOSED, Opening
-from eurdf.kinematics.position_limit import JointAtLimit, Limits, PositionLimits, chosen_limits
+from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits, chosen_limits
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
 from eurdf.kinematics.several import several
 from eurdf.kinematics.tree_kinematics import TreeKinematics
@@ -105,7 +105,7 @@ def assemble(
     hold: str | Iterable[str] = (),
     *,
     tolerance: float = 1e-10,
-    limits: Limits = False,
+    limits: bool = False,
     restarts: int = RESTARTS,
 ) -> Assembly:
     """Find a closed configuration, r(q) = 0, near the given one.
@@ -125,8 +125,7 @@ def assemble(
         hold: Names of joints that do not move, or one name. A mimic joint is held with its leader.
         tolerance: Bound of each row of the residual for closed loops, m or rad.
         limits: Whether to respect the position limits of joints whose coordinates are angles or lengths. A start
-            outside the limits is clipped first. A range of zero width counts as no range (`urdf-no-range`), unless
-            ``limits`` is ``"strict"``.
+            outside the limits is clipped first. Limits that are both 0 are no range (`urdf-no-range`).
         restarts: Maximum number of restarts while loops are open by more than `CLOSED`.
 
     Returns:
@@ -177,7 +176,7 @@ class Assembler:
     """
 
     def __init__(
-        self, robot: Robot, hold: str | Iterable[str] = (), *, tolerance: float = 1e-10, limits: Limits = False
+        self, robot: Robot, hold: str | Iterable[str] = (), *, tolerance: float = 1e-10, limits: bool = False
     ) -> None:
         """The arguments are those of `assemble`."""
         # No reference to the robot: the cache would keep it alive.

@@ -18,7 +18,7 @@ from eurdf.kinematics.damped_step import damped_step
 from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.least_solution import certain_inverse
 from eurdf.kinematics.opening import Opening
-from eurdf.kinematics.position_limit import BEYOND, JointAtLimit, Limits, chosen_limits
+from eurdf.kinematics.position_limit import BEYOND, JointAtLimit, chosen_limits
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.residual import all_openings
 from eurdf.kinematics.tangent_space import TangentSpaces
@@ -118,7 +118,7 @@ def inverse_kinematics(
     robot: Robot,
     targets: Mapping[str, Any],
     q0: Vector | None = None,
-    limits: Limits = True,
+    limits: bool = True,
     *,
     tolerance: float = 1e-8,
     restarts: int = 10,
@@ -144,8 +144,7 @@ def inverse_kinematics(
             is a solution, within 1e-6 for the closures, it is returned. The default is the `assembled` configuration,
             or the neutral one if there is none.
         limits: Whether to respect the position limits of joints whose coordinates are angles or lengths. Limits of
-            mimic joints are ignored. A range of zero width counts as no range (`urdf-no-range`), unless ``limits`` is
-            ``"strict"``: then such a joint does not move.
+            mimic joints are ignored. Limits that are both 0 are no range (`urdf-no-range`).
         tolerance: Bound of the distance of a frame from its target, m and rad. Loops are closed to 1e-10 if possible.
         restarts: Maximum number of restarts while frames are off target. The time is bounded by ``restarts`` + 2
             descents of at most 60 steps.

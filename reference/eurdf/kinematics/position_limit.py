@@ -10,12 +10,10 @@ import numpy as np
 from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Indices, Mask, Vector
 from eurdf.kinematics.derived import derived
+from eurdf.mechanism.joint import is_no_range
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
-
-#: Which position limits to respect: all except ranges of zero width (True), none (False), or all (``"strict"``).
-Limits = bool | Literal["strict"]
 
 #: Tolerance of a limit, rad or m, as in EU-CFG-004.
 BEYOND = 1e-9
@@ -100,38 +98,33 @@ class PositionLimits:
         return JointAtLimit(self.joints[velocity], float(limit), side)
 
 
-def position_limits(robot: Robot, *, strict: bool = False) -> PositionLimits:
-    """Position limits of a robot, as its model has them now.
-
-    If a URDF gives no range, lower and upper limit are both zero (`urdf-no-range`). Such a coordinate is unlimited,
-    unless ``strict``.
-    """
+def position_limits(robot: Robot) -> PositionLimits:
+    """Position limits of a robot, as its model has them now; those that are both 0 are none, as in `Joint.ranges`."""
     lowest, highest = robot.tree.position_limits
     # They are kept as long as the model has the same ones.
-    key, stated = (position_limits, strict), lowest.tobytes() + highest.tobytes()
-    kept: tuple[bytes, PositionLimits] | None = robot.derived.get(key)
+    stated = lowest.tobytes() + highest.tobytes()
+    kept: tuple[bytes, PositionLimits] | None = robot.derived.get(position_limits)
     if kept is not None and kept[0] == stated:
         return kept[1]
     driven, coordinates = derived(robot, driven_coordinates)
     lower, upper = np.full(robot.tree.nv, -np.inf), np.full(robot.tree.nv, np.inf)
     lower[driven], upper[driven] = lowest[coordinates[driven]], highest[coordinates[driven]]
-    if not strict:
-        left_out = (lower == 0.0) & (upper == 0.0)
-        lower[left_out], upper[left_out] = -np.inf, np.inf
+    none = list(map(is_no_range, lower.tolist(), upper.tolist()))
+    lower[none], upper[none] = -np.inf, np.inf
     limits = PositionLimits(tuple(robot.tree.velocity_names), coordinates, lower, upper)
-    robot.derived[key] = stated, limits
+    robot.derived[position_limits] = stated, limits
     return limits
 
 
-def chosen_limits(robot: Robot, limits: Limits) -> PositionLimits | None:
+def chosen_limits(robot: Robot, limits: bool) -> PositionLimits | None:
     """The position limits of a robot to respect, or None.
 
     Raises:
-        ValueError: ``limits`` is not True, False or ``"strict"``.
+        ValueError: ``limits`` is not True or False.
     """
-    if isinstance(limits, str) and limits != "strict":
-        raise ValueError(f"limits is {limits!r}; use True, False or 'strict'")
-    return position_limits(robot, strict=limits == "strict") if limits else None
+    if not isinstance(limits, (bool, np.bool_)):
+        raise ValueError(f"limits is {limits!r}; use True or False")
+    return position_limits(robot) if limits else None
 
 
 def driven_coordinates(robot: Robot) -> tuple[Indices, Indices]:

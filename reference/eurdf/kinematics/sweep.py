@@ -12,7 +12,7 @@ from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.branch import Branch, Point
 from eurdf.kinematics.exceptions import NotClosable
-from eurdf.kinematics.position_limit import Limits, PositionLimits, chosen_limits
+from eurdf.kinematics.position_limit import PositionLimits, chosen_limits
 from eurdf.kinematics.scale import characteristic_length
 from eurdf.mechanism.joint_type import JointType
 from eurdf.pinocchio.arguments import checked_count
@@ -84,7 +84,7 @@ def sweep(
     q0: Vector | None = None,
     *,
     steps: int = 200,
-    limits: Limits = True,
+    limits: bool = True,
 ) -> Sweep:
     """Move one actuator from a closed configuration to its position limits, with the other actuators held.
 
@@ -104,8 +104,7 @@ def sweep(
         q0: Where to start (nq,); the loops are closed first if they are open. The default is the `assembled`
             configuration, or the neutral one if there is none.
         steps: Number of steps of each of the two paths.
-        limits: Whether position limits end a path. A range of zero width counts as no range (`urdf-no-range`), unless
-            ``limits`` is ``"strict"``.
+        limits: Whether position limits end a path. Limits that are both 0 are no range (`urdf-no-range`).
 
     Raises:
         NotClosable: The loops cannot be closed at q0.

@@ -83,8 +83,8 @@ def _joint(
 
 
 def within_limits(value: float, lower: float, upper: float) -> bool:
-    """EU-CFG-004: whether a coordinate is within its limits, rad or m; limits that are both 0 are no range."""
-    return lower - LIMIT_TOLERANCE <= value <= upper + LIMIT_TOLERANCE or lower == upper == 0.0
+    """EU-CFG-004: whether a coordinate is within its range, rad or m, one of `Joint.ranges`."""
+    return lower - LIMIT_TOLERANCE <= value <= upper + LIMIT_TOLERANCE
 
 
 def _coordinates(
@@ -115,9 +115,7 @@ def _coordinates(
             )
             return None
         return (*values[:start], *(value / norm for value in values[start : start + 4]))
-    for value, lower, upper, name in zip(
-        values, joint.properties.lower, joint.properties.upper, coordinates.names, strict=True
-    ):
+    for value, (lower, upper), name in zip(values, joint.ranges, coordinates.names, strict=True):
         if not within_limits(value, lower, upper):
             reporter.report(
                 "configuration-limits",

@@ -7,7 +7,7 @@ from functools import partial
 
 from eurdf.diagnostics import Diagnostics, quoted
 from eurdf.format.urdf.data import Urdf, UrdfJoint
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import Joint, is_no_range
 from eurdf.mechanism.joint_type import JointType
 
 _RANGED = frozenset({JointType.REVOLUTE, JointType.PRISMATIC})
@@ -26,7 +26,7 @@ def check_ranges(urdf: Urdf, joints: Mapping[str, Joint], diagnostics: Diagnosti
         joint
         for joint in urdf.joints.values()
         if (limit := joint.limit) is not None
-        and limit.lower == limit.upper == 0.0
+        and is_no_range(limit.lower, limit.upper)
         and _has_no_range(joint, joints.get(joint.name))
     ]
     if not found:
@@ -43,9 +43,4 @@ def check_ranges(urdf: Urdf, joints: Mapping[str, Joint], diagnostics: Diagnosti
 
 def _has_no_range(joint: UrdfJoint, made: Joint | None) -> bool:
     """Whether the range from 0 to 0 of a joint of the URDF is that of its joint in the mechanism."""
-    return (
-        joint.type in _RANGED
-        and made is not None
-        and made.type in _RANGED
-        and made.properties.lower == made.properties.upper == (0.0,)
-    )
+    return joint.type in _RANGED and made is not None and made.type in _RANGED and made.lacks_range

@@ -10,6 +10,8 @@ from eurdf.mechanism.joint_type import COORDINATES, Coordinates, JointType
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 
+_NO_RANGE = (-math.inf, math.inf)
+
 
 @dataclass(frozen=True, slots=True)
 class JointProperties:
@@ -18,8 +20,9 @@ class JointProperties:
     An empty tuple means no limit, no loss, no motor and no spring.
 
     Attributes:
-        lower: Lower position limits, one per coordinate as in `Coordinates`; -inf where there is none.
-        upper: Upper position limits; inf where there is none.
+        lower: Lower position limits as in the files, one per coordinate as in `Coordinates`; -inf where there is none.
+            `Joint.ranges` has what they mean.
+        upper: Upper position limits as in the files; inf where there is none.
         velocity: Velocity limits, rad/s or m/s; inf where there is none.
         effort: Effort limits, N·m or N; inf where there is none.
         damping: Viscous damping, N·m·s/rad or N·s/m.
@@ -104,3 +107,23 @@ class Joint:
     def coordinates(self) -> Coordinates:
         """How its configuration is written in files and answers."""
         return COORDINATES[self.type]
+
+    @property
+    def ranges(self) -> tuple[tuple[float, float], ...]:
+        """The least and the greatest value of each coordinate, as in `Coordinates`, rad or m; infinite for no limit.
+
+        Limits that are both 0 are no range (EU-URD-025). Other equal limits lock the coordinate.
+        """
+        limits = zip(self.properties.lower, self.properties.upper, strict=True)
+        found = tuple(_NO_RANGE if is_no_range(lower, upper) else (lower, upper) for lower, upper in limits)
+        return found or (_NO_RANGE,) * len(self.coordinates.names)
+
+    @property
+    def lacks_range(self) -> bool:
+        """Whether a coordinate has the limits 0 and 0, which are no range."""
+        return any(map(is_no_range, self.properties.lower, self.properties.upper))
+
+
+def is_no_range(lower: float, upper: float) -> bool:
+    """EU-URD-025: whether two position limits are no range: URDF reads limits that are left out as 0."""
+    return lower == upper == 0.0

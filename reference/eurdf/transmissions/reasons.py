@@ -116,7 +116,7 @@ def _candidates(robot: Robot, motors: Selection, joints: Selection) -> list[tupl
     for name, slot in selectable(robot):
         own = list(range(slot.idx_v, slot.idx_v + slot.nv))
         if not set(own) & {*joints.velocities.tolist(), *motors.velocities.tolist()}:
-            unlimited = not np.isfinite(slot.joint.properties.lower or (np.inf,)).all()
+            unlimited = not np.isfinite([lower for lower, _ in slot.joint.ranges]).all()
             found.append((above.get(owner[own[0]], tree.nv), unlimited, name, own))
     return [(name, own) for _, _, name, own in sorted(found, key=lambda each: each[:2])]
 

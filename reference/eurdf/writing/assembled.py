@@ -57,12 +57,8 @@ def beyond_limits(mechanism: Mechanism, coordinates: Mapping[str, Sequence[float
         BeyondLimit(joint.name, name, value, lower, upper)
         for joint in mechanism.joints
         if joint.name in coordinates and joint.coordinates.quaternion is None
-        for name, value, lower, upper in zip(
-            joint.coordinates.names,
-            coordinates[joint.name],
-            joint.properties.lower,
-            joint.properties.upper,
-            strict=True,
+        for name, value, (lower, upper) in zip(
+            joint.coordinates.names, coordinates[joint.name], joint.ranges, strict=True
         )
         if not within_limits(value, lower, upper)
     ]

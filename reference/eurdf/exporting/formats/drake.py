@@ -281,11 +281,12 @@ class _Tree(UrdfTree):
             etree.SubElement(element, _tag("screw_thread_pitch"), value=numbers((joint.pitch,)))
         own = _velocities(joint, step)
         limited = step.type in (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
+        lower, upper = zip(*joint.ranges, strict=True)
         finite = {
             name: values[step.index]
             for name, values in (
-                ("lower", properties.lower),
-                ("upper", properties.upper),
+                ("lower", lower),
+                ("upper", upper),
                 ("velocity", properties.velocity),
                 ("effort", properties.effort),
             )

@@ -22,7 +22,7 @@ from eurdf.exporting.inertia import about_centre, physical
 from eurdf.exporting.mesh_file import MeshFiles
 from eurdf.exporting.servo import position_gain
 from eurdf.exporting.written import Exportable, Format, Written
-from eurdf.loss import COMMON, CONVERSION, NAMED_FILE, Effect, Losses, LossKind
+from eurdf.loss import BEYOND_LIMITS, COMMON, CONVERSION, NAMED_FILE, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.constraint import (
     Closure,
@@ -155,7 +155,7 @@ LOSSES = (
         "both limits are equal, which MuJoCo refuses: becomes a soft equality",
         "make the joint 'fixed' in the description",
         error=_OPENING,
-        only="equal limits",
+        only="equal limits that are not 0",
     ),
     *(
         LossKind(
@@ -237,6 +237,7 @@ LOSSES = (
         "is left out; the color is kept",
         "add a texture and a material to the file",
     ),
+    BEYOND_LIMITS,
     LossKind(
         "export-no-configuration",
         "configuration",
@@ -510,7 +511,7 @@ class _Writer:
         if properties.stiffness and properties.stiffness[piece.coordinate]:
             found["stiffness"] = numbers((properties.stiffness[piece.coordinate],))
             found["springref"] = numbers((properties.rest[piece.coordinate],))
-        lower, upper = _range(joint, piece.coordinate)
+        lower, upper = joint.ranges[piece.coordinate]
         if (math.isfinite(lower) or math.isfinite(upper)) and lower < upper:
             found["range"] = numbers((max(lower, -_UNLIMITED), min(upper, _UNLIMITED)))
         return found
@@ -548,7 +549,8 @@ class _Writer:
         name = f"{representable(PurePosixPath(file).stem)}_{len(self.used_meshes)}"
         self.used_meshes[key] = name
         file = representable(file.removeprefix("meshes/"))
-        etree.SubElement(self.asset, "mesh", name=name, file=file, scale=numbers(shape.size))
+        # Links have inertias of their own. MuJoCo computes that of each mesh, too: only a shell needs no volume.
+        etree.SubElement(self.asset, "mesh", name=name, file=file, scale=numbers(shape.size), inertia="shell")
         return name
 
     def _site(self, link: str, pose: Pose, name: str) -> str:
@@ -658,7 +660,7 @@ class _Writer:
         for piece in pieces:
             if piece.coordinate is None:
                 continue
-            lower, upper = _range(joint, piece.coordinate)
+            lower, upper = joint.ranges[piece.coordinate]
             if lower == upper:
                 polycoef = numbers((lower, 0, 0, 0, 0))
                 name = self.equalities.new(f"{piece.name}/locked")
@@ -732,14 +734,6 @@ def _scaled(length: float, unit: Vector3) -> Vector3:
 def _advance(joint: Joint) -> float:
     """Of a helical joint, m/rad."""
     return joint.pitch / (2.0 * math.pi)
-
-
-def _range(joint: Joint, coordinate: int) -> tuple[float, float]:
-    properties = joint.properties
-    return (
-        properties.lower[coordinate] if properties.lower else -math.inf,
-        properties.upper[coordinate] if properties.upper else math.inf,
-    )
 
 
 def _sharing(joint: Joint, piece: _Piece) -> Iterable[int]:

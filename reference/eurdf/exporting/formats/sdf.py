@@ -22,7 +22,7 @@ from eurdf.exporting.exceptions import CannotExport
 from eurdf.exporting.inertia import Matrix, about_centre, physical
 from eurdf.exporting.mesh_file import MeshFiles
 from eurdf.exporting.written import Exportable, Format, Written
-from eurdf.loss import COMMON, NAMED_FILE, Effect, Losses, LossKind
+from eurdf.loss import BEYOND_LIMITS, COMMON, NAMED_FILE, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.constraint import Closure, Coupling, HingeClosure, PointClosure
 from eurdf.mechanism.frame import Anchor
@@ -191,6 +191,7 @@ LOSSES = (
         only="what no body has",
     ),
     LossKind("export-texture", "texture", Effect.DROPPED, "is left out; the color is kept", "add a material"),
+    BEYOND_LIMITS,
     NAMED_FILE,
     *COMMON,
 )
@@ -282,9 +283,13 @@ class _Writer:
         return Written(files, self.losses.found, Coordinates(tuple(self.parts), self.given.own, "wxyz"))
 
     def _zero(self) -> Mapping[str, tuple[float, ...]]:
-        """The configuration at which the links are placed: the first one given, where there are loops."""
+        """The configuration at which the links are placed.
+
+        Zero, or the first one given if there are loops, or limits that exclude zero.
+        """
         name = next(iter(self.given.configurations), "")
-        chosen = bool(self.mechanism.closures)
+        ranges = (limits for joint in self.mechanism.joints for limits in joint.ranges)
+        chosen = bool(self.mechanism.closures) or not all(lower <= 0.0 <= upper for lower, upper in ranges)
         for other in self.mechanism.configurations:
             if not (chosen and other == name):
                 self.losses.add("export-configurations", other)
@@ -424,15 +429,16 @@ class _Writer:
     def _axis(self, joint: Joint, element: etree._Element, axis: _Axis, at: float) -> None:
         properties, i = joint.properties, axis.index
         _add(element, "xyz").text = _text(direction(axis.xyz))
+        lower, upper = joint.ranges[i]
         limit = {
-            name: values[i] - shift
-            for name, values, shift in (
-                ("lower", properties.lower, at),
-                ("upper", properties.upper, at),
-                ("effort", properties.effort, 0.0),
-                ("velocity", properties.velocity, 0.0),
+            name: value
+            for name, value in (
+                ("lower", lower - at),
+                ("upper", upper - at),
+                ("effort", properties.effort[i] if properties.effort else math.inf),
+                ("velocity", properties.velocity[i] if properties.velocity else math.inf),
             )
-            if values and math.isfinite(values[i])
+            if math.isfinite(value)
         }
         if limit:
             limits = _add(element, "limit")
@@ -537,11 +543,9 @@ _CLOSURES = {"3d": "ball", "6d": "fixed", "hinge": "continuous"}
 
 def _steps(joint: Joint, at: tuple[float, ...]) -> Sequence[_Step]:
     """The joints of the file, from the parent outwards, that a joint at some coordinates is."""
-    properties = joint.properties
 
     def turn(suffix: str, axis: Vector3, index: int) -> _Step:
-        limits = (*properties.lower[index : index + 1], *properties.upper[index : index + 1])
-        kind = "revolute" if any(map(math.isfinite, limits)) else "continuous"
+        kind = "revolute" if any(map(math.isfinite, joint.ranges[index])) else "continuous"
         return _Step(suffix, kind, _moved(JointType.REVOLUTE, axis, at[index]), (_Axis(axis, index),))
 
     def slide(suffix: str, axis: Vector3, index: int) -> _Step:

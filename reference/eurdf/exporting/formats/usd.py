@@ -26,7 +26,7 @@ from eurdf.exporting.inertia import about_centre, physical
 from eurdf.exporting.mesh_file import mesh_names, report_unread
 from eurdf.exporting.servo import position_gain
 from eurdf.exporting.written import Exportable, Format, Written
-from eurdf.loss import COMMON, NOT_REFERENCED, Effect, Losses, LossKind
+from eurdf.loss import BEYOND_LIMITS, COMMON, NOT_REFERENCED, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.constraint import (
     Closure,
@@ -310,6 +310,7 @@ LOSSES = (
         sayable=True,
         only="all but one",
     ),
+    BEYOND_LIMITS,
     LossKind(
         "export-no-configuration",
         "configuration",
@@ -559,7 +560,10 @@ class _Writer:
             else:
                 position = own[freedom.index if len(own) > 1 else 0] * (freedom.advance or 1.0)
                 self.stage.state(path, freedom.axis, position)
-            lower, upper = (-math.inf, math.inf) if freedom.advance is not None else _range(joint, freedom.index)
+            # The rotation of a floating joint has no coordinate for each axis.
+            turns = joint.type is JointType.FLOATING and freedom.index >= 3
+            unlimited = turns or freedom.advance is not None
+            lower, upper = (-math.inf, math.inf) if unlimited else joint.ranges[freedom.index]
             self.stage.limits(path, freedom.axis, lower, upper)
             if freedom.advance is None:
                 self._drive(joint, path, freedom, position or 0.0)
@@ -841,13 +845,6 @@ def _identifier(name: str) -> str:
     """The name, with ``_`` for what the name of a prim cannot contain; it begins with a letter or ``_``."""
     found = re.sub(r"[^A-Za-z0-9_]", "_", name)
     return found if re.match(r"[A-Za-z_]", found) else f"_{found}"
-
-
-def _range(joint: Joint, index: int) -> tuple[float, float]:
-    properties = joint.properties
-    if not properties.lower or (joint.type is JointType.FLOATING and index >= 3):
-        return -math.inf, math.inf
-    return properties.lower[index], properties.upper[index]
 
 
 FORMAT = Format("usd", "USD with UsdPhysics, for Isaac Sim, Newton and others", write, LOSSES)

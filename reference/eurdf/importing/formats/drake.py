@@ -16,6 +16,7 @@ import numpy as np
 from lxml import etree
 
 from eurdf.importing.elements import Elements, local, named
+from eurdf.importing.locked import LOCKED, without_locks
 from eurdf.importing.orientation import orientation
 from eurdf.importing.robot_read import ImportFormat, RobotRead
 from eurdf.importing.urdf_tree import URDF_LOSSES, UrdfTree, read_tree
@@ -45,6 +46,7 @@ _KNOWN = (
 )
 
 LOSSES = (
+    LOCKED,
     LossKind(
         "import-tendon",
         "tendon constraint",
@@ -101,7 +103,7 @@ def read(path: Path, finder: FileFinder) -> RobotRead:
         losses,
         _KNOWN,
         lambda root: _make_plain(root, elements, joints),
-        lambda joint: _as_in_drake(joint, joints),
+        lambda joint: without_locks(_as_in_drake(joint, joints), losses),
     )
     mechanism = _on_the_world(tree.mechanism)
     names = UniqueNames(losses, code="import-name")

@@ -21,6 +21,7 @@ from lxml import etree
 
 from eurdf.dataclass import dataclass
 from eurdf.importing.elements import Elements, named
+from eurdf.importing.locked import LOCKED, without_locks
 from eurdf.importing.mesh_copies import NAMED_FILE, MeshCopies
 from eurdf.importing.robot_read import ImportFormat, RobotRead
 from eurdf.importing.xml_files import inside, read_root
@@ -106,6 +107,7 @@ LOSSES = (
         "is a ball joint: the limits, springs and losses of its axis are left out",
         "state the losses in the description",
     ),
+    LOCKED,
     LossKind(
         "import-mimic",
         "mimic joint",
@@ -364,10 +366,11 @@ class _Reader:
         offset = joint.in_child.inverse() if joint.in_child != IDENTITY else IDENTITY
         pitch = self._pitch(joint) if kind is JointType.HELICAL else 0.0
         properties = self._properties(joint, kind)
-        limits = (*properties.lower, *properties.upper)
-        if kind is JointType.REVOLUTE and not any(map(math.isfinite, limits)):
-            kind = JointType.CONTINUOUS
-        return Joint(name, kind, joint.parent, joint.child, placement, offset, axes, pitch, properties)
+        found = Joint(name, kind, joint.parent, joint.child, placement, offset, axes, pitch, properties)
+        found = without_locks(found, self.losses)
+        if found.type is JointType.REVOLUTE and not any(map(math.isfinite, found.ranges[0])):
+            found = replace(found, type=JointType.CONTINUOUS)
+        return found
 
     def _axes(self, joint: _SdfJoint, placed: Pose) -> tuple[Vector3, ...]:
         """The axes of a joint, in its frame."""

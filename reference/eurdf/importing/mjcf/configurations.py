@@ -19,9 +19,7 @@ def _beyond(mechanism: Mechanism, coordinates: Mapping[str, Sequence[float]]) ->
     for joint in mechanism.joints:
         if joint.name not in coordinates or joint.coordinates.quaternion is not None:
             continue
-        for value, lower, upper in zip(
-            coordinates[joint.name], joint.properties.lower, joint.properties.upper, strict=True
-        ):
+        for value, (lower, upper) in zip(coordinates[joint.name], joint.ranges, strict=True):
             if not within_limits(value, lower, upper):
                 return joint.name
     return ""

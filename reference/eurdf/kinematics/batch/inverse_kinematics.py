@@ -25,7 +25,7 @@ from eurdf.kinematics.batch.problem import Problem, problem
 from eurdf.kinematics.batch.tangent import SURE, tangents
 from eurdf.kinematics.bounded_step import bounded_step
 from eurdf.kinematics.inverse_kinematics import InverseKinematicsReason
-from eurdf.kinematics.position_limit import BEYOND, Limits, PositionLimits, chosen_limits
+from eurdf.kinematics.position_limit import BEYOND, PositionLimits, chosen_limits
 from eurdf.kinematics.rank import numerical_ranks
 from eurdf.pinocchio.arguments import checked_array, checked_count, checked_tolerance
 
@@ -85,7 +85,7 @@ def inverse_kinematics(
     robot: Robot,
     targets: Mapping[str, Any],
     q0: Matrix | None = None,
-    limits: Limits = True,
+    limits: bool = True,
     *,
     tolerance: float = 1e-8,
     restarts: int = 10,
@@ -102,8 +102,7 @@ def inverse_kinematics(
             as homogeneous matrices (B, 4, 4).
         q0: Where to start: one configuration (nq,) for all, or one for each element (B, nq). The default is the
             `assembled` configuration, or the neutral one if there is none.
-        limits: Whether to respect the position limits of joints: True, False or ``"strict"``, which also counts a range
-            of zero width.
+        limits: Whether to respect the position limits of joints.
         tolerance: Bound of the distance of a frame from its target, m and rad. Loops are closed to 1e-10 if possible.
         restarts: Maximum number of restarts of an element while frames are off target.
         block: See `eurdf.batch.forward_kinematics`, also for the following ones.
