@@ -78,15 +78,6 @@ def hanging(mimic: str = "") -> str:
     return _HANGING.format(_LINKS, mimic)
 
 
-def without_armature(robot: Robot) -> Robot:
-    """The robot without armatures and rotors, which some formats do not have."""
-    joints = tuple(
-        replace(joint, properties=replace(joint.properties, armature=(), rotor_inertia=(), gear_ratio=()))
-        for joint in robot.mechanism.joints
-    )
-    return build_robot(replace(robot.mechanism, joints=joints), geometry=False)
-
-
 class InMuJoCo:
     """An exported robot in MuJoCo."""
 

@@ -9,11 +9,15 @@ import numpy as np
 
 from eurdf.dataclass import dataclass
 from eurdf.exporting.coordinates import Coordinates, Matrix, Vector
+from eurdf.exporting.verification.finding import Finding
 from eurdf.exporting.verification.read_model import Diverged, Instant, ReadModel
 from eurdf.kinematics.mass_matrix import mass_matrix
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.pinocchio.robot import Robot
+
+#: Loops that are named.
+_MOST_SHOWN = 4
 
 #: An opening above this is reported, m or rad.
 OPENS = 5e-3
@@ -24,6 +28,9 @@ _TOO_FAST = 0.1
 #: Part of its value at the start to which a singular value or an eigenvalue falls near a singular pose, and the part of
 #: the largest one that counts as zero.
 _NEAR, _ZERO = 0.1, 1e-9
+
+#: An overlap of bodies in contact that is reported, m: contacts are soft.
+_OVERLAP = 1e-4
 
 #: Steps before the worst one, at which its cause is looked for.
 _BEFORE = 20
@@ -89,31 +96,32 @@ class _Run:
 
 def simulate(
     model: ReadModel, motion: Motion, seconds: float, progress: Callable[[float, float], None] | None
-) -> tuple[Fall, list[str]]:
+) -> tuple[Fall, Finding | None]:
     """Simulate a model, and say what is wrong with the motion, and why.
 
     Returns:
-        The simulation, and what to say if a loop opens by more than `OPENS` or the simulation diverges.
+        The simulation, and what is wrong if a loop opens by more than `OPENS` or the simulation diverges.
     """
     run = _run(model.fall(motion.start, seconds), seconds, progress)
     if not run.worst or not (run.fall.diverged or run.opening > OPENS):
-        return run.fall, []
-    opened = [
-        f"{each} at {time:.3g} s"
-        for each, time in zip(run.fall.openings, run.fall.times, strict=True)
-        if max(each.position, each.angle) > OPENS
-    ]
+        return run.fall, None
+    largest = sorted(
+        zip(run.fall.openings, run.fall.times, strict=True), key=lambda found: _size(found[0]), reverse=True
+    )
+    opened = [f"{each} at {time:.3g} s" for each, time in largest if _size(each) > OPENS]
     said = f" ({run.message})" if run.message else ""
     what = [f"the simulation diverges at {run.fall.seconds:.3g} s{said}"] if run.fall.diverged else []
     if opened:
-        what.append(f"in the fall, loops open: {', '.join(opened)}")
+        what.append(f"loops open in the fall: {listed(opened)}")
     halved = _run(model.fall(motion.start, seconds, slower=2), seconds, progress)
     helps = "; shorten the time step" if not halved.fall.diverged and halved.opening <= OPENS else ""
     again = [f"with half the time step, {model.step / 2:g} s, {halved.result}{helps}"]
-    if any(each.contacts for each in run.worst):
+    if any(each.contact for each in run.worst):
         free = _run(model.fall(motion.start, seconds, contacts=False), seconds, progress)
-        again.append(f"without contacts, {free.result}")
-    return run.fall, ["; ".join((*what, *_causes(model, motion, run.worst), *again))]
+        closed = not free.fall.diverged and free.opening < run.opening / 2.0
+        helps = "; leave out contacts of links that overlap, or simplify their collision shapes" if closed else ""
+        again.append(f"without contacts, {free.result}{helps}")
+    return run.fall, Finding("; ".join(what), (*_causes(model, motion, run.worst), *again))
 
 
 def _run(instants: Iterator[Instant], seconds: float, progress: Callable[[float, float], None] | None) -> _Run:
@@ -150,6 +158,9 @@ def _size(opening: Opening) -> float:
 
 def _causes(model: ReadModel, motion: Motion, worst: Sequence[Instant]) -> Iterator[str]:
     yield from _fast(model, worst)
+    contact = max((each.contact for each in worst if each.contact), key=lambda contact: contact[2], default=None)
+    if contact is not None and contact[2] > _OVERLAP:
+        yield f"{_quoted(contact[:2])} collide, and overlap by {contact[2] * 1e3:.3g} mm"
     yield from _singular(motion, worst)
     yield from _massless(motion, worst)
     for body in motion.robot.mechanism.bodies:
@@ -229,7 +240,13 @@ def _most(direction: Vector, names: Sequence[str]) -> list[str]:
 
 def _has_limits(robot: Robot, name: str) -> bool:
     (joint,) = (joint for joint in robot.mechanism.joints if joint.name == name)
-    return bool(np.isfinite((*joint.properties.lower, *joint.properties.upper)).any())
+    return bool(np.isfinite(joint.ranges).any())
+
+
+def listed(found: Sequence[str]) -> str:
+    """The first of them, and how many more there are."""
+    more = len(found) - _MOST_SHOWN
+    return ", ".join(found[:_MOST_SHOWN]) + (f", and {more} more" if more > 0 else "")
 
 
 def _quoted(names: Sequence[str]) -> str:

@@ -84,7 +84,7 @@ class MuJoCoModel:
                 if any(data.warning[kind].number for kind in _BAD) or not np.isfinite(data.qvel).all():
                     raise Diverged(messages[0] if messages else "")
                 time = count * model.opt.timestep
-                yield Instant(time, data.qpos.copy(), data.qvel.copy(), self._openings(), data.ncon)
+                yield Instant(time, data.qpos.copy(), data.qvel.copy(), self._openings(), self._contact())
         finally:
             mujoco.set_mju_user_warning(before)
             model.opt.disableflags, model.opt.timestep, model.eq_solref[:] = flags, step, solref
@@ -93,6 +93,14 @@ class MuJoCoModel:
         mujoco.mj_resetData(self.model, self.data)
         self.data.qpos[:] = self.coordinates.to_q(q)
         mujoco.mj_forward(self.model, self.data)
+
+    def _contact(self) -> tuple[str, str, float] | None:
+        contacts = self.data.contact
+        if not len(contacts):
+            return None
+        deepest = int(np.argmin(contacts.dist))
+        one, other = (self.model.body(self.model.geom_bodyid[geom]).name for geom in contacts.geom[deepest])
+        return one, other, max(0.0, -float(contacts.dist[deepest]))
 
     def _scale(self, equality: int) -> tuple[str, bool]:
         """Name of an equality, and whether its one row, if it has one, is a length."""

@@ -32,7 +32,7 @@ class PinocchioModel:
         except (RuntimeError, ValueError) as error:
             raise CannotRead(self.reader, error) from None
         self.data = self.model.createData()
-        joints = self._file.iterfind("joint")
+        joints: list[Any] = self._file.findall("joint")
         self._mimics: dict[str, Any] = {
             joint.get("name"): mimic for joint in joints if (mimic := joint.find("mimic")) is not None
         }

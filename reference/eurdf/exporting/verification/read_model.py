@@ -74,14 +74,14 @@ class Instant:
         positions: In the coordinates of the model.
         velocities: In those of the model, rad/s or m/s.
         openings: Of each relation that the file states, in the order of `ReadModel.openings`.
-        contacts: Number of contacts.
+        contact: Where bodies collide: two of them that overlap most, and by how much, m.
     """
 
     time: float
     positions: Vector
     velocities: Vector
     openings: tuple[Opening, ...]
-    contacts: int = 0
+    contact: tuple[str, str, float] | None = None
 
 
 class Diverged(Exception):  # noqa: N818 - it never leaves the comparison

@@ -12,7 +12,8 @@ from eurdf.dataclass import dataclass
 from eurdf.diagnostics.extras import install_command
 from eurdf.exceptions import MissingExtra
 from eurdf.exporting.coordinates import Coordinates, Vector
-from eurdf.exporting.verification.fall import Fall, Motion, simulate
+from eurdf.exporting.verification.fall import Fall, Motion, listed, simulate
+from eurdf.exporting.verification.finding import Finding
 from eurdf.exporting.verification.read_model import CannotRead, Exported, Range, ReadModel, without_armature
 from eurdf.kinematics.mass_matrix import mass_matrix
 from eurdf.kinematics.opening import Opening
@@ -46,7 +47,7 @@ class Verification:
         openings: How far each relation of the file is open at the start.
         beyond_limits: Coordinates that are beyond their limits at the start.
         fall: The simulation; None if the program simulates nothing.
-        findings: What is wrong, each a sentence or a few; empty if nothing is.
+        findings: What is wrong; empty if nothing is.
         unverified: What this program cannot compare.
     """
 
@@ -57,7 +58,7 @@ class Verification:
     openings: tuple[Opening, ...] = ()
     beyond_limits: tuple[Range, ...] = ()
     fall: Fall | None = None
-    findings: tuple[str, ...] = ()
+    findings: tuple[Finding, ...] = ()
     unverified: tuple[str, ...] = ()
 
 
@@ -92,9 +93,8 @@ def verify(
         try:
             model = _reads(to)(exported)
         except CannotRead as refusal:
-            return Verification(
-                refusal.reader, str(refusal), findings=(f"{refusal.reader} refuses the file: {refusal}",)
-            )
+            finding = Finding(f"{refusal.reader} refuses the file: {refusal}")
+            return Verification(refusal.reader, str(refusal), findings=(finding,))
         return _compare(model, exported, losses, start, seconds, progress)
 
 
@@ -125,34 +125,39 @@ def _compare(
     seconds: float,
     progress: Callable[[float, float], None] | None,
 ) -> Verification:
-    robot, findings = exported.robot, []
+    robot = exported.robot
+    findings: list[Finding] = []
     masses = [body.inertia.mass for body in robot.mechanism.bodies if body.inertia is not None]
     mass = model.mass, sum(masses)
     if abs(mass[0] - mass[1]) > model.mass_tolerance * mass[1]:
-        findings.append(f"the mass is {mass[0]:g} kg, not {mass[1]:g} kg")
-    error, finding = _mass_matrix(model, robot, losses, start)
-    findings += finding
+        findings.append(Finding(f"the mass is {mass[0]:g} kg, not {mass[1]:g} kg"))
+    error, wrong = _mass_matrix(model, robot, losses, start)
+    findings += wrong
     openings = model.openings(start)
-    for opening in openings:
-        if max(opening.position, opening.angle) > model.tolerance:
-            findings.append(f"at the start, {opening} is open")
+    size = {opening: max(opening.position, opening.angle) for opening in openings}
+    opened = sorted((each for each in openings if size[each] > model.tolerance), key=size.__getitem__, reverse=True)
+    if opened:
+        message = f"loops are open at the start: {listed([str(each) for each in opened])}"
+        hint = "find a closed configuration with `eurdf assemble`, and state it as 'assembled'"
+        findings.append(Finding(message, (hint,)))
     beyond = tuple(
         each for each in model.ranges(start) if not each.lower - _AT_LIMIT <= each.value <= each.upper + _AT_LIMIT
     )
-    findings += [
-        f"at the start, '{each.joint}' is at {each.value:.6g}, outside its limits, {each.lower:.6g} to "
-        f"{each.upper:.6g}: a simulator pushes it back, against the loops"
-        for each in beyond
-    ]
-    fall = None
-    if model.step and seconds:
-        fall, found = simulate(model, Motion(robot, exported.coordinates, start), seconds, progress)
-        findings += found
-    return Verification(model.reader, "", mass, error, openings, beyond, fall, tuple(findings), tuple(model.unverified))
+    for each in beyond:
+        limits = f"{each.lower:.6g} to {each.upper:.6g}"
+        where = f"at the start, '{each.joint}' is at {each.value:.6g}, outside its limits, {limits}"
+        findings.append(Finding(where, ("a simulator pushes it back",)))
+    fall, unverified = None, model.unverified
+    if model.step and opened:
+        unverified += ("the fall is not simulated, since loops are open at the start",)
+    elif model.step and seconds:
+        fall, moved = simulate(model, Motion(robot, exported.coordinates, start), seconds, progress)
+        findings += [moved] if moved else []
+    return Verification(model.reader, "", mass, error, openings, beyond, fall, tuple(findings), unverified)
 
 
-def _mass_matrix(model: ReadModel, robot: Robot, losses: Sequence[Loss], q: Vector) -> tuple[float, list[str]]:
-    """The largest relative difference of M, and what to say of it."""
+def _mass_matrix(model: ReadModel, robot: Robot, losses: Sequence[Loss], q: Vector) -> tuple[float, list[Finding]]:
+    """The largest relative difference of M, and whether it is too large."""
     lost = [loss.name for loss in losses if loss.code == "export-armature" and loss.effect is Effect.DROPPED]
     expected = mass_matrix(without_armature(robot, lost) if lost else robot, q)
     if not expected.size:
@@ -164,7 +169,5 @@ def _mass_matrix(model: ReadModel, robot: Robot, losses: Sequence[Loss], q: Vect
         return error, []
     at = int(np.diag(difference).argmax())
     name = next((name for name, slot in robot.slots.items() if slot.idx_v <= at < slot.idx_v + slot.nv), ROOT_JOINT)
-    return error, [
-        f"the mass matrix differs by {error:.1e} of its largest entry; on the diagonal, most at '{name}': "
-        f"{found[at, at]:.6g}, not {expected[at, at]:.6g}"
-    ]
+    most = f"on its diagonal, '{name}' differs most: {found[at, at]:.6g}, not {expected[at, at]:.6g}"
+    return error, [Finding(f"the mass matrix differs by {error:.1e} of its largest entry", (most,))]
