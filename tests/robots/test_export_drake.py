@@ -12,9 +12,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
+from eurdf.exporting.verification.read_model import without_armature
 from eurdf.pinocchio.robot import Robot
 from support.drake_witness import InDrake
-from support.exported import hanging, random_robot, without_armature
+from support.exported import hanging, random_robot
 from support.plain_urdf import inertial, joint_element, link_element
 from support.plain_urdf import robot as robot_element
 

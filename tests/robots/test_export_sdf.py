@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,64 +14,16 @@ from hypothesis import strategies as st
 from lxml import etree
 
 import eurdf
-from eurdf.exporting.coordinates import rotation_matrix
+from eurdf.exporting.verification.read_model import without_armature
 from eurdf.mechanism.joint_type import JointType
 from eurdf.pinocchio.robot import Robot
-from support.drake_witness import InDrake
-from support.exported import random_robot, without_armature
+from support.drake_witness import InDrake, TreeInDrake
+from support.exported import random_robot
 from support.plain_urdf import inertial, joint_element, link_element
 from support.plain_urdf import robot as robot_element
 
 NAMES = eurdf.collection_names()
 TYPES = {"3d": "ball", "6d": "fixed", "hinge": "continuous"}
-LOOPS = "model/joint[physics/simbody/must_be_loop_joint='true']"
-
-
-class TreeInDrake:
-    """The tree of an SDFormat file in Drake, which refuses joints with two parents: its loops are left out."""
-
-    def __init__(self, robot: Robot, export: eurdf.Export) -> None:
-        sdf = etree.fromstring(export.main)
-        self.loops = sdf.xpath(LOOPS)
-        for loop in self.loops:
-            loop.getparent().remove(loop)
-        tree = replace(export, files={"robot.sdf": etree.tostring(sdf)})
-        self.there = InDrake(robot, tree, "sdf")
-        self.plant, self.map = self.there.plant, export.coordinates
-
-    def at(self, q: Any) -> Any:
-        """Move to q (nq,) of the robot; returns T: Drake's velocities are T v."""
-        plant, context = self.plant, self.there.context
-        values, rates = self.map.to_q(q), self.map.rates(q)
-        positions, T = plant.GetPositions(context), np.zeros((plant.num_velocities(), rates.shape[1]))
-        at_q = at_v = 0
-        for part in self.map.parts:
-            if part.joint == "root_joint":
-                # Drake has the orientation first, and angular velocities in the world.
-                positions[:7] = np.roll(values[:7], 4)
-                T[:6] = np.roll(rates[:6], 3, axis=0)
-                T[:3] = rotation_matrix(_xyzw(values[3:7])) @ T[:3]
-                at_q, at_v = 7, 6
-                continue
-            for name in part.names:
-                joint = plant.GetJointByName(name)
-                start, v, n = joint.position_start(), joint.velocity_start(), joint.num_velocities()
-                mine = values[at_q : at_q + n]
-                T[v : v + n] = rates[at_v : at_v + n]
-                if joint.type_name() == "ball_rpy":
-                    R = rotation_matrix(_xyzw(values[at_q : at_q + 4]))
-                    mine = pin.rpy.matrixToRpy(R)
-                    T[v : v + n] = R @ T[v : v + n]
-                    at_q += 1
-                positions[start : start + n] = mine
-                at_q, at_v = at_q + n, at_v + n
-        plant.SetPositions(context, positions)
-        return T
-
-
-def _xyzw(wxyz: Any) -> Any:
-    w, x, y, z = wxyz
-    return x, y, z, w
 
 
 def assert_same_tree(robot: Robot, export: eurdf.Export, q: Any) -> None:

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 import eurdf
 from eurdf.exporting.coordinates import Part
+from eurdf.exporting.verification.read_model import without_armature
 from eurdf.loss import Effect
 from eurdf.mechanism.constraint import HingeClosure
 from eurdf.mechanism.frame import Anchor, Frame
@@ -24,7 +25,7 @@ from eurdf.mechanism.pose import IDENTITY, Pose, direction
 from eurdf.mechanism.spanning_tree import rigid_roots
 from eurdf.pinocchio.robot import Robot, build_robot
 from support.described import mass_matrix
-from support.exported import random_robot, values_of_parts, without_armature
+from support.exported import random_robot, values_of_parts
 from support.same_mechanism import unlike
 
 

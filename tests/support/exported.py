@@ -79,15 +79,6 @@ def hanging(mimic: str = "") -> str:
     return _HANGING.format(_LINKS, mimic)
 
 
-def without_armature(robot: Robot) -> Robot:
-    """The robot without armatures and rotors, which some formats do not have."""
-    joints = tuple(
-        replace(joint, properties=replace(joint.properties, armature=(), rotor_inertia=(), gear_ratio=()))
-        for joint in robot.mechanism.joints
-    )
-    return build_robot(replace(robot.mechanism, joints=joints), geometry=False)
-
-
 def values_of_parts(coordinates: Coordinates, q: Any) -> list[list[float]]:
     """The configuration of an exported model, part by part, with angles where it has cosines and sines."""
     values, found = coordinates.to_q(q).tolist(), []

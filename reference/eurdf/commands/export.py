@@ -13,8 +13,10 @@ from eurdf.commands.loss_lines import loss_lines
 from eurdf.commands.migrate import print_notes, show_refusal
 from eurdf.commands.output import write_json, write_lines
 from eurdf.commands.output_file import writing
+from eurdf.commands.progress import progress_bar
 from eurdf.commands.robot_options import add_robot_options, add_robot_path, ending, robot_options
 from eurdf.commands.selection import select_one
+from eurdf.commands.verification_lines import verification_lines
 
 if TYPE_CHECKING:
     from eurdf.diagnostics import Place
@@ -25,11 +27,13 @@ _DESCRIPTION = """\
 Write a robot in the format of a simulator, with the closed loops that the format can state, and show every loss: what
 the format cannot say, or only approximately.
 
-The files are written to a folder, all of them or none.
+The files are written to a folder, all of them or none. With --verify, the program that they are for reads them back:
+MuJoCo, Drake, the library of USD or Pinocchio; MuJoCo and Drake also let the robot fall for 2 s.
 """
 _EPILOG = ending(
-    "0 exported, 1 the robot has errors, or losses with --strict, 2 the command cannot run.",
+    "0 exported, 1 the robot has errors, losses with --strict, or an error with --verify, 2 the command cannot run.",
     "eurdf export my_robot --to mjcf",
+    "eurdf export my_robot --to mjcf --verify",
     "eurdf export my_robot --to mjcf -o simulation --actuators position",
 )
 
@@ -81,7 +85,14 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     parser.add_argument("--strict", action="store_true", help="write nothing if a loss is not exact")
     parser.add_argument("--force", action="store_true", help="replace existing files")
+    parser.add_argument(
+        "--verify",
+        action="store_true",
+        help="read the result back: compare mass, mass matrix, loops and limits with the robot, simulate 2 s where the "
+        "program can, and say which loops open by more than 5 mm, or what diverges, and why",
+    )
     parser.add_argument("--format", choices=("text", "json"), default="text", help="format of the output")
+    parser.add_argument("--json", action="store_const", dest="format", const="json", help="same as --format json")
     parser.set_defaults(run=run)
 
 
@@ -99,9 +110,12 @@ def run(args: argparse.Namespace) -> int:
 
     from eurdf.exporting.exceptions import CannotExport
     from eurdf.exporting.export import Choices, export_linked
+    from eurdf.exporting.verification.verify import require_reader
 
+    if args.verify:
+        require_reader(args.to)
     losses: tuple[Loss, ...]
-    refusal, paths = "", []
+    refusal, paths, verification = "", [], None
     folder = args.output or f"{_file_name(description.mechanism.name)}_{args.to}"
     try:
         choices = Choices(args.to, args.configuration, args.actuators, args.closures, args.mesh_files, args.strict)
@@ -115,15 +129,22 @@ def run(args: argparse.Namespace) -> int:
         losses = exported.losses
         with writing():
             paths = [os.fspath(each) for each in exported.write(folder, force=args.force)]
+        if args.verify:
+            with progress_bar("simulating") as progress:
+                verification = exported.verify(progress=progress)
     if as_json:
         from eurdf.commands.export_info import export_info
 
-        info = export_info(description.path, args.to, paths, losses, refusal, lambda loss: _place(loss, description))
+        info = export_info(
+            description.path, args.to, paths, losses, refusal, lambda loss: _place(loss, description), verification
+        )
         write_json(info.model_dump(mode="json"))
     else:
         write_lines(loss_lines(losses, lambda loss: _place(loss, description)), sys.stdout)
         print_notes([refusal] if refusal else [f"wrote '{each}'" for each in paths])
-    return 1 if refusal else 0
+        if verification is not None:
+            write_lines(verification_lines(verification), sys.stdout)
+    return 1 if refusal or (verification is not None and verification.findings) else 0
 
 
 def _file_name(robot: str) -> str:

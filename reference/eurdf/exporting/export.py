@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import field
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType
@@ -16,7 +17,9 @@ from eurdf.exporting.coordinates import Coordinates, OwnVectors, Place
 from eurdf.exporting.exceptions import CannotExport
 from eurdf.exporting.formats import FORMATS
 from eurdf.exporting.hinges import with_hinges
+from eurdf.exporting.verification.verify import Verification, verify
 from eurdf.exporting.written import Actuators, ClosureChoice, Exportable, MeshFileChoice, Triangles
+from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.linking.description import Linked, Unlinked, describe, find_meshes
@@ -67,12 +70,16 @@ class Export:
         files: Content of each file by its path relative to a folder; the main file is the first.
         losses: What is not as in the robot; empty if the file says everything.
         coordinates: From q and v of the robot to those of the exported model, and back.
+        robot: The robot, with the closures that were exported.
+        start: The configuration (nq,) that simulations start from; neutral if no closed one was found.
     """
 
     format: str
     files: Mapping[str, bytes]
     losses: tuple[Loss, ...]
     coordinates: Coordinates
+    robot: Robot = field(repr=False)
+    start: Vector = field(repr=False)
 
     @property
     def main(self) -> bytes:
@@ -94,6 +101,27 @@ class Export:
             OSError: A file cannot be written.
         """
         return write_files(folder, self.files, force=force)
+
+    def verify(self, *, seconds: float = 2.0, progress: Callable[[float, float], None] | None = None) -> Verification:
+        """Read the files back with the program that they are for, and compare and simulate what it reads.
+
+        MuJoCo reads ``mjcf``; Drake ``drake``, and the tree of ``sdf``; the library of USD ``usd``; Pinocchio ``urdf``
+        and the tree of ``loop-joint``. MuJoCo and Drake also simulate the robot from rest at `start`, with gravity and
+        without actuation: ``findings`` say which loops open by more than 5 mm (or 5e-3 rad), when, and why, as far as
+        the simulation shows it.
+
+        Args:
+            seconds: How long to simulate, s; 0 simulates nothing.
+            progress: Called in a simulation with the simulated time and the whole, s. If a loop opens, the simulation
+                is repeated with half the time step, and without contacts if there were any.
+
+        Returns:
+            What was read, against the robot; ``findings`` is empty if nothing is wrong.
+
+        Raises:
+            MissingExtra: The program is not installed.
+        """
+        return verify(self.format, self.files, self.losses, self.coordinates, self.robot, self.start, seconds, progress)
 
 
 def export(
@@ -229,7 +257,8 @@ def _export(
     if choices.strict and (inexact := tuple(loss for loss in losses if loss.effect is not Effect.EXACT)):
         more = f"; and {len(inexact) - 1} more" if len(inexact) > 1 else ""
         raise CannotExport(f"'{robot.mechanism.name}' has losses in the format {to}: {inexact[0]}{more}", inexact)
-    return Export(to, MappingProxyType(dict(written.files)), losses, written.coordinates)
+    start = robot.configuration(next(iter(configurations.values()), {}))
+    return Export(to, MappingProxyType(dict(written.files)), losses, written.coordinates, robot, start)
 
 
 def _triangles(folders: Folders, path: Path) -> Triangles | None:

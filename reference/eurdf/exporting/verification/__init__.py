@@ -1,0 +1,1 @@
+"""Exported files, read back by the programs that they are for."""
