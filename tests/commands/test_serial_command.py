@@ -34,11 +34,12 @@ def test_serial_robot_is_written_and_shown(tmp_path: Path, capsys: pytest.Captur
     [
         (["--armature", "motor_c=1"], "armature names 'motor_c', which is no motor of these joints"),
         (["--grid", "2"], "at least 3 points"),
+        (["--grid", "3"], "joint 'free_roll' has no range around q"),
         (["--degree", "0"], "degree is 0"),
     ],
 )
 def test_wrong_options_are_named(options: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["serial", *G1, "-o", "nowhere", "--grid", "3", *options]) == 2
+    assert main(["serial", *G1, "-o", "nowhere", "--grid", "5", *options]) == 2
     assert message in capsys.readouterr().err
 
 

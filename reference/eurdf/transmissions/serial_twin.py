@@ -200,7 +200,7 @@ def serial_twin(
     Raises:
         NotClosable: The loops cannot be closed near q.
         NoTransmission: The motors do not hold the joints at q, or other actuated joints are in the way.
-        ValueError: An argument is wrong, as in `workspace`.
+        ValueError: An argument is wrong, as in `workspace`; or the grid is too coarse to find a range of a joint.
     """
     if limits not in ("conservative", "fitted"):
         raise ValueError(f"limits is {limits!r}; it must be 'conservative' or 'fitted'")
@@ -217,6 +217,12 @@ def serial_twin(
     chosen = inside if limits == "conservative" else np.ones(len(found.q), dtype=bool)
     points = found.positions[chosen]
     position = np.stack((points.min(axis=0), points.max(axis=0)), axis=1)
+    for name, (lower, upper) in zip(serial.names, position.tolist(), strict=True):
+        if lower == upper:  # limits of 0 and 0 are no range, other equal ones a lock
+            raise ValueError(
+                f"joint '{name}' has no range around q: of the {grid} points of the grid along it, only {lower:.6g} is "
+                "reached with the other joints; use a finer grid"
+            )
     most, notes = _limits(robot, found, serial, by, chosen, limits)
     terms = reflected_inertia(robot, serial.joints, found.q, by.joints, armature=armature)
     own = np.array([_of_twin(robot, plain, each) for each in found.q])
