@@ -149,6 +149,10 @@ def test_other_elements_and_loops_are_losses(tmp_path: Path) -> None:
             '<loop_joint name="l"><link1 link="top" xyz="1 2"/><link2 link="right"/></loop_joint>',
             "'xyz' of <link1> is '1 2'; it must be 3 finite numbers",
         ),
+        (
+            '<loop_joint name="l"><link1 link="top"/><link2 link="right"/></loop_joint>',
+            "<loop_joint> 'l' has no type; state spherical, fixed or revolute",
+        ),
         ('<loop name="l"><predecessor link="top"/></loop>', "<loop> 'l' has no <successor>"),
         ('<coupling name="g"><predecessor link="top"/><successor link="right"/></coupling>', "'g' has no <ratio>"),
         (
