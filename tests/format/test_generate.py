@@ -17,8 +17,10 @@ from eurdf.diagnostics import Diagnostics
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.urdf.read import read_urdf
 from eurdf.format.yaml_text import flow, lines_of, lines_of_item, scalar
+from eurdf.kinematics.analysis import analyze
 from eurdf.linking.description import describe
 from eurdf.mechanism.same_model import differences
+from eurdf.pinocchio.robot import build_robot
 from eurdf.reading.source import Source, read_source
 from eurdf.reading.xml_reader import read_xml
 from eurdf.reading.yaml_reader import read_yaml
@@ -191,16 +193,19 @@ def test_onshape_revolute_mate_is_a_hinge() -> None:
     assert askew["axes"] == [[0, 1, 0], pytest.approx([0.6, 0, 0.8])]
 
 
-def test_two_points_are_a_hinge_by_their_distance() -> None:
-    text = urdf_text(*LEG[:3], *(frame.replace("_z", "b") for frame in HINGE))
-    text = text.replace("closing_pin_1b", "closedloop3D_2A").replace("closing_pin_2b", "closedloop3D_2B")
-    text = text.replace("closing_pin_1", "closedloop3D_1A").replace("closing_pin_2", "closedloop3D_1B")
-    robot = etree.fromstring(text)
-    for side in "AB":
-        (joint,) = robot.xpath(f"joint[@name='closedloop3D_2{side}_frame']")
-        etree.SubElement(joint, "origin", xyz="0 0.1 0")
-    found = generate(read(etree.tostring(robot, encoding="unicode")), conventions()).found
-    assert [(closure.type, closure.axes) for closure in found.closures] == [("hinge", ((0, 1, 0), (0, 1, 0)))]
+@pytest.mark.parametrize("name", ["closing_{}_{}", "closedloop3D_{}_{}"])
+def test_two_points_are_a_hinge_by_their_distance(name: str) -> None:
+    # Their names say nothing of each other; the type of the closures is chosen, or stated.
+    text = (HERE.parent / "spec" / "examples" / "onshape" / "robot.urdf").read_text(encoding="utf-8")
+    for side, letter in (("1", "A"), ("2", "B")):
+        said = letter if "3D" in name else side
+        text = text.replace(f"closing_pin_{side}_z", name.format("end", said))
+        text = text.replace(f"closing_pin_{side}", name.format("pin", said))
+    hinge, points = (generate(read(text), conventions(), version) for version in (None, "2"))
+    assert (hinge.version, [closure.type for closure in hinge.found.closures]) == ("2.1", ["hinge"])
+    assert (points.version, [closure.type for closure in points.found.closures]) == ("2", ["3d", "3d"])
+    found = [analyze(build_robot(each.mechanism, geometry=False)) for each in (hinge, points) if each.mechanism]
+    assert [(each.mobility, each.nc) for each in found] == [(1, 5), (1, 6)]
 
 
 def test_points_of_unequal_distance_are_reported() -> None:

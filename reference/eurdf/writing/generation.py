@@ -86,11 +86,13 @@ def generate(
         chosen = version or ("2.1" if mates.hinges else "2")
         said = mates.found if chosen == "2.1" else found
         merges = _merges(urdf, said, chosen)
+        # The version, and so the schema, is not known before every type is.
+        reference = None if any(closure.type is None for closure in found.closures) else schema(chosen)
         if chosen == "1":
-            text = version1_text(said, schema(chosen))
+            text = version1_text(said, reference)
         else:
             number = VERSION2_1 if chosen == "2.1" else VERSION2_0
-            text = version2_text(said, merges, root, urdf_path, schema(chosen), number)
+            text = version2_text(said, merges, root, urdf_path, reference, number)
         mechanism, diagnostics = reread(text, urdf, "the description")
         return Generation(text, chosen, said, merges, mechanism, diagnostics, _mate_notes(mates, chosen))
 

@@ -154,11 +154,24 @@ def _tolerance(*distances: float) -> float:
 def _fits(group: Sequence[_Point]) -> bool:
     """Whether the last point of a group is apart from the others, and a motion of the body takes all points there."""
     *others, last = group
-    distances = [distance for point in others for distance in _distances(point, last)]
-    P, Q = (np.array([point.poses[side].xyz for point in group]) for side in (0, 1))
-    turned = _rotated(_rotation(P, Q), Q - Q.mean(axis=0))
+    for point in others:
+        a, b = _distances(point, last)
+        if min(a, b) <= _SHORTEST or not abs(a - b) <= _tolerance(a, b):  # also where they overflow
+            return False
+    if len(group) == 2:
+        return True
+    P, Q, size = _shape(group)
+    turned = [_rotation(P, Q).rotate((x, y, z)) for x, y, z in (Q - Q.mean(axis=0)).tolist()]
     error = float(np.linalg.norm(P - P.mean(axis=0) - turned, axis=1).max())
-    return min(distances) > _SHORTEST and error <= _tolerance(*distances)
+    return error * size <= _tolerance(size)
+
+
+def _shape(group: Sequence[_Point]) -> tuple[Matrix, Matrix, float]:
+    """The points (n, 3) from the first one, in the two bodies, in units of the largest distance; and that, m."""
+    first = group[0]
+    size = max(_distances(first, point)[0] for point in group)
+    P, Q = (np.array([np.subtract(point.poses[side].xyz, first.poses[side].xyz) for point in group]) for side in (0, 1))
+    return P / size, Q / size, size
 
 
 def _rotation(P: Matrix, Q: Matrix) -> Pose:
@@ -172,29 +185,19 @@ def _rotation(P: Matrix, Q: Matrix) -> Pose:
     return Pose(quaternion=(x, y, z, w))
 
 
-def _rotated(rotation: Pose, points: Matrix) -> Matrix:
-    return np.array([rotation.rotate((float(x), float(y), float(z))) for x, y, z in points])
-
-
 def _joined(group: Sequence[_Point]) -> Closure:
-    first, *others = group
-    far = max(others, key=lambda point: _distances(first, point)[0])
-    axes = tuple(_axis(first.poses[side], far.poses[side].xyz) for side in (0, 1))
+    first = group[0]
+    P, Q, size = _shape(group)
+    far = int(np.linalg.norm(P, axis=1).argmax())
     name, a, b = first.closure.name, first.closure.a, first.closure.b
     at, beyond = first.poses
-    off = max(_off(at.xyz, far.poses[0].xyz, point.poses[0].xyz) for point in others)
-    if off <= _tolerance(*_distances(first, far)):
-        return HingeClosure(name, a, b, (axes[0], axes[1]))
-    P, Q = (np.array([point.poses[side].xyz for point in group]) for side in (0, 1))
+    off_line = float(np.linalg.norm(np.cross(P[far], P), axis=1).max())
+    if off_line * size <= _tolerance(size):
+        one, other = (_axis(first.poses[side], group[far].poses[side].xyz) for side in (0, 1))
+        return HingeClosure(name, a, b, (one, other))
     # Frame B turns to where A is when the points meet.
     turn = beyond.inverse() * _rotation(P, Q).inverse() * at
     return FrameClosure(name, a, Anchor(b.body, b.pose * Pose(quaternion=turn.quaternion)))
-
-
-def _off(origin: Vector3, end: Vector3, point: Vector3) -> float:
-    """Distance of a point from the line through two others, m."""
-    along = np.subtract(end, origin)
-    return float(np.linalg.norm(np.cross(along, np.subtract(point, origin))) / np.linalg.norm(along))
 
 
 def _axis(frame: Pose, end: Vector3) -> Vector3:

@@ -120,7 +120,7 @@ class NamedClosure:
         name: What its frames have in common.
         type: None where the names do not state it.
         frames: Names of frame A and frame B.
-        hinge: Whether it is one of the two that hold a hinge: a point on its axis, and a second one.
+        hinge: Whether the names say that it is one of two that hold a hinge: a point on its axis, and a second one.
         axes: Of type hinge, the unit vectors of its axis in A and in B.
     """
 

@@ -64,7 +64,9 @@ def _closure(element: etree._Element, tree: UrdfTree, names: UniqueNames, losses
     links = [body.name for body in tree.mechanism.bodies]
     a, b = (Anchor(elements.link(end, end.get("link"), links), elements.pose(end)) for end in ends)
     name = names.new(element.get("name") or f"{a.body}_{b.body}")
-    match element.get("type", "spherical"):
+    match element.get("type"):
+        case None:
+            raise elements.refuse(element, f"{named(element)} has no type; state spherical, fixed or revolute")
         case "spherical" | "ball":
             return PointClosure(name, a, b)
         case "fixed":
