@@ -70,11 +70,20 @@ def test_every_command_says_what_to_do_with_other_formats(
         with pytest.raises(eurdf.InvalidRobot) as refused:
             eurdf.load(name)
         assert words in str(refused.value)
+    main(["generate", name])
+    assert words in " ".join(capsys.readouterr().err.split()) or name.endswith(".yaml")
     if what in IMPORTED:
         assert recognized(Path(name)) == what
     else:
         assert main(["import", name, "-o", "out"]) == 1
         assert words in " ".join(capsys.readouterr().err.split())
+
+
+def test_folder_names_the_file_of_another_format(tmp_path: Path) -> None:
+    (tmp_path / "package.xml").write_text("<package/>")
+    (tmp_path / "robot.usda").write_text("#usda 1.0\n")
+    with pytest.raises(eurdf.RobotNotFound, match=r"no URDF, but 'robot\.usda'; name the file"):
+        eurdf.check(tmp_path)
 
 
 def test_import_refuses_what_needs_no_import(tmp_path: Path) -> None:

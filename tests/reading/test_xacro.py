@@ -220,13 +220,18 @@ def test_package_files_are_found_like_meshes(folder: Path, monkeypatch: pytest.M
     package.mkdir(parents=True)
     (package / "leg.xacro").write_text(robot_with('<link name="foot"/>'), encoding="utf-8")
     including = robot_with('<xacro:include filename="$(find legs)/leg.xacro"/>')
-    (folder / "robot.xacro").write_text(including, encoding="utf-8")
-    for dirs in ([package.parent], [package], str(package.parent)):
-        mechanism = describe("robot.xacro", package_dirs=dirs).mechanism
-        assert mechanism is not None
-        assert [body.name for body in mechanism.bodies] == ["foot"]
+    (folder / "home").mkdir()
+    monkeypatch.chdir(folder / "home")
+    Path("robot.xacro").write_text(including, encoding="utf-8")
+    Path("robot.yaml").write_text('extended_urdf: "2.0"\nurdf: robot.xacro\n', encoding="utf-8")
+    for path in ("robot.xacro", "robot.yaml"):
+        for dirs in ([package.parent], [package], str(package.parent)):
+            found = describe(path, package_dirs=dirs)
+            assert [body.name for body in found.mechanism.bodies] == ["foot"], list(found.diagnostics)
+    assert "--package-dir" in eurdf.check("robot.yaml").errors[0].message
     monkeypatch.setenv("AMENT_PREFIX_PATH", os.fspath(folder / "install"))
     assert eurdf.check("robot.xacro").ok
+    assert eurdf.check("robot.yaml").ok
 
 
 def test_xacro_warning_is_a_warning(folder: Path) -> None:

@@ -9,12 +9,15 @@ from typing import NamedTuple
 from eurdf.collection.near_paths import near_path
 from eurdf.diagnostics import FileError, Place
 from eurdf.exceptions import RobotNotFound
+from eurdf.mesh_files.folders import MANIFEST
 from eurdf.reading.given import STDIN, Given, is_stream, is_xml, shown, source_of
 from eurdf.reading.source import Source
 
 _HERE = Path(__file__).parent
 _YAML = (".yaml", ".yml")
 _URDF = (".urdf", ".xml", ".xacro")
+# What a folder may have instead: a message names it, so that the next one says what to do with it.
+_OTHERS = (".xacro", ".xml", ".sdf", ".usd", ".usda", ".usdc", ".usdz")
 
 
 class RobotFiles(NamedTuple):
@@ -152,9 +155,10 @@ def _in_folder(folder: Path, given: Path | Source | None) -> RobotFiles:
         if len(urdfs) == 1:
             return RobotFiles(None, urdfs[0])
         what = f"{len(urdfs)} URDFs" if urdfs else "no robot.yaml and no URDF"
-        xacro = next((path.name for path in files if path.suffix.lower() == ".xacro"), None)
-        if xacro is not None and not urdfs:
-            what += f", but '{xacro}'"
+        others = (path.name for ending in _OTHERS for path in files if path.suffix.lower() == ending)
+        other = next((name for name in others if name != MANIFEST), None)
+        if other is not None and not urdfs:
+            what += f", but '{other}'"
         raise RobotNotFound(str(folder), f"folder '{folder}' contains {what}; name the file")
     names = ", ".join(path.name for path in descriptions)
     raise RobotNotFound(str(folder), f"folder '{folder}' contains no robot.yaml but {names}; name one of them")

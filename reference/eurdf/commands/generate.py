@@ -128,6 +128,8 @@ def run(args: argparse.Namespace) -> int:
     if args.output is not None:
         write_described(args.output, generation.text, schema, args.force)
     warnings = [found.message for found in diagnostics if found.code == "x-xacro-warning"]
+    ignored = (f"{found.message}; {found.hint}" for found in diagnostics if found.code == "urdf-closure-ignored")
+    warnings += dict.fromkeys(ignored)
     warnings += generation.found.warnings
     warnings += urdf_notes(source, urdf_path, options["xacro_args"])
     if args.version == "1" and urdf_path != "robot.urdf":

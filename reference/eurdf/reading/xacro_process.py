@@ -28,9 +28,7 @@ _LATE = ("glob", "xacro.substitution_args", "xml.dom.expatbuilder", "xml.parsers
 #: What an expansion does, by the names of Python's audit events.
 _HARMLESS = ("builtins.id", "compile", "exec", "glob.glob", "glob.glob/2", "open", "os.listdir", "os.scandir")
 
-_NOT_TRUSTED = (
-    "which a xacro that a description names may not do; if you trust it, give it with --urdf (urdf= in Python)"
-)
+_NOT_TRUSTED = "a xacro that a description names may not; if you trust it, give it with --urdf (urdf= in Python)"
 
 
 class Arguments(dict[str, str]):
@@ -80,7 +78,7 @@ class _Watch:
 
     def refuse(self, what: str) -> PermissionError:
         """The exception for what a confined expansion may not do."""
-        self.refused.append(f"{what}, {_NOT_TRUSTED}")
+        self.refused.append(f"{what}; {_NOT_TRUSTED}")
         return PermissionError(what)
 
     def _audit(self, event: str, arguments: tuple[Any, ...]) -> None:
@@ -88,7 +86,8 @@ class _Watch:
             path, _, flags = arguments
             is_read = not flags & (os.O_WRONLY | os.O_RDWR | os.O_CREAT)
             if self._folders is not None and not (is_read and self._folders.contains(path)):
-                raise self.refuse(f"it opens '{path}', which is outside {self._folders}")
+                hint = "give the folder of its package with --package-dir (package_dirs= in Python)"
+                raise self.refuse(f"it opens '{path}', which is outside {self._folders}: {hint}")
             self.read[os.path.abspath(path)] = None
         elif self._folders is not None and event not in _HARMLESS:
             raise self.refuse(f"it uses '{event}' of Python")
