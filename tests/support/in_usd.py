@@ -75,6 +75,9 @@ class InUsd:
         context = UsdValidation.ValidationContext(registry.GetOrLoadAllValidators())
         return [f"{error.GetName()}: {error.GetMessage()}" for error in context.Validate(self.stage)]
 
+    def principal_moments(self, body: Any) -> list[float]:
+        return list(UsdPhysics.MassAPI(body).GetDiagonalInertiaAttr().Get())
+
     def inertia(self, body: Any) -> tuple[float, Any, Any]:
         """Mass, centre of mass (3,), and rotational inertia (3, 3) about it along the axes of the body."""
         mass = UsdPhysics.MassAPI(body)
