@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import eurdf
@@ -22,7 +22,17 @@ from support.plain_urdf import inertial, link_element
 from support.plain_urdf import robot as robot_element
 
 #: Principal moments: of a body, a ball, a rod, a plate, a point, almost a plate; and of what no body is.
-SHAPES = ((2, 3, 4), (1, 1, 1), (0, 1, 1), (1, 2, 3), (0, 0, 0), (1, 2, 3 - 1e-9), (1, 1, 3), (-0.1, 1, 1), (0, 0, 1))
+SHAPES = (
+    (2, 3, 4),
+    (1, 1, 1),
+    (0, 1, 1),
+    (0.7, 1.1, 1.8),
+    (0, 0, 0),
+    (1, 2, 3 - 1e-9),
+    (0.6, 0.9, 2.2),
+    (-0.1, 1, 1),
+    (0, 0, 1),
+)
 TURNS = ((0, 0, 0, 1), (0, 0, 1, 0), (0, 0, 1, 1), (0, 0, 3e-7, 1), (1, 2, 3, 4))
 
 quaternions = st.one_of(
@@ -71,6 +81,8 @@ def in_reader(robot: Robot, export: eurdf.Export) -> tuple[float, Any]:
     turn=quaternions,
     mass=st.sampled_from([1.0, 1e-3, 0.0]),
 )
+@example(shape=(0.6, 0.9, 2.2), scale=1.0, turn=(1, 2, 3, 4), mass=1.0)
+@example(shape=(1, 1, 1), scale=1e-14, turn=(1, 2, 3, 4), mass=1.0)
 @settings(max_examples=80)
 def test_reader_has_our_inertia_but_for_losses(
     to: str, shape: tuple[float, ...], scale: float, turn: tuple[float, ...], mass: float
