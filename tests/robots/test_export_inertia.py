@@ -7,6 +7,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
@@ -17,9 +18,10 @@ from eurdf.mechanism.body import Body, Inertia
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import Robot, build_robot
-from support.exported import InMuJoCo
+from support.exported import InMuJoCo, without_armature
 from support.plain_urdf import inertial, link_element
 from support.plain_urdf import robot as robot_element
+from support.wild import FACTS, WILD, needs_wild
 
 #: Principal moments: of a body, a ball, a rod, a plate, a point, almost a plate; and of what no body is.
 SHAPES = (
@@ -109,3 +111,21 @@ def test_reader_has_our_inertia_but_for_losses(
 def test_negative_mass_is_refused(to: str) -> None:
     with pytest.raises(eurdf.CannotExport, match=r"link .body. has the mass -1\.5 kg"):
         eurdf.export(robot_element(link_element("body", inertial(-1.5))), to, root="floating")
+
+
+@pytest.mark.slow
+@needs_wild
+@pytest.mark.parametrize("to", ["mjcf", "drake"])
+@pytest.mark.parametrize("name", FACTS)
+def test_mass_matrix_of_a_published_robot_is_kept_but_for_losses(name: str, to: str) -> None:
+    from support.drake_witness import InDrake
+
+    robot = without_armature(eurdf.load(WILD / name, geometry=False))
+    export = eurdf.export(robot, to)
+    q = pin.integrate(robot.model, pin.neutral(robot.model), np.full(robot.model.nv, 0.3))
+    there, T = (InMuJoCo if to == "mjcf" else InDrake)(robot, export), export.coordinates.rates(q)
+    there.at(q)
+    M = there.mass_matrix if to == "drake" else np.array([there.times_mass(column) for column in np.eye(len(T))])
+    expected = eurdf.mass_matrix(robot, q)
+    changed = np.abs(T.T @ M @ T - expected).max() > 1e-9 * np.abs(expected).max()
+    assert not changed or {"export-inertia", "export-massless-link"} & {loss.code for loss in export.losses}
