@@ -183,6 +183,11 @@ def test_loops_stay_closed_in_drake(name: str, closures: Any) -> None:
     assert_stays_closed_and_moves(robot, export, robot.configurations["assembled"])
 
 
+def test_link_without_mass_follows_its_leader_in_drake() -> None:
+    robot = eurdf.load(hanging('<mimic joint="j" multiplier="0.5"/>', massless="b"), geometry=False)
+    assert_stays_closed_and_moves(robot, eurdf.export(robot, "drake"), pin.neutral(robot.model))
+
+
 @pytest.mark.parametrize(
     ("mimic", "description"),
     [

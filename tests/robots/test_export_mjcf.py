@@ -147,6 +147,11 @@ def test_soft_relations_hold_in_simulation(mimic: str, description: str) -> None
     assert_stays_closed_and_moves(InMuJoCo(eurdf.load(text, urdf=urdf), eurdf.export(text, "mjcf", urdf=urdf)))
 
 
+def test_link_without_mass_follows_its_leader() -> None:
+    robot = eurdf.load(hanging('<mimic joint="j" multiplier="0.5"/>', massless="b"), geometry=False)
+    assert_stays_closed_and_moves(InMuJoCo(robot, eurdf.export(robot, "mjcf")))
+
+
 def test_closure_gives_way_as_the_hint_on_compliance_says() -> None:
     mass, compliance = 1.5, 1e-4
     urdf = robot_element(

@@ -67,16 +67,21 @@ _HANGING = """<robot name="hanging"><link name="base"/>
 <limit lower="-9" upper="9" effort="9" velocity="9"/>{}</joint>
 <joint name="screw" type="revolute"><parent link="base"/><child link="c"/><axis xyz="0 0 1"/>
 <limit lower="-9" upper="9" effort="9" velocity="9"/></joint></robot>"""
-_LINKS = "".join(
-    f'<link name="{name}"><inertial><origin xyz="0.1 0 -0.3"/><mass value="1"/>'
-    '<inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/></inertial></link>'
-    for name in "abc"
+_INERTIAL = (
+    '<inertial><origin xyz="0.1 0 -0.3"/><mass value="1"/>'
+    '<inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/></inertial>'
 )
 
 
-def hanging(mimic: str = "") -> str:
-    """A URDF of two pendulums, j and k, and a joint called screw about the vertical; ``mimic`` is an element of k."""
-    return _HANGING.format(_LINKS, mimic)
+def hanging(mimic: str = "", massless: str = "") -> str:
+    """A URDF of two pendulums, j and k, and a joint called screw about the vertical.
+
+    Args:
+        mimic: An element of k.
+        massless: Names, of a, b and c, of the links without mass; b is that of k.
+    """
+    links = (f'<link name="{name}">{"" if name in massless else _INERTIAL}</link>' for name in "abc")
+    return _HANGING.format("".join(links), mimic)
 
 
 def values_of_parts(coordinates: Coordinates, q: Any) -> list[list[float]]:

@@ -12,7 +12,7 @@ import eurdf
 
 pytest.importorskip("pxr", reason="usd-core is not installed: pip install -e '.[usd]'", exc_type=ImportError)
 
-from pxr import UsdValidation
+from pxr import UsdPhysics, UsdValidation
 
 from eurdf.exporting.verification.usd_model import Stage
 
@@ -53,3 +53,7 @@ class InUsd(Stage):
         registry = UsdValidation.ValidationRegistry()
         context = UsdValidation.ValidationContext(registry.GetOrLoadAllValidators())
         return [f"{error.GetName()}: {error.GetMessage()}" for error in context.Validate(self.stage)]
+
+    def principal_moments(self, body: Any) -> list[float]:
+        """Of a body, kg·m²."""
+        return list(UsdPhysics.MassAPI(body).GetDiagonalInertiaAttr().Get())

@@ -79,7 +79,14 @@ class UsdStage:
         api = UsdPhysics.MassAPI.Apply(self._prim(body))
         api.CreateMassAttr(mass)
         api.CreateCenterOfMassAttr(Gf.Vec3f(*centre))
-        api.CreateDiagonalInertiaAttr(Gf.Vec3f(*principal.tolist()))
+        single = principal.astype(np.float32).astype(np.float64)
+        # Readers check that no moment exceeds the sum of the others: rounding keeps it so.
+        most = single[0] + single[1]
+        if single[2] > most:
+            single[2] = (
+                np.float32(most) if np.float32(most) <= most else np.nextafter(np.float32(most), np.float32(0.0))
+            )
+        api.CreateDiagonalInertiaAttr(Gf.Vec3f(*single.tolist()))
         rotation = Gf.Matrix3d(*axes.T.flatten().tolist()).ExtractRotation().GetQuat()  # Gf multiplies rows
         api.CreatePrincipalAxesAttr(Gf.Quatf(rotation))
 

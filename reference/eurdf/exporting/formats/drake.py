@@ -44,7 +44,7 @@ WIDTH = 0.1
 #: its time step allows.
 STIFFNESS = 1e12
 
-#: kg that a link with inertia and without mass gets: far below any of a robot.
+#: kg and kg·m² that links without mass get where Drake needs some: far below any of a robot.
 LEAST = 1e-13
 
 _ONE_FREEDOM = (
@@ -195,10 +195,11 @@ LOSSES = (
         "export-massless-link",
         "link without mass",
         Effect.APPROXIMATE,
-        f"has inertia without mass, which Drake replaces by 1 kg of water: gets {LEAST:g} kg",
+        f"gets {LEAST:g} kg and kg·m²: Drake replaces inertia without mass by 1 kg of water, and does not simulate a "
+        "mimic joint, which is free there, without inertia",
         "give the link its mass",
-        error=f"{LEAST:g} kg in the mass matrix",
-        only="links with inertia",
+        error=f"{LEAST:g} kg and kg·m² in the mass matrix",
+        only="links with inertia, or with a mimic joint",
     ),
     LossKind(
         "export-inertia",
@@ -240,6 +241,8 @@ class _Tree(UrdfTree):
         self.base = mechanism.bodies[0].name
         if _WORLD in self.links and not (mechanism.root == "fixed" and self.base == _WORLD):
             self.links[_WORLD] = self.names.new(_WORLD)
+        #: Links that a mimic joint moves, which is free in Drake.
+        self.coupled = {joint.child for joint in mechanism.joints if joint.mimic is not None}
         self.mimics = drivers({joint.name: joint.mimic for joint in mechanism.joints if joint.mimic is not None})
 
     def write(self) -> None:
@@ -262,7 +265,9 @@ class _Tree(UrdfTree):
             self._coupling(coupling)
 
     def inertia(self, body: Body) -> Inertia | None:
-        return accepted_inertia(body, self.losses, LEAST) if has_inertia(body) else body.inertia
+        if has_inertia(body) or body.name in self.coupled:
+            return accepted_inertia(body, self.losses, LEAST)
+        return body.inertia
 
     # -- joints -----------------------------------------------------------------------------------------------------
 
