@@ -127,7 +127,9 @@ def test_misspelt_limit_of_version_1_2_is_a_warning() -> None:
         ("urdf-unknown-element", "did you mean 'effort'?")
     ]
     missing = eurdf.check(two_links("1.2", limit='<limit lowr="-1" upper="2"/>'))
-    assert [found.code for found in missing.diagnostics] == ["urdf-missing-attribute"]
+    assert [(found.code, found.hint) for found in missing.diagnostics] == [("urdf-missing-attribute", "rename 'lowr'")]
+    (neither,) = eurdf.check(two_links("1.2", limit='<limit lower="-1"/>')).diagnostics
+    assert "states both 'lower' and 'upper'" in str(neither.hint)
 
 
 @pytest.mark.parametrize("limit", [RATES, RATES.replace(' effort="3" velocity="4"', "")])

@@ -70,6 +70,15 @@ FAULTS = (
         "Write a type of URDF.",
     ),
     Fault(
+        "unknown version of URDF",
+        Subject.VALUE,
+        "urdf-version",
+        URDF,
+        r'<robot name="',
+        r'<robot version="¦1.7" name="',
+        "Write a version of URDF.",
+    ),
+    Fault(
         "no child",
         Subject.TREE,
         "urdf-missing-element",

@@ -116,7 +116,7 @@ class Element:
     name: str
     attributes: dict[str, str]
     children: list[Element]
-    #: The version of URDF of the file, EU-URD-037; 0.9 if it states none.
+    #: The version of URDF that the file states, EU-URD-037; 0.9 if it states none.
     version: float = 0.9
 
     def all(self, name: str) -> list[Element]:
@@ -159,7 +159,8 @@ def parse(source: bytes) -> Element:
     stack: list[Element] = []
 
     def start(name: str, attributes: dict[str, str]) -> None:
-        version = stack[-1].version if stack else version_of(attributes)
+        stated = attributes.get("version")
+        version = stack[-1].version if stack else float(stated) if stated in _VERSIONS else 0.9
         element = Element(name, attributes, [], version)
         (stack[-1].children if stack else top).append(element)
         stack.append(element)
@@ -178,18 +179,13 @@ def parse(source: bytes) -> Element:
     return top[0]
 
 
-def version_of(robot: dict[str, str]) -> float:
-    """The version of URDF that the attributes of the root element state, EU-URD-037."""
-    if robot.get("version", "1.0") not in _VERSIONS:
-        raise NotRead(f"the version {robot['version']!r} of URDF")
-    return float(robot.get("version", "0.9"))
-
-
 def read_urdf(path: Path) -> Urdf:
     """The URDF in a file."""
     robot = parse(path.read_bytes())
     if robot.name != "robot":
         raise NotRead(f"the root element is {robot.name!r}")
+    if robot.attributes.get("version", "1.0") not in _VERSIONS:
+        raise NotRead(f"the version {robot.attributes['version']!r} of URDF")
     links = [Link(element.text("name"), inertia(element), shapes(element)) for element in robot.all("link")]
     joints = [joint(element) for element in robot.all("joint")]
     urdf = Urdf(robot.text("name"), {link.name: link for link in links}, {found.name: found for found in joints})

@@ -102,9 +102,14 @@ def named(element: Element) -> str:
     return f"<{tag}>" + ("" if owner is None else f" of {owner.tag!s} '{owner.get('name')}'")
 
 
-def _misspelt_attribute(element: Element, attribute: str) -> str | None:
+def _how_to_add(element: Element, attribute: str) -> str | None:
+    """The hint for a missing attribute: another one to rename, or the version that requires it."""
     near = did_you_mean(attribute, [str(key) for key in element.keys()])  # noqa: SIM118 - an lxml element
-    return near.replace("did you mean", "rename").replace("?", "") if near else None
+    if near:
+        return near.replace("did you mean", "rename").replace("?", "")
+    if attribute in ("lower", "upper"):
+        return "from URDF 1.2, the limit of a revolute or prismatic joint states both 'lower' and 'upper'"
+    return None
 
 
 def cycle_of(names: Sequence[str]) -> str:
@@ -238,7 +243,7 @@ class UrdfReader:
     def missing_attribute(self, element: Element, attribute: str) -> None:
         """EU-URD-005: report that an element lacks a required attribute."""
         message = f"{named(element)} has no attribute '{attribute}'"
-        self.report("urdf-missing-attribute", message, element, None, partial(_misspelt_attribute, element, attribute))
+        self.report("urdf-missing-attribute", message, element, None, partial(_how_to_add, element, attribute))
 
     def name(self, element: Element, attribute: str = "name") -> str | None:
         """EU-URD-005, EU-URD-008: the name of an element that requires one; it is not empty."""

@@ -19,7 +19,8 @@ _AXLESS = frozenset({JointType.FIXED, JointType.FLOATING})
 # Attributes of one number each, and their defaults.
 _LIMIT = {"lower": "0", "upper": "0", "effort": None, "velocity": None}
 _RANGE_1_2 = ("lower", "upper")
-_LIMIT_1_2 = ("effort", "velocity", "acceleration", "deceleration", "jerk")
+_RATES = ("acceleration", "deceleration", "jerk")
+_LIMIT_1_2 = ("effort", "velocity", *_RATES)
 _NO_LIMIT = {"lower": -math.inf, "upper": math.inf, "velocity": math.inf, "effort": math.inf}
 _DYNAMICS = {"damping": "0", "friction": "0"}
 _MIMIC = {"multiplier": "1", "offset": "0"}
@@ -113,8 +114,9 @@ def _limit(
 def _limit_1_0(reader: UrdfReader, element: Element) -> Limit | None:
     """A ``limit`` before URDF 1.2."""
     values = reader.single_numbers(element, _LIMIT)
-    for attribute in _LIMIT_1_2[2:]:
-        reader.later(element, attribute, "1.2")
+    for attribute in map(str, element.keys()):
+        if attribute in _RATES:
+            reader.later(element, attribute, "1.2")
     if values is None:
         return None
     lower, upper, effort, velocity = values
