@@ -231,6 +231,19 @@ def test_configuration_beyond_limits_is_shown_not_written(folder: Path, run: Run
     assert second == "joints at their limits: 'pivot' (lower limit 0.05)"
 
 
+def test_joint_outside_loops_is_written_within_its_limits(folder: Path, run: Run) -> None:
+    file = bench(
+        folder, urdf=lambda urdf: urdf.replace('<limit lower="-0.1" upper="0.2"', '<limit lower="0.05" upper="0.2"')
+    )
+    code, _, err = run("robot.yaml", "--hold", "grip", "--write")
+    assert code == 1
+    assert "beyond their limits: 'grip' at 0 m (limits 0.05 to 0.2)" in err
+    assert run("robot.yaml", "--write")[0] == 0
+    robot = eurdf.load(file, geometry=False)
+    assert robot.coordinates(robot.configurations["assembled"])["grip"] == (0.05,)
+    assert eurdf.check(file).ok
+
+
 def test_zero_range_does_not_prevent_writing(folder: Path, run: Run) -> None:
     given, none = 'lower="-3" upper="3" effort="5"', 'lower="0" upper="0" effort="5"'
     file = bench(folder, urdf=lambda urdf: urdf.replace(given, none))

@@ -11,9 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
+from eurdf.linking.configurations import beyond_limits
 from eurdf.linking.description import describe
 from eurdf.pinocchio.robot import build_robot
-from eurdf.writing.assembled import CLOSED_IN_FULL, beyond_limits, with_closed_configuration
+from eurdf.writing.assembled import CLOSED_IN_FULL, with_closed_configuration
 from support.described import written
 from support.star import STAR
 
@@ -42,7 +43,7 @@ def test_configuration_of_every_joint_type_survives_round_trip(
     v = data.draw(st.lists(st.floats(-1.0, 1.0) | st.just(0.0), min_size=nv, max_size=nv))
     q = np.array(pin.integrate(robot.model, pin.neutral(robot.model), np.array(v)))
     text, diagnostics = with_closed_configuration(description, robot, q)
-    assert not beyond_limits(robot.mechanism, robot.coordinates(q))
+    assert not beyond_limits(robot.mechanism.joints, robot.coordinates(q))
     assert not diagnostics.errors
     path.write_text(text, encoding="utf-8")
     back = eurdf.load(path, geometry=False).configurations["assembled"]

@@ -119,6 +119,12 @@ def test_nearly_unit_quaternion_is_normalized_others_refused(direction: tuple[fl
         ("{c: {type: helical, pitch: 1}}", f"c: {2.01 * math.tau}", "configuration-limits"),
         ("{c: {type: helical, pitch: 1}}", f"c: {1.99 * math.tau}", ""),
         ("{}", "e: [100, 100, 100.3]", ""),
+        ("{a: {limits: {lower: 0.000000002}}}", "b: 0.5", "configuration-limits"),
+        ("{a: {limits: {lower: 0.0000000005}}}", "b: 0.5", ""),
+        ("{a: {limits: {lower: 0.1}}, c: {limits: {upper: -0.1}}}", "b: 0.5", "configuration-limits"),
+        ("{a: {limits: {lower: 0.1}}, c: {limits: {upper: -0.1}}}", "a: 0.1, c: -0.1", ""),
+        ("{a: {limits: {lower: 0.1}}}", "aa: 0.5", "configuration-joint"),
+        ("{d: {type: universal, axes: xy, limits: {lower: [0, 0.1]}}}", "b: 0.5", "configuration-limits"),
         ("{}", "a: []", "wrong-length"),
         ("{}", "e: [1, 2]", "configuration-length"),
         ("{}", "f: [0, 0, 0, 0, 0, 0, 2]", "configuration-quaternion"),
@@ -131,6 +137,18 @@ def test_nearly_unit_quaternion_is_normalized_others_refused(direction: tuple[fl
 )
 def test_coordinate_respects_limits_of_the_description(joints: str, says: str, error: str) -> None:
     assert codes(STAR, f"joints: {joints}\nconfigurations: {{ready: {{{says}}}}}\n") == ([error] if error else [])
+
+
+def test_message_says_what_to_write_of_joints_left_out(tmp_path: Path) -> None:
+    limits = "a: {limits: {lower: 0.1}}, d: {type: universal, axes: xy, limits: {upper: [1, -0.5]}}"
+    path = written(tmp_path, STAR, f"joints: {{{limits}}}\nconfigurations:\n  ready: {{b: 1}}\n")
+    (found,) = eurdf.check(path).diagnostics
+    assert "'ready' leaves out joints" in found.message
+    assert "'a' (limits 0.1 to 2 rad), 'd' (limits -2 to -0.5 rad)" in found.message
+    added = (found.hint or "").partition("for example ")[2]
+    assert added == "a: 0.1, d: [0, -0.5]"
+    path.write_text(path.read_text(encoding="utf-8").replace("b: 1", f"b: 1, {added}"), encoding="utf-8")
+    assert eurdf.check(path).diagnostics == ()
 
 
 def test_limit_zero_of_left_handed_screw_is_not_negative(tmp_path: Path) -> None:

@@ -316,3 +316,13 @@ def test_robot_on_the_world_of_drake_is_fixed(tmp_path: Path) -> None:
     world = '<link name="world"/>' + joint_element("to_world", "fixed", "world", "base", "")
     found = imported(tmp_path, robot(world + ball("1 0 0", "0 0 1"), DRAKE))
     assert (found.mechanism.root, found.mechanism.bodies[0].name) == ("fixed", "base")
+
+
+def test_assembled_has_joints_outside_loops_within_their_limits(tmp_path: Path) -> None:
+    loop = '<loop_joint name="loop" type="spherical"><link1 link="top" xyz="1 0 0"/><link2 link="right" xyz="0 0 1"/>'
+    limit = '<limit lower="0.5" upper="1" effort="1" velocity="1"/>'
+    lid = link_element("lid", inertial(1.0)) + joint_element("hinge", "revolute", "base", "lid", TURN + limit)
+    found = imported(tmp_path, robot(f"{loop}</loop_joint>{lid}"))
+    assert found.mechanism.configurations["assembled"]["hinge"] == (0.5,)
+    found.write(tmp_path / "out")
+    assert eurdf.check(tmp_path / "out").ok

@@ -7,11 +7,15 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from eurdf_conformance.oracle.integration import integrate
+from eurdf_conformance.oracle.joint_property import properties
 from eurdf_conformance.oracle.not_read import NotRead
 from eurdf_conformance.oracle.spatial import Array
 from eurdf_conformance.oracle.tree import Joint, Tree
 
 Configuration = Mapping[str, Sequence[float]]
+
+#: rad or m: how far a coordinate may be beyond its limits.
+BEYOND = 1e-9
 
 
 def neutral(tree: Tree) -> dict[str, Sequence[float]]:
@@ -36,6 +40,18 @@ def stated(tree: Tree, configuration: Configuration) -> dict[str, Array]:
     if unknown := configuration.keys() - joints.keys():
         raise NotRead(f"no coordinates of {sorted(unknown)}")
     return {name: normalised(joints[name], q) for name, q in configuration.items()}
+
+
+def require_within_limits(tree: Tree, configuration: Configuration) -> None:
+    """EU-CFG-004: the coordinates that a configuration gives, and the neutral ones of the joints that it leaves out."""
+    q = stated(tree, neutral(tree) | dict(configuration))
+    for joint in tree.joints:
+        limits = properties(joint, None)
+        for value, lower, upper in zip(q.get(joint.name, ()), limits.lower, limits.upper, strict=False):
+            below = lower is not None and value < lower - BEYOND
+            above = upper is not None and value > upper + BEYOND
+            if (below or above) and not lower == upper == 0.0:
+                raise NotRead(f"{joint.name!r} is at {value}, beyond {lower} to {upper}")
 
 
 def coordinates(tree: Tree, configuration: Configuration) -> list[Array]:

@@ -6,6 +6,7 @@ from collections import Counter
 from pathlib import Path
 
 from eurdf_conformance.level import Version
+from eurdf_conformance.oracle.configuration import require_within_limits
 from eurdf_conformance.oracle.description import Description
 from eurdf_conformance.oracle.merging import with_merges_found
 from eurdf_conformance.oracle.near import is_near
@@ -48,6 +49,8 @@ def read(description: Path | None, urdf: Path, version: Version | None = None) -
         found = with_merges_found(found, source)
     robot = OracleRobot(source, found, build(source, found))
     robot.canonical()  # so that every name in the description is looked up
+    for configuration in found.configurations.values():
+        require_within_limits(robot.tree, configuration)
     return robot
 
 

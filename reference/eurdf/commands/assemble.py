@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from eurdf.commands.assembly_info import AssemblyInfo, JointPosition
     from eurdf.kinematics.array import Vector
     from eurdf.kinematics.assembly import Assembly
+    from eurdf.linking.configurations import BeyondLimit
     from eurdf.linking.description import Described
     from eurdf.pinocchio.robot import Robot
-    from eurdf.writing.assembled import BeyondLimit
 
 _DESCRIPTION = """\
 Find a configuration in which every loop is closed, and show the coordinates of each joint as in files.
@@ -87,13 +87,13 @@ def run(args: argparse.Namespace) -> int:
     file = _file_to_write(args.path, description) if args.write else None
 
     from eurdf.commands.assembly_info import assembly_info
+    from eurdf.linking.configurations import beyond_limits
     from eurdf.pinocchio.robot import build_robot
-    from eurdf.writing.assembled import beyond_limits
 
     robot = build_robot(description.mechanism, geometry=False)
     start, q0 = _start(robot, args.start)
     assembly = _assemble(robot, q0, args.hold, args.limits)
-    beyond = beyond_limits(robot.mechanism, robot.coordinates(assembly.q))
+    beyond = beyond_limits(robot.mechanism.joints, robot.coordinates(assembly.q))
     info = assembly_info(robot, assembly, start, args.hold, {found.joint for found in beyond})
     if not args.json:
         _show(info)
@@ -141,17 +141,28 @@ def _start(robot: Robot, name: str | None) -> tuple[str, Vector]:
 def _assemble(robot: Robot, q0: Vector, hold: list[str], limits: bool) -> Assembly:
     """A closed configuration, within the joint limits if possible."""
     from eurdf.kinematics.assembly import assemble
-    from eurdf.writing.assembled import beyond_limits
+    from eurdf.linking.configurations import beyond_limits
 
     try:
-        assembly = assemble(robot, q0, hold, tolerance=_TOLERANCE, limits=limits)
+        within = _clipped(robot, q0, hold)
+        assembly = assemble(robot, within if limits else q0, hold, tolerance=_TOLERANCE, limits=limits)
     except ValueError as reason:
         raise CannotRun(str(reason)) from None
-    if not limits and assembly.closes and beyond_limits(robot.mechanism, robot.coordinates(assembly.q)):
-        within = assemble(robot, q0, hold, tolerance=_TOLERANCE, limits=True)
-        if within.closes:
-            return within
+    if not limits and assembly.closes and beyond_limits(robot.mechanism.joints, robot.coordinates(assembly.q)):
+        limited = assemble(robot, within, hold, tolerance=_TOLERANCE, limits=True)
+        if limited.closes:
+            return limited
     return assembly
+
+
+def _clipped(robot: Robot, q: Vector, hold: list[str]) -> Vector:
+    """The configuration with all joints but the held ones within their limits, also those outside of loops."""
+    import numpy as np
+
+    from eurdf.kinematics.position_limit import position_limits
+
+    held = [velocity for name in hold for velocity in robot.tree.velocities_of(name)]
+    return position_limits(robot).clip(q, np.setdiff1d(np.arange(robot.tree.nv), held))
 
 
 def _write(description: Described, robot: Robot, q: Vector, force: bool) -> bool:

@@ -22,6 +22,7 @@ from eurdf.exporting.written import Actuators, ClosureChoice, Exportable, MeshFi
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.position_limit import position_limits
+from eurdf.linking.configurations import beyond_limits
 from eurdf.linking.description import Linked, Unlinked, describe, find_meshes
 from eurdf.loss import BEYOND_LIMITS, Effect, Loss, Losses
 from eurdf.mechanism.mechanism import ROOT_JOINT, Root
@@ -30,7 +31,6 @@ from eurdf.mesh_files.reader import MeshReader
 from eurdf.pinocchio.meshes import read_meshes
 from eurdf.pinocchio.robot import Robot, build_robot
 from eurdf.reading.given import Given
-from eurdf.writing.assembled import beyond_limits
 from eurdf.writing.output_folder import write_files
 
 #: The configuration to start from, unless another one is asked for.
@@ -249,7 +249,7 @@ def _export(
         if joint.lacks_range:
             shared.add("export-no-range", joint.name)
     for name, coordinates in list(configurations.items())[:1] if BEYOND_LIMITS in kinds else ():
-        if beyond := beyond_limits(robot.mechanism, coordinates):
+        if beyond := beyond_limits(robot.mechanism.joints, coordinates):
             shared.add("export-beyond-limits", name, f"has joints beyond their limits: {', '.join(map(str, beyond))}")
     for path in folders.let_through:
         shared.add("export-file-outside", path)

@@ -29,7 +29,9 @@ from eurdf.importing.recognition import recognized
 from eurdf.importing.robot_read import RobotRead
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.opening import CLOSED, Opening
+from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.residual import closure_openings, residual
+from eurdf.linking.configurations import beyond_limits
 from eurdf.linking.description import Unlinked, describe
 from eurdf.loss import Effect, Loss, Losses, LossKind
 from eurdf.mechanism.mechanism import Mechanism
@@ -38,7 +40,6 @@ from eurdf.mesh_files.folders import Folders
 from eurdf.pinocchio.robot import build_robot
 from eurdf.reading.resource import FileFinder
 from eurdf.writing.assembled import NAME as ASSEMBLED
-from eurdf.writing.assembled import beyond_limits
 from eurdf.writing.description import DescriptionFiles, NotWritable, describe_mechanism, version_needed
 from eurdf.writing.joined_closures import join_points
 from eurdf.writing.output_folder import write_files
@@ -215,10 +216,12 @@ def _import(format_: str, path: Path, read: RobotRead, folders: Folders) -> Impo
     mechanism = _without_open_assembled(mechanism, losses)
     closes = True
     if mechanism.constraints and ASSEMBLED not in mechanism.configurations:
-        found = next((each for limits in (True, False) if (each := assemble(robot, q, limits=limits)).closes), None)
+        # Joints outside of loops too are within their limits in a file.
+        starts = ((position_limits(robot).clip(q), True), (q, False))
+        found = next((each for at, limits in starts if (each := assemble(robot, at, limits=limits)).closes), None)
         closes = found is not None
         exact = {} if found is None else robot.coordinates(found.q)
-        beyond = beyond_limits(mechanism, exact)
+        beyond = beyond_limits(mechanism.joints, exact)
         if found is None:
             losses.add("import-not-assembled", ASSEMBLED, "no configuration was found that closes the loops")
         elif beyond:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from functools import partial
+from typing import NamedTuple
 
 from eurdf.diagnostics import Hint, did_you_mean
 from eurdf.format.extension import ConfigurationEntry
@@ -17,6 +18,36 @@ QUATERNION_TOLERANCE = 1e-6
 
 #: A coordinate may be beyond its limit by this much, in rad or m (EU-CFG-004).
 LIMIT_TOLERANCE = 1e-9
+
+# Maximum number of joints in a message.
+_MOST_TOLD = 4
+
+
+class BeyondLimit(NamedTuple):
+    """A coordinate beyond the limits of its joint.
+
+    Attributes:
+        joint: Name of the joint.
+        coordinate: What the coordinate is: an angle or a length.
+        value: rad or m.
+        lower: Lower limit.
+        upper: Upper limit.
+    """
+
+    joint: str
+    coordinate: str
+    value: float
+    lower: float
+    upper: float
+
+    @property
+    def limits(self) -> str:
+        """The limits, with their unit."""
+        return f"{self.lower:.12g} to {self.upper:.12g} {'m' if self.coordinate == 'length' else 'rad'}"
+
+    def __str__(self) -> str:
+        unit = "m" if self.coordinate == "length" else "rad"
+        return f"'{self.joint}' at {self.value:.6g} {unit} (limits {self.lower:g} to {self.upper:g})"
 
 
 def link_configurations(
@@ -38,13 +69,18 @@ def link_configurations(
     configurations = {}
     for entry in entries:
         configuration = {}
+        all_known = True
         for name, values in entry.joints.items():
             if name in skip:
                 continue
             joint = _joint(name, joints, merged, entry, reporter)
+            all_known &= joint is not None
             checked = None if joint is None else _coordinates(joint, values, entry, reporter)
             if checked is not None:
                 configuration[name] = checked
+        if all_known:  # else a joint that seems to be left out may be one whose name is misspelt
+            left_out = [joint for name, joint in joints.items() if name not in entry.joints and name not in skip]
+            _check_left_out(left_out, entry, reporter)
         configurations[entry.name] = configuration
     return configurations
 
@@ -87,6 +123,53 @@ def within_limits(value: float, lower: float, upper: float) -> bool:
     return lower - LIMIT_TOLERANCE <= value <= upper + LIMIT_TOLERANCE
 
 
+def beyond_limits(joints: Iterable[Joint], coordinates: Mapping[str, Sequence[float]]) -> list[BeyondLimit]:
+    """EU-CFG-004: the coordinates of a configuration that are beyond their limits.
+
+    Args:
+        joints: The joints to check; those without coordinates of their own, or with a quaternion, have no limits.
+        coordinates: Coordinates by joint; a joint that is left out is at its neutral.
+    """
+    return [
+        BeyondLimit(joint.name, name, value, lower, upper)
+        for joint in joints
+        if joint.mimic is None and joint.coordinates.quaternion is None
+        for name, value, (lower, upper) in zip(
+            joint.coordinates.names,
+            coordinates.get(joint.name, joint.coordinates.neutral),
+            joint.ranges,
+            strict=True,
+        )
+        if not within_limits(value, lower, upper)
+    ]
+
+
+def _check_left_out(joints: Sequence[Joint], entry: ConfigurationEntry, reporter: YamlReporter) -> None:
+    """EU-CFG-004: joints that a configuration leaves out are within their limits at neutral."""
+    beyond = beyond_limits(joints, {})
+    if not beyond:
+        return
+    names = list(dict.fromkeys(found.joint for found in beyond))
+    told = ", ".join(f"'{found.joint}' (limits {found.limits})" for found in beyond[:_MOST_TOLD])
+    more = f", and {len(beyond) - _MOST_TOLD} more" if len(beyond) > _MOST_TOLD else ""
+    reporter.report(
+        "configuration-limits",
+        f"configuration '{entry.name}' leaves out joints, which are then at 0, outside their limits: {told}{more}",
+        entry.pointer,
+        f"add coordinates within the limits, for example "
+        f"{', '.join(f'{joint.name}: {_nearest(joint)}' for joint in joints if joint.name in names)}",
+        key=True,
+    )
+
+
+def _nearest(joint: Joint) -> str:
+    """The coordinates within the limits that are nearest to neutral, as a file states them."""
+    neutral = zip(joint.coordinates.neutral, joint.ranges, strict=True)
+    nearest = [value if within_limits(value, *ends) else min(max(value, ends[0]), ends[1]) for value, ends in neutral]
+    shown = [f"{value:.12g}" for value in nearest]
+    return shown[0] if len(shown) == 1 else f"[{', '.join(shown)}]"
+
+
 def _coordinates(
     joint: Joint,
     values: tuple[float, ...],
@@ -115,13 +198,12 @@ def _coordinates(
             )
             return None
         return (*values[:start], *(value / norm for value in values[start : start + 4]))
-    for value, (lower, upper), name in zip(values, joint.ranges, coordinates.names, strict=True):
-        if not within_limits(value, lower, upper):
-            reporter.report(
-                "configuration-limits",
-                f"{name} {value:.12g} of joint '{joint.name}' in configuration '{entry.name}' is outside its limits "
-                f"{lower:.12g} to {upper:.12g}",
-                (*entry.pointer, joint.name),
-            )
-            return None
+    for found in beyond_limits([joint], {joint.name: values}):
+        reporter.report(
+            "configuration-limits",
+            f"{found.coordinate} {found.value:.12g} of joint '{joint.name}' in configuration '{entry.name}' is outside "
+            f"its limits {found.lower:.12g} to {found.upper:.12g}",
+            (*entry.pointer, joint.name),
+        )
+        return None
     return values

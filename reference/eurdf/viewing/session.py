@@ -204,8 +204,8 @@ class Session:
         self.q = self.first
 
     def assemble(self) -> Assembly:
-        """Close the loops near the configuration, within the position limits if possible."""
-        within = assemble(self.robot, self.q, tolerance=_TOLERANCE, limits=True)
+        """Close the loops near the configuration, within the position limits of all joints if possible."""
+        within = assemble(self.robot, self._limits.clip(self.q), tolerance=_TOLERANCE, limits=True)
         found = within if within.closes else assemble(self.robot, self.q, tolerance=_TOLERANCE)
         self.q = found.q
         return found

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
 
 import numpy as np
 
 from eurdf.diagnostics import Diagnostics
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.residual import residual
-from eurdf.linking.configurations import within_limits
 from eurdf.linking.description import Described
 from eurdf.mechanism.joint_type import COORDINATES, JointType
-from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
+from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.configuration import configuration_vector
 from eurdf.pinocchio.robot import Robot
 
@@ -27,41 +25,6 @@ _SAME = 1e-12
 
 #: Decimals, of m or rad, beyond which a coordinate is noise.
 _DECIMALS = 15
-
-
-class BeyondLimit(NamedTuple):
-    """A coordinate beyond the limits of its joint.
-
-    Attributes:
-        joint: Name of the joint.
-        coordinate: What the coordinate is: an angle or a length.
-        value: rad or m.
-        lower: Lower limit.
-        upper: Upper limit.
-    """
-
-    joint: str
-    coordinate: str
-    value: float
-    lower: float
-    upper: float
-
-    def __str__(self) -> str:
-        unit = "m" if self.coordinate == "length" else "rad"
-        return f"'{self.joint}' at {self.value:.6g} {unit} (limits {self.lower:g} to {self.upper:g})"
-
-
-def beyond_limits(mechanism: Mechanism, coordinates: Mapping[str, Sequence[float]]) -> list[BeyondLimit]:
-    """The coordinates that a configuration in a file must not have."""
-    return [
-        BeyondLimit(joint.name, name, value, lower, upper)
-        for joint in mechanism.joints
-        if joint.name in coordinates and joint.coordinates.quaternion is None
-        for name, value, (lower, upper) in zip(
-            joint.coordinates.names, coordinates[joint.name], joint.ranges, strict=True
-        )
-        if not within_limits(value, lower, upper)
-    ]
 
 
 def is_stated(robot: Robot, q: Vector, name: str = NAME) -> bool:

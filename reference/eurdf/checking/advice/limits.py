@@ -9,7 +9,7 @@ import numpy as np
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.loop import joints_of_loops
 from eurdf.kinematics.position_limit import position_limits
-from eurdf.writing.assembled import BeyondLimit, beyond_limits
+from eurdf.linking.configurations import BeyondLimit, beyond_limits
 
 if TYPE_CHECKING:
     from eurdf.diagnostics import Diagnostics
@@ -62,7 +62,7 @@ def _beyond(robot: Robot, q: Vector) -> list[BeyondLimit]:
     names, first = robot.tree.velocity_names, robot.tree.own_velocities
     joints = joints_of_loops(robot)
     in_loops = {names[first[joint].start] for joint in joints}
-    return [found for found in beyond_limits(robot.mechanism, robot.coordinates(q)) if found.joint in in_loops]
+    return [found for found in beyond_limits(robot.mechanism.joints, robot.coordinates(q)) if found.joint in in_loops]
 
 
 def _middle(robot: Robot, q: Vector) -> Vector:

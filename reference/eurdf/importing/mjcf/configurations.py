@@ -8,21 +8,10 @@ from types import MappingProxyType
 from eurdf.importing.mjcf.joints import coordinates_at
 from eurdf.importing.mjcf.reading import MjcfReading
 from eurdf.importing.mjcf.values import usable, xyzw
-from eurdf.linking.configurations import within_limits
+from eurdf.linking.configurations import beyond_limits
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.writing.names import UniqueNames
-
-
-def _beyond(mechanism: Mechanism, coordinates: Mapping[str, Sequence[float]]) -> str:
-    """The first joint whose coordinates are beyond its limits; empty for none."""
-    for joint in mechanism.joints:
-        if joint.name not in coordinates or joint.coordinates.quaternion is not None:
-            continue
-        for value, (lower, upper) in zip(coordinates[joint.name], joint.ranges, strict=True):
-            if not within_limits(value, lower, upper):
-                return joint.name
-    return ""
 
 
 def read_configurations(
@@ -37,9 +26,9 @@ def read_configurations(
         name = names.new(usable(model.names["key"][index]) or f"key_{index}")
         coordinates = _at(reading, qpos, mechanism)
         keys[name] = coordinates
-        beyond = _beyond(mechanism, coordinates)
+        beyond = beyond_limits(mechanism.joints, coordinates)
         if beyond:
-            reading.losses.add("import-configuration", name, f"is left out: '{beyond}' is beyond its limits")
+            reading.losses.add("import-configuration", name, f"is left out: '{beyond[0].joint}' is beyond its limits")
         else:
             found[name] = coordinates
     for name in ("assembled", "home", *keys):
