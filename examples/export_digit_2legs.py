@@ -65,7 +65,7 @@ def main(folder: str | Path = ".") -> Trainable:
     mujoco.mj_resetDataKeyframe(model, data, 0)
     data.ctrl[:] = [data.joint(model.actuator(a).trnid[0]).qpos[0] for a in range(model.nu)]
     opening = 0.0
-    while data.time < DURATION:
+    for _ in range(round(DURATION / model.opt.timestep)):  # the time is set back to 0 if it diverges
         mujoco.mj_step(model, data)
         opening = max(opening, float(np.abs(data.efc_pos[: data.efc_type.tolist().count(0)]).max()))
     return Trainable(path, model.nu, opening, float(data.qpos[2]))

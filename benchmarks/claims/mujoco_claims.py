@@ -32,7 +32,7 @@ def pin_opens() -> str:
     data = mujoco.MjData(model)
     sites = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, name) for name in ("pin_on_coupler", "pin_on_rocker")]
     largest = 0.0
-    while data.time < 2.0:
+    for _ in range(round(2.0 / model.opt.timestep)):
         mujoco.mj_step(model, data)
         mujoco.mj_kinematics(model, data)
         largest = max(largest, float(np.linalg.norm(data.site_xpos[sites[0]] - data.site_xpos[sites[1]])))
