@@ -351,7 +351,8 @@ class _Writer:
         etree.SubElement(
             self.root, "compiler", angle="radian", inertiafromgeom="false", autolimits="true", meshdir="meshes"
         )
-        etree.SubElement(self.root, "option", timestep=numbers((TIMESTEP,)), integrator="implicitfast")
+        # The implicit integrators add the damping of servos after the constraints are solved, which opens the loops.
+        etree.SubElement(self.root, "option", timestep=numbers((TIMESTEP,)), integrator="Euler")
         default = etree.SubElement(self.root, "default")
         etree.SubElement(default, "equality", solref=numbers(SOLREF), solimp=numbers(SOLIMP))
         visual = etree.SubElement(default, "default", {"class": "visual"})
