@@ -2,31 +2,25 @@
 
 from __future__ import annotations
 
-import logging
 import time
 from typing import Any
 
 import numpy as np
-from pydrake.multibody.parsing import Parser
-from pydrake.multibody.plant import DiscreteContactApproximation, MultibodyPlant
 from pydrake.systems.analysis import Simulator
 
 import eurdf
 from benchmarks.simulators.run import Refused, Run, split
-
-logging.getLogger("drake").setLevel(logging.ERROR)
+from eurdf.exporting.verification.drake_model import Plant
+from eurdf.exporting.verification.read_model import CannotRead
 
 
 def run_drake(robot: eurdf.Robot, step: float, steps: int) -> Run | Refused:
     """Simulate a robot with Drake, in discrete time with the SAP solver, the one that has constraints."""
     export = eurdf.export(robot, "drake")
-    plant = MultibodyPlant(step)
-    plant.set_discrete_contact_approximation(DiscreteContactApproximation.kSap)
     try:
-        Parser(plant).AddModelsFromString(export.main.decode(), "urdf")
-        plant.Finalize()
+        plant = Plant(export.main.decode(), "urdf", step).plant
         simulator = Simulator(plant)
-    except (RuntimeError, ValueError) as error:
+    except (CannotRead, RuntimeError) as error:
         return Refused(str(error))
     context = simulator.get_mutable_context()
     start: Any = export.coordinates.to_q(robot.configurations["assembled"])

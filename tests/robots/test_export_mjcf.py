@@ -128,6 +128,17 @@ def test_loops_stay_closed_in_simulation(name: str) -> None:
     assert max(max(each.position, each.angle) for each in found.fall.openings) < 1e-3
 
 
+@pytest.mark.parametrize("name", ["battobot", "talos_leg", "unitree_g1_ankle"])
+def test_loops_stay_closed_under_position_servos(name: str) -> None:
+    there = InMuJoCo(eurdf.load(name, geometry=False), eurdf.export(name, "mjcf", actuators="position"))
+    mujoco.mj_resetDataKeyframe(there.model, there.data, 0)
+    mujoco.mj_forward(there.model, there.data)
+    there.data.ctrl[:] = there.data.actuator_length
+    for _ in range(round(2.0 / there.model.opt.timestep)):
+        mujoco.mj_step(there.model, there.data)
+        assert np.abs(there.data.efc_pos[: there.data.ne]).max() < 1e-3
+
+
 @pytest.mark.parametrize(
     ("mimic", "description"),
     [

@@ -150,7 +150,7 @@ def test_other_elements_and_loops_are_losses(tmp_path: Path) -> None:
             "'xyz' of <link1> is '1 2'; it must be 3 finite numbers",
         ),
         (
-            '<loop_joint name="l" type="fixed"><link1 link="top" quat_xyzw="0 0 0 1"/><link2 link="right"/></loop_joint>',
+            '<loop_joint name="l" type="fixed"><link1 link="top" quat_xyzw="0 0 0 1"/></loop_joint>',
             "<link1> has 'quat_xyzw'; only links and joints can",
         ),
         (

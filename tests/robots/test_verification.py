@@ -60,10 +60,19 @@ def test_robot_of_the_collection_is_read_back(name: str, to: str) -> None:
     assert max((max(each.position, each.angle) for each in openings), default=0.0) < 1e-3
 
 
+@pytest.mark.parametrize("to", FORMATS)
+def test_links_without_mass_are_no_error(to: str) -> None:
+    installed(to)
+    limit = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'
+    links = [link_element("base"), link_element("arm", inertial()), link_element("tip")]
+    joints = [joint_element("turn", "revolute", "base", "arm", limit), joint_element("flange", "fixed", "arm", "tip")]
+    assert eurdf.export(robot_element(*links, *joints), to).verify().findings == ()
+
+
 CHANGES = {
     ("mjcf", r'mass="0.18"', 'mass="0.36"'): "the mass is",
     ("mjcf", r'(?s)(<body name="coupler".*?<inertial pos=")\S+', r"\g<1>0.05"): "mass matrix differs",
-    ("mjcf", r'(name="rocker_pin/a" pos=")\S+', r"\g<1>1"): "loops are open at the start: 'rocker_pin'",
+    ("mjcf", r'(name="rocker_pin/a" pos=")\S+', r"\g<1>1"): "constraints are open at the start: 'rocker_pin'",
     (
         "mjcf",
         r'(name="motor_crank" type="hinge")',
@@ -71,14 +80,14 @@ CHANGES = {
     ): "'motor_crank' is at .* outside its limits, 2 to 3",
     ("mjcf", r"<worldbody>", "<worldbody><nothing/>"): "MuJoCo .* refuses the file",
     ("drake", r'<mass value="0.18"/>', '<mass value="0.36"/>'): "the mass is",
-    ("drake", r'(ball_constraint_p_AP value=")\S+', r"\g<1>1"): "loops are open at the start: 'rocker_pin'",
+    ("drake", r'(ball_constraint_p_AP value=")\S+', r"\g<1>1"): "constraints are open at the start: 'rocker_pin'",
     ("drake", r"<robot", "<robot robot"): "Drake .* refuses the file",
     ("sdf", r"<mass>0.18</mass>", "<mass>0.36</mass>"): "the mass is",
     ("usd", r"physics:mass = 0.18", "physics:mass = 0.36"): "the mass is",
-    ("usd", r"(physics:localPos0 = \()[^,]+", r"\g<1>1"): "loops are open at the start: 'rocker_pin'",
+    ("usd", r"(physics:localPos0 = \()[^,]+", r"\g<1>1"): "constraints are open at the start: 'rocker_pin'",
     ("urdf", r'<mass value="0.18"/>', '<mass value="0.36"/>'): "the mass is",
     ("urdf", r'(<limit lower=")\S+" upper="[^"]+', r'\g<1>2" upper="3'): "outside its limits, 2 to 3",
-    ("loop-joint", r'(<link1 link="[^"]*" xyz=")\S+', r"\g<1>1"): "loops are open at the start: 'rocker_pin'",
+    ("loop-joint", r'(<link1 link="[^"]*" xyz=")\S+', r"\g<1>1"): "constraints are open at the start: 'rocker_pin'",
 }
 
 
@@ -112,7 +121,7 @@ def flailing() -> Robot:
 def test_singular_pose_is_named_as_the_cause() -> None:
     pytest.importorskip("mujoco")
     found = findings(eurdf.export(flailing(), "mjcf"))
-    assert re.search("diverges at|loops open in the fall", found)
+    assert re.search("diverges at|constraints open in the fall", found)
     assert re.search(r"close to a singular pose, at which 'free_\w+'", found)
     assert "no limits; limit the joints so that the loops do not get there" in found
     assert "with half the time step, 0.0005 s" in found
@@ -169,11 +178,11 @@ def test_error_ends_the_command_with_1(tmp_path: Path, capsys: pytest.CaptureFix
     arguments = ["export", str(tmp_path), "--to", "loop-joint", "--verify", "--configuration", "open"]
     assert main([*arguments, "-o", str(tmp_path / "out")]) == 1
     assert re.search(
-        r"error: loops are open at the start: 'rocker_pin' by .*\n +find a closed", capsys.readouterr().out
+        r"error: constraints are open at the start: 'rocker_pin' by .*\n +find a closed", capsys.readouterr().out
     )
     assert main([*arguments, "--json", "-o", str(tmp_path / "again")]) == 1
     (finding,) = json.loads(capsys.readouterr().out)["verification"]["findings"]
-    assert finding["message"].startswith("loops are open")
+    assert finding["message"].startswith("constraints are open")
 
 
 def test_progress_is_shown_on_a_terminal(tmp_path: Path) -> None:

@@ -359,7 +359,8 @@ class _Writer:
         etree.SubElement(
             self.root, "compiler", angle="radian", inertiafromgeom="false", autolimits="true", meshdir="meshes"
         )
-        option = {"timestep": numbers((TIMESTEP,)), "tolerance": numbers((TOLERANCE,)), "integrator": "implicitfast"}
+        # The implicit integrators add the damping of servos after the constraints are solved, which opens the loops.
+        option = {"timestep": numbers((TIMESTEP,)), "tolerance": numbers((TOLERANCE,)), "integrator": "Euler"}
         etree.SubElement(self.root, "option", option)
         default = etree.SubElement(self.root, "default")
         etree.SubElement(default, "equality", solref=numbers(SOLREF), solimp=numbers(SOLIMP))

@@ -91,7 +91,7 @@ class _Run:
         if self.fall.diverged:
             return f"it diverges at {self.fall.seconds:.3g} s"
         distance, angle = (max((getattr(o, x) for o in self.fall.openings), default=0.0) for x in ("position", "angle"))
-        return f"the loops open by up to {distance * 1e3:.2g} mm and {np.degrees(angle):.2g} degrees"
+        return f"constraints open by up to {distance * 1e3:.2g} mm and {np.degrees(angle):.2g} degrees"
 
 
 def simulate(
@@ -103,7 +103,7 @@ def simulate(
         The simulation, and what is wrong if a loop opens by more than `OPENS` or the simulation diverges.
     """
     run = _run(model.fall(motion.start, seconds), seconds, progress)
-    if not run.worst or not (run.fall.diverged or run.opening > OPENS):
+    if not (run.fall.diverged or run.opening > OPENS):
         return run.fall, None
     largest = sorted(
         zip(run.fall.openings, run.fall.times, strict=True), key=lambda found: _size(found[0]), reverse=True
@@ -112,7 +112,7 @@ def simulate(
     said = f" ({run.message})" if run.message else ""
     what = [f"the simulation diverges at {run.fall.seconds:.3g} s{said}"] if run.fall.diverged else []
     if opened:
-        what.append(f"loops open in the fall: {listed(opened)}")
+        what.append(f"constraints open in the fall: {listed(opened)}")
     halved = _run(model.fall(motion.start, seconds, slower=2), seconds, progress)
     helps = "; shorten the time step" if not halved.fall.diverged and halved.opening <= OPENS else ""
     again = [f"with half the time step, {model.step / 2:g} s, {halved.result}{helps}"]
@@ -121,7 +121,8 @@ def simulate(
         closed = not free.fall.diverged and free.opening < run.opening / 2.0
         helps = "; leave out contacts of links that overlap, or simplify their collision shapes" if closed else ""
         again.append(f"without contacts, {free.result}{helps}")
-    return run.fall, Finding("; ".join(what), (*_causes(model, motion, run.worst), *again))
+    causes = _causes(model, motion, run.worst) if run.worst else ()
+    return run.fall, Finding("; ".join(what), (*causes, *again))
 
 
 def _run(instants: Iterator[Instant], seconds: float, progress: Callable[[float, float], None] | None) -> _Run:

@@ -70,6 +70,7 @@ class MuJoCoModel:
     ) -> Iterator[Instant]:
         model, data = self.model, self.data
         flags, step, solref = model.opt.disableflags, model.opt.timestep, model.eq_solref.copy()
+        model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_ACTUATION  # else position servos move to 0
         if not contacts:
             model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
         model.opt.timestep /= slower

@@ -85,8 +85,11 @@ class UsdModel:
 
     @property
     def mass(self) -> float:  # noqa: D102
-        prims = (UsdPhysics.MassAPI(body).GetMassAttr().Get() for body in self._bodies.values())
-        return float(sum(mass or 0.0 for mass in prims))
+        base = self._exported.robot.mechanism.bodies[0]
+        # A base without mass that is fixed to the world has 1 kg there: it does not move.
+        left_out = base.name if base.inertia is None or base.inertia.mass == 0.0 else ""
+        prims = [body for name, body in self._bodies.items() if name != left_out]
+        return float(sum(UsdPhysics.MassAPI(prim).GetMassAttr().Get() or 0.0 for prim in prims))
 
     def mass_matrix(self, q: Vector) -> Matrix:  # noqa: D102
         mechanism = self._exported.robot.mechanism

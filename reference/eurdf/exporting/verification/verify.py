@@ -137,7 +137,7 @@ def _compare(
     size = {opening: max(opening.position, opening.angle) for opening in openings}
     opened = sorted((each for each in openings if size[each] > model.tolerance), key=size.__getitem__, reverse=True)
     if opened:
-        message = f"loops are open at the start: {listed([str(each) for each in opened])}"
+        message = f"constraints are open at the start: {listed([str(each) for each in opened])}"
         hint = "find a closed configuration with `eurdf assemble`, and state it as 'assembled'"
         findings.append(Finding(message, (hint,)))
     beyond = tuple(
@@ -149,7 +149,7 @@ def _compare(
         findings.append(Finding(where, ("a simulator pushes it back",)))
     fall, unverified = None, model.unverified
     if model.step and opened:
-        unverified += ("the fall is not simulated, since loops are open at the start",)
+        unverified += ("the fall is not simulated, since constraints are open at the start",)
     elif model.step and seconds:
         fall, moved = simulate(model, Motion(robot, exported.coordinates, start), seconds, progress)
         findings += [moved] if moved else []
@@ -169,5 +169,9 @@ def _mass_matrix(model: ReadModel, robot: Robot, losses: Sequence[Loss], q: Vect
         return error, []
     at = int(np.diag(difference).argmax())
     name = next((name for name, slot in robot.slots.items() if slot.idx_v <= at < slot.idx_v + slot.nv), ROOT_JOINT)
-    most = f"on its diagonal, '{name}' differs most: {found[at, at]:.6g}, not {expected[at, at]:.6g}"
-    return error, [Finding(f"the mass matrix differs by {error:.1e} of its largest entry", (most,))]
+    causes = [f"on its diagonal, '{name}' differs most: {found[at, at]:.6g}, not {expected[at, at]:.6g}"]
+    changed = [loss for loss in losses if loss.code == "export-inertia"]
+    if changed:
+        links = f"{len(changed)} link{'s' * (len(changed) > 1)}"
+        causes.append(f"the format changes the inertia of {links}: see the losses [export-inertia]; {changed[0].hint}")
+    return error, [Finding(f"the mass matrix differs by {error:.1e} of its largest entry", tuple(causes))]
