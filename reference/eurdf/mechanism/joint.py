@@ -126,9 +126,9 @@ class Joint:
 
         Limits that are both 0 are no range (EU-URD-025). Other equal limits lock the coordinate.
         """
-        limits = zip(self.properties.lower, self.properties.upper, strict=True)
-        found = tuple(_NO_RANGE if is_no_range(lower, upper) else (lower, upper) for lower, upper in limits)
-        return found or (_NO_RANGE,) * len(self.coordinates.names)
+        n = len(self.coordinates.names)
+        lower, upper = self.properties.lower or (-math.inf,) * n, self.properties.upper or (math.inf,) * n
+        return tuple(_NO_RANGE if is_no_range(*pair) else pair for pair in zip(lower, upper, strict=True))
 
     @property
     def lacks_range(self) -> bool:
