@@ -38,7 +38,7 @@ class LargestOpening(OpeningInfo):
     """When, s."""
 
 
-class RelationInfo(_Entry):
+class ConstraintInfo(_Entry):
     """A closure, coupling or mimic joint of the file."""
 
     name: str
@@ -93,7 +93,7 @@ class VerificationInfo(_Entry):
     """Mass of all bodies of the robot, kg."""
     mass_matrix_error: float
     """Largest difference of the mass matrix at the start, relative to its largest entry."""
-    relations: tuple[RelationInfo, ...]
+    constraints: tuple[ConstraintInfo, ...]
     """Closures, couplings and mimic joints that the file states."""
     beyond_limits: tuple[BeyondLimits, ...]
     """Coordinates outside their limits at the start."""
@@ -161,8 +161,8 @@ def _verification_info(found: Verification) -> VerificationInfo:
         mass_read=found.mass[0],
         mass=found.mass[1],
         mass_matrix_error=found.mass_matrix_error,
-        relations=tuple(
-            RelationInfo(
+        constraints=tuple(
+            ConstraintInfo(
                 name=encodable(start.name),
                 start=OpeningInfo(**_opening(start)),
                 fall=None if most is None else LargestOpening(**_opening(most[0]), time=most[1]),

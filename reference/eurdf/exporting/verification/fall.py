@@ -14,6 +14,7 @@ from eurdf.exporting.verification.read_model import Diverged, Instant, ReadModel
 from eurdf.kinematics.mass_matrix import mass_matrix
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.residual import residual_and_jacobian
+from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.robot import Robot
 
 #: Loops that are named.
@@ -35,6 +36,9 @@ _OVERLAP = 1e-4
 #: Steps before the worst one, at which its cause is looked for.
 _BEFORE = 20
 
+#: Coordinates of no robot, rad or m.
+_BLOWN_UP = 1e6
+
 #: A link of a robot has less, kg.
 _HEAVY = 1e5
 
@@ -49,7 +53,7 @@ class Fall:
     Attributes:
         seconds: Simulated time, s; less than asked for if it diverges.
         diverged: Whether a number was not finite.
-        openings: For each relation of the file, the largest opening.
+        openings: The largest opening of each closure, coupling and mimic joint of the file.
         times: When each of them was largest, s.
     """
 
@@ -84,7 +88,7 @@ class _Run:
 
     @property
     def opening(self) -> float:
-        return max((max(each.position, each.angle) for each in self.fall.openings), default=0.0)
+        return max(map(size, self.fall.openings), default=0.0)
 
     @property
     def result(self) -> str:
@@ -106,9 +110,9 @@ def simulate(
     if not (run.fall.diverged or run.opening > OPENS):
         return run.fall, None
     largest = sorted(
-        zip(run.fall.openings, run.fall.times, strict=True), key=lambda found: _size(found[0]), reverse=True
+        zip(run.fall.openings, run.fall.times, strict=True), key=lambda found: size(found[0]), reverse=True
     )
-    opened = [f"{each} at {time:.3g} s" for each, time in largest if _size(each) > OPENS]
+    opened = [f"{each} at {time:.3g} s" for each, time in largest if size(each) > OPENS]
     said = f" ({run.message})" if run.message else ""
     what = [f"the simulation diverges at {run.fall.seconds:.3g} s{said}"] if run.fall.diverged else []
     if opened:
@@ -121,7 +125,9 @@ def simulate(
         closed = not free.fall.diverged and free.opening < run.opening / 2.0
         helps = "; leave out contacts of links that overlap, or simplify their collision shapes" if closed else ""
         again.append(f"without contacts, {free.result}{helps}")
-    causes = _causes(model, motion, run.worst) if run.worst else ()
+    # Where a simulation has blown up, poses say nothing.
+    worst = [each for each in run.worst if np.abs(each.positions).max(initial=0.0) < _BLOWN_UP]
+    causes = _causes(model, motion, worst) if worst else ()
     return run.fall, Finding("; ".join(what), (*causes, *again))
 
 
@@ -137,9 +143,9 @@ def _run(instants: Iterator[Instant], seconds: float, progress: Callable[[float,
             if not openings:
                 openings, times = list(instant.openings), [instant.time] * len(instant.openings)
             for index, each in enumerate(instant.openings):
-                if _size(each) > _size(openings[index]):
+                if size(each) > size(openings[index]):
                     openings[index], times[index] = each, instant.time
-            now = max(map(_size, instant.openings), default=0.0)
+            now = max(map(size, instant.openings), default=0.0)
             if now > largest:
                 largest, worst = now, tuple(recent)
             if progress is not None:
@@ -150,7 +156,8 @@ def _run(instants: Iterator[Instant], seconds: float, progress: Callable[[float,
     return _Run(Fall(last, diverged, tuple(openings), tuple(times)), worst, message)
 
 
-def _size(opening: Opening) -> float:
+def size(opening: Opening) -> float:
+    """Of an opening, the larger of its distance and its angle, m or rad."""
     return max(opening.position, opening.angle)
 
 
@@ -185,10 +192,7 @@ def _singular(motion: Motion, worst: Sequence[Instant]) -> Iterator[str]:
     """Whether the passive joints pass a pose at which the actuated ones do not hold them."""
     robot = motion.robot
     columns = {
-        index: name
-        for name, slot in robot.slots.items()
-        if name not in robot.actuation.joints
-        for index in range(slot.idx_v, slot.idx_v + slot.nv)
+        at: name for at, name in joint_of_velocity(robot).items() if name not in (ROOT_JOINT, *robot.actuation.joints)
     }
     if not columns or not robot.constraints:
         return
@@ -224,13 +228,20 @@ def _massless(motion: Motion, worst: Sequence[Instant]) -> Iterator[str]:
     ]
     values, directions, time = min(found, key=lambda each: float(each[0][0]))
     if values[0] < min(_NEAR * before, _LIGHT):
-        names = [name for name, slot in robot.slots.items() for _ in range(slot.nv)]
-        joints = _most(directions[:, 0], names)
+        joints = _most(directions[:, 0], list(joint_of_velocity(robot).values()))
         yield (
             f"at {time:.4g} s, {_quoted(joints)} {'move' if len(joints) > 1 else 'moves'} almost no mass: the smallest "
             f"eigenvalue of M is {values[0]:.1e}, {before:.1e} at the start; if they are one ball joint, describe it "
             "as 'spherical', else give the links between them their mass"
         )
+
+
+def joint_of_velocity(robot: Robot) -> dict[int, str]:
+    """The joint that has each velocity of a robot, in their order."""
+    found = dict.fromkeys(range(robot.model.nv), ROOT_JOINT)
+    for name, slot in robot.slots.items():
+        found.update(dict.fromkeys(range(slot.idx_v, slot.idx_v + slot.nv), name))
+    return found
 
 
 def _most(direction: Vector, names: Sequence[str]) -> list[str]:

@@ -73,7 +73,7 @@ class Instant:
         time: s.
         positions: In the coordinates of the model.
         velocities: In those of the model, rad/s or m/s.
-        openings: Of each relation that the file states, in the order of `ReadModel.openings`.
+        openings: Of each constraint of the file, in the order of `ReadModel.openings`.
         contact: Where bodies collide: two of them that overlap most, and by how much, m.
     """
 

@@ -12,13 +12,12 @@ from eurdf.dataclass import dataclass
 from eurdf.diagnostics.extras import install_command
 from eurdf.exceptions import MissingExtra
 from eurdf.exporting.coordinates import Coordinates, Vector
-from eurdf.exporting.verification.fall import Fall, Motion, listed, simulate
+from eurdf.exporting.verification.fall import Fall, Motion, joint_of_velocity, listed, simulate, size
 from eurdf.exporting.verification.finding import Finding
 from eurdf.exporting.verification.read_model import CannotRead, Exported, Range, ReadModel, without_armature
 from eurdf.kinematics.mass_matrix import mass_matrix
 from eurdf.kinematics.opening import Opening
 from eurdf.loss import Effect, Loss
-from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.robot import Robot
 from eurdf.writing.output_folder import write_files
 
@@ -44,7 +43,7 @@ class Verification:
         mass: Mass of all bodies as read, and of the robot, kg.
         mass_matrix_error: Largest difference of M at the start, relative to its largest entry. Armature that is listed
             as a loss is left out of the robot's.
-        openings: How far each relation of the file is open at the start.
+        openings: How far each closure, coupling and mimic joint of the file is open at the start.
         beyond_limits: Coordinates that are beyond their limits at the start.
         fall: The simulation; None if the program simulates nothing.
         findings: What is wrong; empty if nothing is.
@@ -129,13 +128,12 @@ def _compare(
     findings: list[Finding] = []
     masses = [body.inertia.mass for body in robot.mechanism.bodies if body.inertia is not None]
     mass = model.mass, sum(masses)
-    if abs(mass[0] - mass[1]) > model.mass_tolerance * mass[1]:
+    if abs(mass[0] - mass[1]) > model.mass_tolerance * (mass[1] or 1.0):
         findings.append(Finding(f"the mass is {mass[0]:g} kg, not {mass[1]:g} kg"))
     error, wrong = _mass_matrix(model, robot, losses, start)
     findings += wrong
     openings = model.openings(start)
-    size = {opening: max(opening.position, opening.angle) for opening in openings}
-    opened = sorted((each for each in openings if size[each] > model.tolerance), key=size.__getitem__, reverse=True)
+    opened = sorted((each for each in openings if size(each) > model.tolerance), key=size, reverse=True)
     if opened:
         message = f"constraints are open at the start: {listed([str(each) for each in opened])}"
         hint = "find a closed configuration with `eurdf assemble`, and state it as 'assembled'"
@@ -168,7 +166,7 @@ def _mass_matrix(model: ReadModel, robot: Robot, losses: Sequence[Loss], q: Vect
     if error <= model.mass_tolerance:
         return error, []
     at = int(np.diag(difference).argmax())
-    name = next((name for name, slot in robot.slots.items() if slot.idx_v <= at < slot.idx_v + slot.nv), ROOT_JOINT)
+    name = joint_of_velocity(robot)[at]
     causes = [f"on its diagonal, '{name}' differs most: {found[at, at]:.6g}, not {expected[at, at]:.6g}"]
     changed = [loss for loss in losses if loss.code == "export-inertia"]
     if changed:
