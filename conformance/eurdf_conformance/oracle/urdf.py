@@ -110,7 +110,7 @@ class Urdf:
 
 @dataclass(frozen=True)
 class Element:
-    """An element of the file. Names are as written: a prefix is a part of the name and needs no definition."""
+    """An element of the file. Names are as written, with their prefix."""
 
     name: str
     attributes: dict[str, str]
@@ -169,6 +169,8 @@ def parse(source: bytes) -> Element:
     parser.StartDoctypeDeclHandler = doctype
     try:
         parser.Parse(source, True)
+        # Namespaces need a parser that separates them from names, here by a character that XML does not allow.
+        expat.ParserCreate("utf-8", "\f").Parse(source, True)
     except expat.ExpatError as error:
         raise NotRead(str(error)) from error
     return top[0]
