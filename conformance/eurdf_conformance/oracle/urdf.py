@@ -11,6 +11,7 @@ from xml.parsers import expat
 import numpy as np
 
 from eurdf_conformance.oracle.not_read import NotRead
+from eurdf_conformance.oracle.plain_value import bounded, limit
 from eurdf_conformance.oracle.spatial import Array, from_rpy, pose, unit
 
 _NUMBER = re.compile(r"[-+]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][-+]?[0-9]+)?")
@@ -144,10 +145,15 @@ class Element:
         words = re.split(r"[ \t\r\n]+", self.text(name).strip(" \t\r\n"))
         if len(words) != len(default or [0.0]) or not all(_NUMBER.fullmatch(word) for word in words):
             raise NotRead(f"{name}={self.attributes[name]!r}")
-        found = np.array([float(word) for word in words])
-        if not np.all(np.isfinite(found)):
-            raise NotRead(f"{name}={self.attributes[name]!r} is not finite")
-        return found
+        return np.array([bounded(float(word)) for word in words])
+
+    def limit(self, name: str, default: float | None = None) -> float | None:
+        """An attribute with the number of a limit, EU-FIL-006."""
+        if default is not None and name not in self.attributes:
+            return default
+        if not _NUMBER.fullmatch(word := self.text(name).strip(" \t\r\n")) or not np.isfinite(float(word)):
+            raise NotRead(f"{name}={self.attributes[name]!r}")
+        return limit(name, float(word))
 
 
 def parse(source: bytes) -> Element:
@@ -263,7 +269,7 @@ def joint(element: Element) -> UrdfJoint:
     ranged = kind in ("revolute", "prismatic")
     if ranged and not limited:
         raise NotRead("a joint without the limit that it must have")
-    limit, dynamics = element.one("limit"), element.one("dynamics")
+    stated, dynamics = element.one("limit"), element.one("dynamics")
     follows = mimic(element.one("mimic")) if element.all("mimic") else None
     return UrdfJoint(
         name=element.text("name"),
@@ -272,10 +278,10 @@ def joint(element: Element) -> UrdfJoint:
         child=element.one("child").text("link"),
         origin=origin(element),
         axis=unit(axis),
-        lower=limit.number("lower", 0.0) if ranged else None,
-        upper=limit.number("upper", 0.0) if ranged else None,
-        velocity=limit.number("velocity") if limited else None,
-        effort=limit.number("effort") if limited else None,
+        lower=stated.limit("lower", 0.0) if ranged else None,
+        upper=stated.limit("upper", 0.0) if ranged else None,
+        velocity=stated.limit("velocity") if limited else None,
+        effort=stated.limit("effort") if limited else None,
         damping=dynamics.number("damping", 0.0) if spoken_of else 0.0,
         friction=dynamics.number("friction", 0.0) if spoken_of else 0.0,
         mimic=None if kind == "fixed" else follows,

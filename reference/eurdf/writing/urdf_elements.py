@@ -19,7 +19,7 @@ Color = tuple[float, float, float, float]
 
 NO_MATERIALS: Mapping[Color, str] = MappingProxyType({})
 
-#: What is written where there is no limit, but URDF wants a number: rad, m, their rates, N·m or N.
+#: What is written where there is no limit, but the file wants a number (EU-FIL-006): rad, m, their rates, N·m or N.
 LARGEST = sys.float_info.max
 
 _MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")

@@ -1,6 +1,7 @@
 // The URDF as a tree of links and joints, EU-URD-003 to -024. Mimic joints depend on the version: see mimic.mjs.
 
 import { fail } from "./invalid.mjs";
+import { bounded, divisor, lowerLimit, upperLimit } from "./numbers.mjs";
 import { fromOrigin } from "./spatial.mjs";
 
 const POSE = { origin: { numbers: { xyz: 3, rpy: 3 } } };
@@ -98,7 +99,10 @@ function lookUp(table, name) {
   return table && Object.hasOwn(table, name) ? table[name] : undefined;
 }
 
-/** The numbers of an attribute, or undefined if it is left out. */
+// What a number is, by the name of its attribute: within bounds, EU-FIL-005, or no limit, EU-FIL-006.
+const MEANING = { lower: lowerLimit, upper: upperLimit, effort: upperLimit, velocity: upperLimit, multiplier: divisor };
+
+/** The numbers of an attribute, null where a limit is none; undefined if it is left out. */
 function numbers(element, name, count, where) {
   const text = element.attributes.get(name);
   if (text === undefined) return undefined;
@@ -107,7 +111,7 @@ function numbers(element, name, count, where) {
   if (values.length !== count || !values.every(Number.isFinite)) {
     fail(`urdf: ${name}="${text}" of ${where} is not ${count} finite decimal number(s)`);
   }
-  return values;
+  return values.map((value) => (MEANING[name] ?? bounded)(value, `${name} of ${where}`));
 }
 
 function checkGeometry(element, where) {
@@ -180,7 +184,8 @@ function jointOf(element, name) {
     fail(`urdf: the axis of joint '${name}' is zero`);
   const [lower] = numbersOf(element, "limit", "lower", [0]);
   const [upper] = numbersOf(element, "limit", "upper", [0]);
-  if (WITH_RANGE.includes(type) && lower > upper) fail(`urdf: joint '${name}' has lower ${lower} > upper ${upper}`);
+  const isReversed = lower !== null && upper !== null && lower > upper;
+  if (WITH_RANGE.includes(type) && isReversed) fail(`urdf: joint '${name}' has lower ${lower} > upper ${upper}`);
   const [effort] = numbersOf(element, "limit", "effort", [null]);
   const [velocity] = numbersOf(element, "limit", "velocity", [null]);
   const [damping] = numbersOf(element, "dynamics", "damping", [0]);

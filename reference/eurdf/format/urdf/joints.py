@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from eurdf.diagnostics import did_you_mean
+from eurdf.format.numbers import is_too_small, lower_limit, too_small, upper_limit
 from eurdf.format.urdf.data import Limit, UrdfJoint
 from eurdf.format.urdf.elements import RANGED, RESERVED, URDF_JOINT_TYPES, UrdfReader, named
 from eurdf.mechanism.joint_type import JointType
@@ -104,7 +105,7 @@ def _limit(
         _report_negative(reader, element, effort=effort, velocity=velocity)
     if lower > upper and kind in RANGED:
         _report_reversed(reader, name, lower, upper, element)
-    return Limit(lower, upper, velocity, effort)
+    return Limit(lower_limit(lower), upper_limit(upper), upper_limit(velocity), upper_limit(effort))
 
 
 def _check_needs_no_limit(reader: UrdfReader, name: str | None, kind: JointType, joint: Element) -> None:
@@ -148,6 +149,9 @@ def _mimic(reader: UrdfReader, name: str | None, kind: JointType, element: Eleme
     """EU-URD-036: a fixed joint has no coordinate, so a `<mimic>` in it has no effect."""
     joint = reader.name(element, "joint")
     values = reader.single_numbers(element, _MIMIC)
+    if values is not None and is_too_small(values[0]):
+        reader.out_of_bounds(element, "multiplier", too_small(values[0]))
+        return None
     if joint is None or values is None:
         return None
     if kind is JointType.FIXED:
