@@ -14,6 +14,7 @@ from pathlib import Path
 
 from benchmarks.fuzz.case import KINDS, OUTCOME, case_of
 from benchmarks.fuzz.finding import Finding, minimized
+from benchmarks.fuzz.parsers import why_not
 from benchmarks.fuzz.watched import Watched
 
 #: Findings of one cause that are kept.
@@ -49,6 +50,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         from benchmarks.fuzz.guided import run
 
         return run(options.minutes, options.findings)
+    if options.kind == "parsers" and (reason := why_not()):
+        parser.error(reason)
     seed = secrets.randbelow(10**9) if options.seed is None else options.seed
     return campaign(seed, options.first, options.count, options.minutes * 60.0, options.findings, options.kind)
 

@@ -14,6 +14,7 @@ from typing import Any
 from benchmarks.fuzz.calls import call_of
 from benchmarks.fuzz.imports import FORMATS, import_of
 from benchmarks.fuzz.mutators import mutate_mesh
+from benchmarks.fuzz.parsers import BARE
 from benchmarks.fuzz.robots import Seed, seeds
 from benchmarks.fuzz.robots import case_of as robot_case
 
@@ -36,7 +37,7 @@ class Case:
     """What is tried.
 
     Attributes:
-        kind: ``robot``, ``mesh``, ``call``, or ``import-`` and the format of a file.
+        kind: ``robot``, ``mesh``, ``call``, ``parsers``, or ``import-`` and the format of a file.
         title: What was damaged, and how.
         files: Contents by name.
         path: The file to check and load, or to import; empty for a call.
@@ -70,8 +71,8 @@ def read_case(folder: Path) -> Case:
     return Case(said["kind"], said["title"], files, said["path"], said["call"])
 
 
-#: Kinds of cases, each with its share of ten.
-KINDS = {"robot": 5, "mesh": 2, "call": 2, "import": 1}
+#: Kinds of cases, each with its share of ten. That of no share needs Node.js, and is tried if it is asked for.
+KINDS = {"robot": 5, "mesh": 2, "call": 2, "import": 1, "parsers": 0}
 
 
 def case_of(seed: int, number: int, kind: str | None = None) -> Case:
@@ -79,6 +80,10 @@ def case_of(seed: int, number: int, kind: str | None = None) -> Case:
     chance = random.Random(f"{seed}:{number}")
     drawn = chance.choices(list(KINDS), list(KINDS.values()))[0]
     match kind or drawn:
+        case "parsers":
+            found = robot_case(seed, number, _robots())
+            files = {"robot.yaml": BARE if found.description is None else found.description, "robot.urdf": found.urdf}
+            return Case("parsers", found.title, files, "robot.yaml")
         case "robot":
             found = robot_case(seed, number, _robots())
             files = {"robot.urdf": found.urdf, "workbench.urdf": found.urdf}  # what the descriptions name

@@ -13,7 +13,19 @@ import yaml
 from lxml import etree
 
 NAN_FREE_NUMBERS = ("0", "-0.0", "1", "-1", "3", "1e-320", "1e-200", "1e-9", "1e-5", "1e5", "1e20", "1e155", "1e200")
-NUMBERS = (*NAN_FREE_NUMBERS, "1e308", "-1e308", "1.7976931348623157e308", "-1e-308", "3.141592653589793", "0.5")
+NUMBERS = (
+    *NAN_FREE_NUMBERS,
+    "1e15",
+    "-1.1e15",
+    "1e-15",
+    "9e-16",
+    "1e308",
+    "-1e308",
+    "1.7976931348623157e308",
+    "-1e-308",
+    "3.141592653589793",
+    "0.5",
+)
 NOT_NUMBERS = ("nan", "inf", "-inf", ".nan", ".inf", "1e400", "0x10", "1_000", "1,5", "", " ", "--1", "1e", "٣", "1 2")
 NAMES = (
     "", " ", "\t", "universe", "root_joint", "x-own", "é", "日本", "🤖", "a/b", "a b", "null", "~", "../robot.urdf",
@@ -56,8 +68,8 @@ YAML_BYTES = (
 )  # fmt: skip
 XML_BYTES = (
     b"<", b">", b"/>", b"</", b"<!--", b"-->", b"<![CDATA[", b"]]>", b"<?xml?>", b"<!DOCTYPE robot>", b"&amp;",
-    b"&x;", b"&#0;", b"&#x10FFFF;", b'"', b"'", b"=", b" ", b"\0", b"\xff", b"xmlns='u'", b"x:", b"nan", b"1e308",
-    b"-", b"0", b"<link name='l'/>", b"<joint>", b"${x}",
+    b"&x;", b"&#0;", b"&#x10FFFF;", b'"', b"'", b"=", b" ", b"\0", b"\xff", b"xmlns='u'", b" xmlns:x='u'", b"x:",
+    b":", b"xmlns:", b"nan", b"1e308", b"-", b"0", b"<link name='l'/>", b"<joint>", b"${x}",
 )  # fmt: skip
 
 

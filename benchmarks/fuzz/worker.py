@@ -22,6 +22,7 @@ from typing import IO, Any
 from benchmarks.fuzz.calls import try_call
 from benchmarks.fuzz.case import Case, case_of, read_case
 from benchmarks.fuzz.imports import try_import
+from benchmarks.fuzz.parsers import try_parsers
 from benchmarks.fuzz.robots import try_robot
 
 #: Processor time after which a step of a case is taken not to end, s.
@@ -57,6 +58,8 @@ def try_case(case: Case, folder: Path, number: int = 0) -> str:
         (folder / name).write_bytes(content)
     if case.kind.startswith("import-"):
         return try_import(folder / case.path, case.kind.removeprefix("import-"), clock=restart_clock)
+    if case.kind == "parsers":
+        return try_parsers(folder / case.path, folder / "robot.urdf", clock=restart_clock)
     return try_robot(folder / case.path, analyse=number % 4 == 0, clock=restart_clock)
 
 

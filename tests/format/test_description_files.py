@@ -26,7 +26,6 @@ from eurdf.mechanism.same_model import with_universal_joints
 from eurdf.mechanism.spanning_tree import rigid_roots
 from eurdf.pinocchio.robot import build_robot
 from eurdf.writing.description import DescriptionFiles, NotWritable, describe_mechanism
-from eurdf.writing.urdf_elements import LARGEST
 from support import by_hand
 from support.every_joint import write_every_joint
 from support.exported import random_robot
@@ -126,7 +125,7 @@ def test_limit_of_one_side_is_kept() -> None:
     back = read(describe_mechanism(replace(mechanism, joints=joints, configurations={})))
     for joint in back.joints:
         if joint.type in (JointType.CYLINDRICAL, JointType.HELICAL):
-            assert joint.properties.lower == (-LARGEST,) * len(joint.coordinates.names)
+            assert joint.properties.lower == (-np.inf,) * len(joint.coordinates.names)
             assert joint.properties.upper == (0.5,) * len(joint.coordinates.names)
 
 

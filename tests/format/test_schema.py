@@ -17,6 +17,7 @@ from pydantic import BaseModel, ValidationError
 
 from eurdf.diagnostics import Diagnostics
 from eurdf.format.conforms import compiled, conforms, schema_of
+from eurdf.format.numbers import LARGEST, SMALLEST
 from eurdf.format.read_extension import read_extension
 from eurdf.format.schema import FILES, Names, SchemaVersion, json_schema, main, schema_text
 from eurdf.format.version import Version
@@ -96,6 +97,8 @@ WHOLE["2.1"] = {
 
 #: What is put in place of a value.
 JUNK = [
+    1e16,
+    1e-16,
     None,
     True,
     False,
@@ -271,8 +274,9 @@ def test_model_and_schema_agree_after_one_edit(version: str) -> None:
 
 
 names = st.sampled_from(["hip", "knee", "x-own", "foot ball", "é", "universal"]) | st.text(min_size=1, max_size=4)
-numbers = st.integers(-9, 9) | st.floats(allow_nan=False, allow_infinity=False)
-magnitudes = st.integers(0, 9) | st.floats(0, allow_infinity=False)
+numbers = st.integers(-9, 9) | st.floats(-LARGEST, LARGEST)
+magnitudes = st.integers(0, 9) | st.floats(0, LARGEST)
+divisors = numbers.filter(lambda number: abs(number) >= SMALLEST)
 vectors = st.lists(numbers, min_size=3, max_size=3)
 own = st.dictionaries(st.sampled_from(["x-a", "x-"]), st.sampled_from(JUNK), max_size=1)
 
@@ -288,9 +292,10 @@ def one_or_several(number: st.SearchStrategy[Any], most: int) -> st.SearchStrate
 
 magnitude = one_or_several(magnitudes, 6)
 position = one_or_several(numbers, 6)
-limits = st.one_of(
-    mapping({"lower": position}, upper=position), mapping({"effort": magnitude}, velocity=magnitude, upper=position)
-)
+lower = one_or_several(st.floats(max_value=LARGEST, allow_nan=False, allow_infinity=False), 6)
+upper = one_or_several(st.floats(-LARGEST, allow_nan=False, allow_infinity=False), 6)
+most = one_or_several(st.floats(0, allow_infinity=False), 6)
+limits = st.one_of(mapping({"lower": lower}, upper=upper), mapping({"effort": most}, velocity=most, upper=upper))
 overrides = {"limits": limits, "damping": magnitude, "friction": magnitude, "armature": magnitude}
 pose = {"xyz": vectors, "rpy": vectors}
 axes = st.sampled_from(["xy", "xz", "yx", "yz", "zx", "zy"]) | st.lists(vectors, min_size=2, max_size=2)
@@ -353,8 +358,7 @@ DOCUMENTS: dict[str, st.SearchStrategy[dict[str, Any]]] = {
         closures=st.lists(closures, max_size=3),
         joints=st.dictionaries(names.filter(lambda name: not name.startswith("x-")), joints, max_size=3),
         actuators=st.lists(
-            names
-            | mapping({"joint": names}, gear_ratio=numbers.filter(lambda ratio: ratio != 0), rotor_inertia=magnitudes),
+            names | mapping({"joint": names}, gear_ratio=divisors, rotor_inertia=magnitudes),
             max_size=3,
         ),
         frames=st.lists(

@@ -706,7 +706,7 @@ def test_rounded_urdf_numbers_that_open_loops_are_named(advice) -> None:
         assert ("stay open by" in (found.hint or "")) == rounded
 
 
-@pytest.mark.parametrize("number", ["1e200", "-1e15"])
+@pytest.mark.parametrize("number", ["1e12", "-1e15"])
 def test_implausible_number_is_not_called_wrong_unit(tmp_path: Path, number: str) -> None:
     urdf = chain(joint("shoulder", "a", "b"), joint("elbow", "b", "c"), joint("wrist", "c", "d", xyz=f"0 0 {number}"))
     assert checked(tmp_path, urdf.replace('xyz="0.01 0 0"', f'xyz="0.01 0 0" rpy="0 0 {number}"', 1)) == []

@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 import json
+import shutil
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from benchmarks.fuzz import parsers
 from benchmarks.fuzz.campaign import keep, main
 from benchmarks.fuzz.case import Case, case_of, read_case
 from benchmarks.fuzz.finding import Finding, minimized
 from benchmarks.fuzz.watched import Outcome, Watched
+from eurdf_conformance.protocol.reply import rejected
+from support.node_packages import MODULES, why_not_installed
+
+MISSING = why_not_installed("yaml", "saxes")
 
 
 def test_seed_and_number_decide_a_case() -> None:
@@ -70,6 +77,34 @@ def test_case_that_only_waits_is_reported() -> None:
         assert worker.try_number(0, 0).word == "robot"
         worker._wall = 0.5
         assert worker.try_number(0, 3) == Outcome("hangs", "no answer in 0.5 s")
+
+
+@pytest.fixture
+def javascript(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """The parser in JavaScript, with the packages that it imports."""
+    folder = tmp_path / "javascript"
+    shutil.copytree(parsers.JAVASCRIPT, folder, ignore=shutil.ignore_patterns("node_modules"))
+    (folder / "node_modules").symlink_to(MODULES)
+    monkeypatch.setattr(parsers, "JAVASCRIPT", folder)
+    parsers.javascript.cache_clear()
+    yield
+    parsers.javascript().stop()
+    parsers.javascript.cache_clear()
+
+
+@pytest.mark.skipif(bool(MISSING), reason=MISSING)
+def test_parsers_agree_about_damaged_robots(tmp_path: Path, javascript: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    outcomes = set()
+    for number in range(60):
+        case = case_of(5, number, "parsers")
+        case.write(tmp_path)
+        outcomes.add(parsers.try_parsers(tmp_path / case.path, tmp_path / "robot.urdf"))
+    assert outcomes >= {"refused", "robot"}
+    monkeypatch.setattr(parsers.Reference, "load", lambda *_: rejected("no"))
+    (tmp_path / "robot.urdf").write_text('<robot name="r"><link name="l"/></robot>', encoding="utf-8")
+    (tmp_path / "robot.yaml").write_bytes(parsers.BARE)
+    with pytest.raises(AssertionError, match="only JavaScript reads it: no"):
+        parsers.try_parsers(tmp_path / "robot.yaml", tmp_path / "robot.urdf")
 
 
 class Picky:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from typing import Any
@@ -12,11 +11,10 @@ import numpy as np
 from eurdf.exporting.coordinates import rotation_matrix
 from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.pose import Pose
-from eurdf.writing.urdf_elements import LARGEST
 
 
 def unlike(one: Any, other: Any, tolerance: float = 1e-12, at: str = "") -> list[str]:
-    """The places where two values of the same kind differ by more than rounding; a limit of `LARGEST` is none."""
+    """The places where two values of the same kind differ by more than rounding."""
     if isinstance(one, Pose) and isinstance(other, Pose):
         R, S = rotation_matrix(one.quaternion), rotation_matrix(other.quaternion)
         return unlike([*one.xyz, *R.ravel().tolist()], [*other.xyz, *S.ravel().tolist()], tolerance, at)
@@ -40,8 +38,7 @@ def unlike(one: Any, other: Any, tolerance: float = 1e-12, at: str = "") -> list
             for place in unlike(*pair, tolerance, f"{at}[{getattr(pair[0], 'name', index)}]")
         ]
     if isinstance(one, float | int) and isinstance(other, float | int):
-        a, b = (math.copysign(math.inf, value) if abs(value) >= LARGEST else value for value in (one, other))
-        same = a == b or abs(a - b) <= tolerance * max(1.0, abs(a))
+        same = one == other or abs(one - other) <= tolerance * max(1.0, abs(one))
         return [] if same else [f"{at}: {one} and {other}"]
     return [] if one == other else [f"{at}: {one} and {other}"]
 

@@ -11,7 +11,7 @@ from eurdf_conformance.oracle.spatial import Array
 ClosureType = Literal["3d", "6d", "hinge", "distance"]
 
 #: One number for all coordinates or velocities of a joint, or one for each.
-PerNumber = list[float]
+PerNumber = list[float | None]
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -42,7 +43,7 @@ def properties(joint: Joint, actuator: Actuator | None) -> Properties:
     lower, upper = position_limits(joint)
     stated = {name: [*value] for name, value in joint.change.stated.items()}
 
-    def of(name: str, count: int, otherwise: list[float]) -> list[float]:
+    def of(name: str, count: int, otherwise: Any) -> Any:
         value = stated.get(name, otherwise)
         if len(value) == 1:
             value = value * count
@@ -93,11 +94,11 @@ def position_limits(joint: Joint) -> tuple[Limits, Limits]:
     if not joint.source:
         return [], []
     source = joint.source[0]
-    if source.type == "prismatic" and joint.type == "helical" and source.lower is not None and source.upper is not None:
+    if source.type == "prismatic" and joint.type == "helical":
         # They bound its length, h/2π θ, and so θ: they change places where h is negative.
         metre = 2.0 * np.pi / joint.pitch
-        low, high = sorted([float(source.lower * metre), float(source.upper * metre)])
-        return [low], [high]
+        low, high = [scaled(source.lower, metre)], [scaled(source.upper, metre)]
+        return (low, high) if metre > 0.0 else (high, low)
     kind = "l" if source.type == "prismatic" else "a"
     return (
         [source.lower if each == kind else None for each in kinds],

@@ -35,16 +35,46 @@ def text(value: Any) -> str:
     return value
 
 
+#: Largest size of a number, EU-FIL-005.
+LARGEST = 1e15
+
+#: For each limit the sign of the numbers that are none if they are beyond `LARGEST`, EU-FIL-006.
+NO_LIMIT = {
+    "lower": -1.0,
+    **dict.fromkeys(("upper", "velocity", "effort", "acceleration", "deceleration", "jerk"), 1.0),
+}
+
+
 def number(value: Any) -> float:
     """A number; a boolean is not one, EU-SCH-002."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise NotRead(f"{value!r} is no number")
-    return float(value)
+    return bounded(float(value))
+
+
+def bounded(value: float) -> float:
+    """A number that is not too large."""
+    if abs(value) > LARGEST:
+        raise NotRead(f"{value!r} is too large")
+    return value
+
+
+def limit(name: str, value: float) -> float | None:
+    """The number of a limit; None if it is so large that it is none."""
+    return None if value * NO_LIMIT[name] > LARGEST else bounded(value)
 
 
 def numbers(value: Any) -> list[float]:
     """A list of numbers, or a single number."""
     return [number(item) for item in value] if isinstance(value, list) else [number(value)]
+
+
+def limits(name: str, value: Any) -> list[float | None]:
+    """The numbers of a limit, a list or a single one."""
+    stated = value if isinstance(value, list) else [value]
+    if not all(type(item) in (int, float) for item in stated):
+        raise NotRead(f"{value!r} is no number")
+    return [limit(name, float(item)) for item in stated]
 
 
 def vector(value: Any) -> Array:

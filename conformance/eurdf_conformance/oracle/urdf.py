@@ -11,6 +11,7 @@ from xml.parsers import expat
 import numpy as np
 
 from eurdf_conformance.oracle.not_read import NotRead
+from eurdf_conformance.oracle.plain_value import NO_LIMIT, bounded, limit
 from eurdf_conformance.oracle.spatial import Array, from_quaternion, from_rpy, pose, unit
 
 _NUMBER = re.compile(r"[-+]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][-+]?[0-9]+)?")
@@ -111,7 +112,7 @@ class Urdf:
 
 @dataclass(frozen=True)
 class Element:
-    """An element of the file. Names are as written: a prefix is a part of the name and needs no definition."""
+    """An element of the file. Names are as written, with their prefix."""
 
     name: str
     attributes: dict[str, str]
@@ -147,10 +148,15 @@ class Element:
         words = re.split(r"[ \t\r\n]+", self.text(name).strip(" \t\r\n"))
         if len(words) != len(default or [0.0]) or not all(_NUMBER.fullmatch(word) for word in words):
             raise NotRead(f"{name}={self.attributes[name]!r}")
-        found = np.array([float(word) for word in words])
-        if not np.all(np.isfinite(found)):
-            raise NotRead(f"{name}={self.attributes[name]!r} is not finite")
-        return found
+        return np.array([bounded(float(word)) for word in words])
+
+    def limit(self, name: str, default: float | None = None) -> float | None:
+        """An attribute with the number of a limit, EU-FIL-006."""
+        if default is not None and name not in self.attributes:
+            return default
+        if not _NUMBER.fullmatch(word := self.text(name).strip(" \t\r\n")) or not np.isfinite(float(word)):
+            raise NotRead(f"{name}={self.attributes[name]!r}")
+        return limit(name, float(word))
 
 
 def parse(source: bytes) -> Element:
@@ -174,6 +180,8 @@ def parse(source: bytes) -> Element:
     parser.StartDoctypeDeclHandler = doctype
     try:
         parser.Parse(source, True)
+        # Namespaces need a parser that separates them from names, here by a character that XML does not allow.
+        expat.ParserCreate("utf-8", "\f").Parse(source, True)
     except expat.ExpatError as error:
         raise NotRead(str(error)) from error
     return top[0]
@@ -275,7 +283,7 @@ def joint(element: Element) -> UrdfJoint:
     ranged = kind in ("revolute", "prismatic")
     if ranged and not limited:
         raise NotRead("a joint without the limit that it must have")
-    limit = limits(element.one("limit"), ranged) if element.all("limit") else {}
+    stated = limits(element.one("limit"), ranged) if element.all("limit") else {}
     dynamics = element.one("dynamics")
     follows = mimic(element.one("mimic")) if element.all("mimic") else None
     return UrdfJoint(
@@ -285,24 +293,23 @@ def joint(element: Element) -> UrdfJoint:
         child=element.one("child").text("link"),
         origin=origin(element),
         axis=unit(axis),
-        lower=limit.get("lower") if ranged else None,
-        upper=limit.get("upper") if ranged else None,
-        velocity=limit.get("velocity") if limited else None,
-        effort=limit.get("effort") if limited else None,
+        lower=stated.get("lower") if ranged else None,
+        upper=stated.get("upper") if ranged else None,
+        velocity=stated.get("velocity") if limited else None,
+        effort=stated.get("effort") if limited else None,
         damping=dynamics.number("damping", 0.0) if spoken_of else 0.0,
         friction=dynamics.number("friction", 0.0) if spoken_of else 0.0,
         mimic=None if kind == "fixed" else follows,
     )
 
 
-def limits(element: Element, ranged: bool) -> dict[str, float]:
+def limits(element: Element, ranged: bool) -> dict[str, float | None]:
     """The limits that a `limit` states, with the defaults of its version."""
     if element.version < 1.2:
-        found = {name: element.number(name, 0.0) for name in ("lower", "upper")}
-        return found | {name: element.number(name) for name in ("effort", "velocity")}
-    names = ("lower", "upper", "effort", "velocity", "acceleration", "deceleration", "jerk")
+        found = {name: element.limit(name, 0.0) for name in ("lower", "upper")}
+        return found | {name: element.limit(name) for name in ("effort", "velocity")}
     needed = ("lower", "upper") if ranged else ()
-    return {name: element.number(name) for name in names if name in element.attributes or name in needed}
+    return {name: element.limit(name) for name in NO_LIMIT if name in element.attributes or name in needed}
 
 
 def mimic(element: Element) -> Mimic:

@@ -19,7 +19,7 @@ from eurdf_conformance.oracle.description import (
 )
 from eurdf_conformance.oracle.not_read import NotRead
 from eurdf_conformance.oracle.own import own_data
-from eurdf_conformance.oracle.plain_value import mapping, number, numbers, sequence, text, vector
+from eurdf_conformance.oracle.plain_value import limits, mapping, number, numbers, sequence, text, vector
 from eurdf_conformance.oracle.spatial import Array, from_rpy, pose, unit
 
 KEYS = (
@@ -196,7 +196,11 @@ def change(value: Any, version: Version) -> Change:
         axes=axes(members.get("axes")) if kind == "universal" else (),
         pitch=number(members.get("pitch")) if kind == "helical" else 0.0,
         merges=tuple(text(name) for name in sequence(members.get("merges", []))),
-        stated={name: numbers(stated[name]) for name in (*LIMITS, *PROPERTIES[1:], *SPRING) if name in stated},
+        stated={
+            name: limits(name, stated[name]) if name in LIMITS else [*numbers(stated[name])]
+            for name in (*LIMITS, *PROPERTIES[1:], *SPRING)
+            if name in stated
+        },
         freed="mimic" in members,
     )
 

@@ -181,7 +181,7 @@ joint-kind                 EU-JNT-005 error   The type of a joint does not allow
 joint-axis-zero            EU-JNT-006 error   An axis of a universal joint is zero.
 joint-axes-parallel        EU-JNT-007 error   Two axes of a universal joint, or of joints to merge, are parallel.
 joint-pitch-zero           EU-JNT-008 error   The pitch of a helical joint is zero.
-derived-not-finite         EU-INR-007 error   A quantity that follows from the numbers of the files is not finite.
+number-out-of-bounds       EU-FIL-005 error   A number is larger or smaller than the bounds allow.
 joint-property             EU-JNT-009 error   A property does not fit the type of the joint.
 joint-limits-reversed      EU-JNT-010 error   A lower limit is above the upper limit.
 merge-not-chain            EU-JNT-011 error   Joints to merge are not a chain of three rotary joints.

@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import Field, Tag
 
 from eurdf.format import version2
-from eurdf.format.field import MayLack, MovingJointName, StrictMapping, either
+from eurdf.format.field import MayLack, MovingJointName, Number, StrictMapping, either
 from eurdf.format.version2 import Name
 
 
@@ -20,7 +20,7 @@ class Added(StrictMapping):
         description="Name of the actuator, unique in the file; that of the joint if left out.",
         examples=["left_knee"],
     )
-    control: MayLack[Annotated[list[float], Field(min_length=2, max_length=2)]] = Field(
+    control: MayLack[Annotated[list[Number], Field(min_length=2, max_length=2)]] = Field(
         default=None,
         title="Control range",
         description="Smallest and largest torque or force of the motor, at the joint, N·m or N.",

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping
 from functools import cache
+from math import inf
 from typing import Any
 
 from eurdf.collection import schema_folder
@@ -28,7 +29,7 @@ _TYPES: Mapping[str, tuple[type, ...]] = {
 _COMBINED = frozenset({"$ref", "const", "enum", "oneOf"})
 _CONSTRAINTS = {
     "string": frozenset({"minLength", "pattern"}),
-    "number": frozenset({"minimum", "not"}),
+    "number": frozenset({"maximum", "minimum", "not"}),
     "boolean": frozenset[str](),
     "array": frozenset({"items", "minItems", "maxItems"}),
     "object": frozenset(
@@ -144,11 +145,13 @@ class _Compiler:
         return lambda value: type(value) is str and is_own_key(value)
 
     def _number(self, schema: Mapping[str, Any]) -> Check:
-        if "minimum" not in schema and "not" not in schema:
+        if schema.keys().isdisjoint(_CONSTRAINTS["number"]):
             return _is_number
-        least = schema.get("minimum", float("-inf"))
-        excluded = schema.get("not", {"const": None})["const"]
-        return lambda value: type(value) in (float, int) and value >= least and value != excluded
+        least, most = schema.get("minimum", -inf), schema.get("maximum", inf)
+        if "not" not in schema:
+            return lambda value: type(value) in (float, int) and least <= value <= most
+        below, above = schema["not"]["exclusiveMinimum"], schema["not"]["exclusiveMaximum"]
+        return lambda value: type(value) in (float, int) and (least <= value <= below or above <= value <= most)
 
     def _boolean(self, schema: Mapping[str, Any]) -> Check:
         return lambda value: type(value) is bool

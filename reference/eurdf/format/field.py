@@ -5,11 +5,20 @@
 from collections.abc import Callable
 from typing import Annotated, Any, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+)
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 from typing_extensions import TypeAliasType
 
+from eurdf.format.numbers import LARGEST, SMALLEST, is_too_small, too_small
 from eurdf.format.own_key import OWN_KEY, TWO_NAMES, is_own_key
 
 #: Strict: no string is a number, a bool is no number, an int is one. Built at first use, since one run mostly
@@ -90,11 +99,23 @@ def either(form: Callable[[Any], str | None], expected: str) -> Discriminator:
     return Discriminator(form, custom_error_type="wrong-type", custom_error_message=f"must be {expected}")
 
 
-def refuse_zero(number: float) -> float:
-    """Pass on the number, which must not be 0."""
+def _refuse_zero(number: float) -> float:
     if number == 0.0:
         raise PydanticCustomError("out-of-range", "must not be 0")
+    if is_too_small(number):
+        raise PydanticCustomError("number-out-of-bounds", "is {what}", {"what": too_small(number)})
     return number
+
+
+#: A number, EU-FIL-005.
+Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
+
+#: One that others are divided by.
+NonZero = Annotated[
+    Number,
+    AfterValidator(_refuse_zero),
+    Field(json_schema_extra={"not": {"exclusiveMinimum": -SMALLEST, "exclusiveMaximum": SMALLEST}}),
+]
 
 
 _T = TypeVar("_T")

@@ -16,6 +16,7 @@ from eurdf.format.extension import (
     FrameReference,
     JointEntry,
 )
+from eurdf.format.numbers import lower_limit, upper_limit
 from eurdf.format.own_key import is_own_key, may_have_own_keys
 from eurdf.mechanism.constraint import Compliance
 from eurdf.mechanism.pose import Vector3
@@ -25,8 +26,11 @@ from eurdf.reading.yaml_reader import YamlDocument
 _HERE: Vector3 = (0.0, 0.0, 0.0)
 _UNIT = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
-#: Keys of a joint, and of its limits, whose values are numbers for each of its coordinates or velocities.
-_NUMBERS = frozenset({"lower", "upper", "velocity", "effort", "damping", "friction", "armature", "stiffness", "rest"})
+#: Keys of a joint whose values are numbers for each of its coordinates or velocities.
+_PROPERTIES = frozenset({"damping", "friction", "armature", "stiffness", "rest"})
+
+#: What a number of a limit means, by its key.
+_LIMITS = {"lower": lower_limit, "upper": upper_limit, "velocity": upper_limit, "effort": upper_limit}
 
 #: A part of the file, as plain data.
 _Mapping = Mapping[str, Any]
@@ -173,7 +177,11 @@ def _joint(name: str, joint: Any) -> JointEntry:
     if isinstance(joint, str):
         return JointEntry(pointer, name, type=joint)  # type: ignore[arg-type]
     axes = joint.get("axes", ())
-    stated = (*joint.items(), *joint.get("limits", {}).items())
+    numbers = {key: _numbers(value) for key, value in joint.items() if key in _PROPERTIES}
+    for key, value in joint.get("limits", {}).items():
+        if key in _LIMITS:
+            limit, stated = _LIMITS[key], _numbers(value)
+            numbers[key] = tuple(map(limit, stated)) if isinstance(stated, tuple) else limit(stated)
     return JointEntry(
         pointer,
         name,
@@ -182,7 +190,7 @@ def _joint(name: str, joint: Any) -> JointEntry:
         pitch=float(joint.get("pitch", 0.0)),
         merges=tuple(joint.get("merges", ())),
         freed=joint.get("mimic") is False,
-        **{key: _numbers(value) for key, value in stated if key in _NUMBERS},  # type: ignore[arg-type]
+        **numbers,  # type: ignore[arg-type]
     )
 
 
@@ -209,8 +217,8 @@ def _number(value: float | None) -> float | None:
     return None if value is None else float(value)
 
 
-def _numbers(value: float | list[float] | None) -> float | tuple[float, ...] | None:
-    return tuple(map(float, value)) if isinstance(value, list) else _number(value)
+def _numbers(value: float | list[float]) -> float | tuple[float, ...]:
+    return tuple(map(float, value)) if isinstance(value, list) else float(value)
 
 
 def _own_data(value: Any, pointer: Pointer) -> Iterator[tuple[Pointer, object]]:

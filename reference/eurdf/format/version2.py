@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import AfterValidator, ConfigDict, Field, GetJsonSchemaHandler, Tag, model_validator
+from pydantic import ConfigDict, Field, GetJsonSchemaHandler, Tag, model_validator
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError
 from typing_extensions import Self, TypeAliasType
@@ -17,17 +17,19 @@ from eurdf.format.field import (
     LinkName,
     MayLack,
     MovingJointName,
+    NonZero,
+    Number,
     StrictMapping,
     UrdfJointName,
     either,
-    refuse_zero,
 )
+from eurdf.format.numbers import LARGEST
 
 Name = Annotated[str, Field(min_length=1)]
-NonNegative = Annotated[float, Field(ge=0)]
+NonNegative = Annotated[float, Field(ge=0, le=LARGEST)]
 
 # Named, so that the schema holds each of them once.
-Vector = TypeAliasType("Vector", Annotated[list[float], Field(min_length=3, max_length=3)])
+Vector = TypeAliasType("Vector", Annotated[list[Number], Field(min_length=3, max_length=3)])
 
 
 def _number_form(value: Any) -> str | None:
@@ -41,8 +43,8 @@ _NUMBERS = either(_number_form, "a number or a list of numbers")
 PerCoordinate = TypeAliasType(
     "PerCoordinate",
     Annotated[
-        Annotated[float, Tag("one number")]
-        | Annotated[list[float], Field(min_length=1, max_length=6), Tag("list of numbers")],
+        Annotated[Number, Tag("one number")]
+        | Annotated[list[Number], Field(min_length=1, max_length=6), Tag("list of numbers")],
         _NUMBERS,
     ],
 )
@@ -54,11 +56,40 @@ NonNegativePerVelocity = TypeAliasType(
         _NUMBERS,
     ],
 )
+
+# EU-FIL-006: limits have no bound on the side where they do not limit.
+_Lower = Annotated[float, Field(le=LARGEST)]
+_Upper = Annotated[float, Field(ge=-LARGEST)]
+_Largest = Annotated[float, Field(ge=0)]
+LowerLimit = TypeAliasType(
+    "LowerLimit",
+    Annotated[
+        Annotated[_Lower, Tag("one number")]
+        | Annotated[list[_Lower], Field(min_length=1, max_length=6), Tag("list of numbers")],
+        _NUMBERS,
+    ],
+)
+UpperLimit = TypeAliasType(
+    "UpperLimit",
+    Annotated[
+        Annotated[_Upper, Tag("one number")]
+        | Annotated[list[_Upper], Field(min_length=1, max_length=6), Tag("list of numbers")],
+        _NUMBERS,
+    ],
+)
+LimitPerVelocity = TypeAliasType(
+    "LimitPerVelocity",
+    Annotated[
+        Annotated[_Largest, Tag("one number")]
+        | Annotated[list[_Largest], Field(min_length=1, max_length=6), Tag("list of numbers")],
+        _NUMBERS,
+    ],
+)
 Coordinates = TypeAliasType(
     "Coordinates",
     Annotated[
-        Annotated[float, Tag("one number")]
-        | Annotated[list[float], Field(min_length=1, max_length=7), Tag("list of numbers")],
+        Annotated[Number, Tag("one number")]
+        | Annotated[list[Number], Field(min_length=1, max_length=7), Tag("list of numbers")],
         _NUMBERS,
     ],
 )
@@ -191,28 +222,28 @@ class Limits(SaysSomething):
     one_of: ClassVar[tuple[str, ...]] = ("lower", "upper", "velocity", "effort")
     model_config = ConfigDict(title="Limits")
 
-    lower: MayLack[PerCoordinate] = Field(
+    lower: MayLack[LowerLimit] = Field(
         default=None,
         title="Lower limit",
-        description="Smallest position, rad or m.",
+        description="Smallest position, rad or m; below -1e15 none.",
         examples=[-1.57, [-0.5, -0.3]],
     )
-    upper: MayLack[PerCoordinate] = Field(
+    upper: MayLack[UpperLimit] = Field(
         default=None,
         title="Upper limit",
-        description="Largest position, rad or m.",
+        description="Largest position, rad or m; above 1e15 none.",
         examples=[1.57, [0.5, 0.3]],
     )
-    velocity: MayLack[NonNegativePerVelocity] = Field(
+    velocity: MayLack[LimitPerVelocity] = Field(
         default=None,
         title="Velocity limit",
-        description="Largest speed, rad/s or m/s, not negative.",
+        description="Largest speed, rad/s or m/s, not negative; above 1e15 none.",
         examples=[12.0, [8, 8]],
     )
-    effort: MayLack[NonNegativePerVelocity] = Field(
+    effort: MayLack[LimitPerVelocity] = Field(
         default=None,
         title="Effort limit",
-        description="Largest torque or force, N·m or N, not negative.",
+        description="Largest torque or force, N·m or N, not negative; above 1e15 none.",
         examples=[80.0, [40, 40]],
     )
 
@@ -314,7 +345,7 @@ class Helical(JointProperties):
     type: Literal["helical"] = Field(
         title="Type", description="A screw: turns about the URDF joint's axis and moves along it.", examples=["helical"]
     )
-    pitch: float = Field(
+    pitch: Number = Field(
         title="Pitch",
         description="Advance along the axis, m per revolution; positive for a right-handed screw.",
         examples=[0.005],
@@ -377,13 +408,12 @@ class Geared(StrictMapping):
     model_config = ConfigDict(title="Actuator with a gear")
 
     joint: MovingJointName = Field(title="Joint", description="The actuated joint.", examples=["motor_knee"])
-    gear_ratio: MayLack[Annotated[float, AfterValidator(refuse_zero)]] = Field(
+    gear_ratio: MayLack[NonZero] = Field(
         default=None,
         title="Gear ratio",
         description="Motor revolutions per revolution of the joint (per metre for a sliding joint), not 0; negative"
         " where they turn in opposite senses.",
         examples=[50],
-        json_schema_extra={"not": {"const": 0}},
     )
     rotor_inertia: MayLack[NonNegative] = Field(
         default=None,

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, ConfigDict, Field, Tag
+from pydantic import ConfigDict, Field, Tag
 
 from eurdf.format import actuator2_1, joint2_1, version2
 from eurdf.format.compliance import Compliance, Compliant
-from eurdf.format.field import AtLeastTwoByName, ByName, StrictMapping, either, refuse_zero
+from eurdf.format.field import AtLeastTwoByName, ByName, NonZero, Number, StrictMapping, either
+from eurdf.format.numbers import LARGEST
 from eurdf.format.version2 import FrameReference, Name, Vector, Version2
 
 #: Smallest length of a distance closure, m.
@@ -83,7 +84,7 @@ class Distance(Compliant, _AddedClosure):
         " rod (1 row, m).",
         examples=["distance"],
     )
-    length: Annotated[float, Field(ge=LEAST_LENGTH)] = Field(
+    length: Annotated[float, Field(ge=LEAST_LENGTH, le=LARGEST)] = Field(
         title="Length", description="Distance between the origins of A and B, m, at least 0.0001.", examples=[0.155]
     )
 
@@ -109,9 +110,6 @@ AnyClosure = Annotated[
 ]
 
 
-_Coefficient = Annotated[float, AfterValidator(refuse_zero), Field(json_schema_extra={"not": {"const": 0}})]
-
-
 class Coupling(StrictMapping):
     """A linear relation of joint coordinates."""
 
@@ -120,13 +118,13 @@ class Coupling(StrictMapping):
     name: Name = Field(
         title="Name", description="Name of the coupling, unique among closures and couplings.", examples=["knee_gear"]
     )
-    joints: AtLeastTwoByName[_Coefficient] = Field(
+    joints: AtLeastTwoByName[NonZero] = Field(
         title="Joints",
         description="By joint, its coefficient, not 0: the coordinates (rad, m) times the coefficients add up to"
         " 'offset'. Two or more revolute, continuous, prismatic or helical joints.",
         examples=[{"motor_1": 0.5, "motor_2": 0.5, "knee": -1}],
     )
-    offset: float = Field(
+    offset: Number = Field(
         default=0.0,
         title="Offset",
         description="What the coordinates times the coefficients add up to, in the unit of these products.",

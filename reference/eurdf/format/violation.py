@@ -25,6 +25,7 @@ from eurdf.format.misplaced import (
     key_outside_hint,
 )
 from eurdf.format.near import near
+from eurdf.format.numbers import HINT, LARGEST, too_large
 from eurdf.format.version import VERSION2_1, Version
 from eurdf.format.version1 import Version1
 from eurdf.format.version2 import FROM_VERSION1, JOINT_TYPES, Version2
@@ -256,6 +257,8 @@ def _diagnostic(
             items = "item" if bound.endswith(" 1") else "items"
             message = f"{name} must have {bound} {items}, not {context['actual_length']}"
             return Diagnostic("wrong-length", message, place)
+        case "less_than_equal" | "greater_than_equal" if abs(context.get("le", context.get("ge"))) == LARGEST:
+            return Diagnostic("number-out-of-bounds", f"{name} is {too_large(value)}", place, HINT)
         case "greater_than_equal":
             message = f"{name} must be at least {context['ge']:g}, not {described(value)}"
             return Diagnostic("out-of-range", message, place)
@@ -275,6 +278,8 @@ def _diagnostic(
             return Diagnostic("missing-key", f"{name} {violation.message}", present)
         case "missing-key" | "wrong-value" | "out-of-range" as code:
             return Diagnostic(code, f"{name} {violation.message}", place)
+        case "number-out-of-bounds" as code:
+            return Diagnostic(code, f"{name} {violation.message}", place, HINT)
         case "wrong-type":
             must = violation.message
         case _:

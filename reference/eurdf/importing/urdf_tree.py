@@ -28,7 +28,6 @@ from eurdf.mesh_files.reader import RefusedFile
 from eurdf.reading.resource import FileFinder
 from eurdf.reading.source import Source, read_source
 from eurdf.reading.xml_reader import read_xml
-from eurdf.writing.urdf_elements import LARGEST
 
 #: Losses of every dialect.
 URDF_LOSSES = (
@@ -169,7 +168,7 @@ def read_tree(
         replace(body, visuals=tuple(map(copied, body.visuals)), collisions=tuple(map(copied, body.collisions)))
         for body in mechanism.bodies
     )
-    joints = map(_unlimited, mechanism.joints)
+    joints = map(_continuous, mechanism.joints)
     mechanism = replace(mechanism, bodies=bodies, joints=tuple(joints if change is None else map(change, joints)))
     for element in root:
         if isinstance(element.tag, str) and local(element) not in (*_URDF, *known):
@@ -181,20 +180,12 @@ def read_tree(
 _URDF = ("link", "joint", "material", "transmission")
 
 
-def _unlimited(joint: Joint) -> Joint:
-    """The joint, with no limit where the file has the largest number."""
-    properties = joint.properties
-    changes = {
-        name: tuple(math.copysign(math.inf, value) if abs(value) >= LARGEST else value for value in values)
-        for name in ("lower", "upper", "velocity", "effort")
-        if (values := getattr(properties, name))
-    }
-    properties = replace(properties, **changes)
-    limits = (*properties.lower, *properties.upper)
-    kind = joint.type
-    if kind is JointType.REVOLUTE and not any(map(math.isfinite, limits)):
-        kind = JointType.CONTINUOUS
-    return replace(joint, type=kind, properties=properties)
+def _continuous(joint: Joint) -> Joint:
+    """The joint, continuous if it is revolute and has no position limits."""
+    limits = (*joint.properties.lower, *joint.properties.upper)
+    if joint.type is not JointType.REVOLUTE or any(map(math.isfinite, limits)):
+        return joint
+    return replace(joint, type=JointType.CONTINUOUS)
 
 
 def _actuated(mechanism: Mechanism, root: etree._Element, elements: Elements, losses: Losses) -> Mechanism:

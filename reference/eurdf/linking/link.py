@@ -14,9 +14,9 @@ from eurdf.linking.actuators import link_actuators, with_motor
 from eurdf.linking.closures import link_closures
 from eurdf.linking.configurations import link_configurations
 from eurdf.linking.couplings import link_couplings
-from eurdf.linking.finiteness import check_finite
 from eurdf.linking.frame_names import FrameNames
 from eurdf.linking.freeing import freed_joints
+from eurdf.linking.mimic_chains import check_chains
 from eurdf.linking.ranges import check_ranges
 from eurdf.linking.replacement import Joints, replace_joints
 from eurdf.linking.urdf_tree import bodies_of, joint_of
@@ -78,7 +78,7 @@ def link(
         _reserve_root_joint(urdf, diagnostics)
     _refuse_too_large(mechanism, urdf, extension, diagnostics)
     if diagnostics.error_count == before:
-        check_finite(mechanism, urdf, extension, diagnostics)
+        check_chains(mechanism, urdf, diagnostics)
     return None if diagnostics.error_count > before else mechanism
 
 

@@ -10,6 +10,7 @@ from operator import attrgetter
 
 from eurdf.diagnostics import Hint, did_you_mean
 from eurdf.format.extension import JointEntry, NewType
+from eurdf.format.numbers import HINT, is_too_small, too_small
 from eurdf.format.urdf.data import Urdf
 from eurdf.linking.merging import PARALLEL, NotMergeable, check_chain, find_chains, fixed, merge
 from eurdf.mechanism.body import Body
@@ -377,46 +378,28 @@ class _Replacement:
         return self._spread(joint, JointType.CYLINDRICAL, joint.axes, limits)
 
     def helical(self, joint: Joint) -> Joint | None:
-        """EU-JNT-008, EU-JNT-029: a helix has a pitch; what the URDF says of a slide holds of the screw's angle.
-
-        EU-INR-007: the limits, damping and friction of the angle are finite.
-        """
+        """EU-JNT-008, EU-JNT-029: a helix has a pitch; what the URDF says of a slide holds of the screw's angle."""
         pitch = self.entry.pitch
         if pitch == 0.0:
             self.report("joint-pitch-zero", f"the pitch of helical joint '{joint.name}' is 0", "pitch")
             return None
+        if is_too_small(pitch):
+            message = f"the pitch of helical joint '{joint.name}' is {too_small(pitch)}"
+            self.report("number-out-of-bounds", message, "pitch", hint=HINT)
+            return None
         properties = joint.properties
         if joint.type is JointType.PRISMATIC:
             lead = pitch / (2.0 * math.pi)
-            limits = (
-                *(*properties.lower, *properties.upper, *properties.velocity),
-                *(*properties.acceleration, *properties.deceleration, *properties.jerk),
-            )
-            largest = max((abs(limit) for limit in limits if math.isfinite(limit)), default=0.0)
-            if lead == 0.0 or not math.isfinite(largest / lead):
-                message = f"a limit of helical joint '{joint.name}', rad, is not finite: its pitch is {pitch:g} m"
-                self.report("derived-not-finite", message, "pitch", hint="write the advance per revolution, in m")
-                return None
             # No negative zero, where the pitch is negative.
             lower, upper = sorted((properties.lower[0] / lead + 0.0, properties.upper[0] / lead + 0.0))
-            turning = {
-                "effort limit": (properties.effort[0], properties.effort[0] * abs(lead)),
-                "damping": (properties.damping[0], properties.damping[0] * lead * lead),
-                "friction": (properties.friction[0], properties.friction[0] * abs(lead)),
-            }
-            for what, (of_slide, of_angle) in turning.items():
-                if math.isfinite(of_slide) and not math.isfinite(of_angle):
-                    message = f"the {what} of helical joint '{joint.name}' is not finite: its pitch is {pitch:g} m"
-                    self.report("derived-not-finite", message, "pitch", hint="write the advance per revolution, in m")
-                    return None
             properties = replace(
                 properties,
                 lower=(lower,),
                 upper=(upper,),
                 velocity=(properties.velocity[0] / abs(lead),),
-                effort=(turning["effort limit"][1],),
-                damping=(turning["damping"][1],),
-                friction=(turning["friction"][1],),
+                effort=(properties.effort[0] * abs(lead),),
+                damping=(properties.damping[0] * lead * lead,),
+                friction=(properties.friction[0] * abs(lead),),
                 acceleration=tuple(limit / abs(lead) for limit in properties.acceleration),
                 deceleration=tuple(limit / abs(lead) for limit in properties.deceleration),
                 jerk=tuple(limit / abs(lead) for limit in properties.jerk),

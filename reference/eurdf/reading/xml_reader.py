@@ -8,7 +8,7 @@ from lxml import etree
 
 from eurdf.diagnostics import FileError, Place
 from eurdf.reading.source import FILE_LIMIT, Source, short, too_large
-from eurdf.reading.xml_syntax import DEPTH_LIMIT, NAMESPACE_ERRORS, refused, syntax_error
+from eurdf.reading.xml_syntax import ATTRIBUTE, DEPTH_LIMIT, HARMLESS_ERRORS, refused, syntax_error
 
 #: Tags and attributes that a file may have: what takes memory is their number.
 TAG_LIMIT = 1_000_000
@@ -23,8 +23,6 @@ _DECLARED_ENCODING = re.compile(r"""<\?xml\s[^>]*?\sencoding\s*=\s*(["'])(.*?)\1
 
 #: Some of what may precede a DOCTYPE: a match keeps memory for each repetition, so it has a limited number of them.
 _BEFORE_DOCTYPE = re.compile(r"(?:[ \t\r\n]+|<\?.*?\?>|<!--.*?-->){1,1000}", re.DOTALL)
-
-_ATTRIBUTE = re.compile(r"""\s*([^\s=/>]+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
 
 #: In a well-formed file without DOCTYPE: ``<`` and a name begin an element, the rest is skipped.
 _MARKUP = re.compile(r"<(?:!--.*?-->|!\[CDATA\[.*?\]\]>|\?.*?\?>|/|([^\s/>]+))", re.DOTALL)
@@ -61,7 +59,7 @@ class XmlDocument:
         name = _written_name(element, attribute)
         pointer += "/@" + name
         end = after_name
-        while found := _ATTRIBUTE.match(self.source.text, end):
+        while found := ATTRIBUTE.match(self.source.text, end):
             if found[1] == name:
                 return self.source.place(*found.span(2 if found[2] is not None else 3), pointer)
             end = found.end()
@@ -126,9 +124,8 @@ def read_xml(source: Source) -> XmlDocument:
         root = _read_unbounded(source)
     if source.text.rfind("xmlns") >= 0:  # from the end, which takes a third of the time of `in`
         for element in root.iter("{*}*"):
-            local = element.tag.rpartition("}")[2]
-            if element.prefix is None and ":" not in local:  # which lxml would not take for a name
-                element.tag = local
+            if element.prefix is None:
+                element.tag = element.tag.rpartition("}")[2]
     return XmlDocument(source, root)
 
 
@@ -144,7 +141,7 @@ def _read_unbounded(source: Source) -> etree._Element:
         wrong = syntax_error(source, error)
         if wrong is not None:
             raise wrong from None
-        root = _read_with_namespace_errors(source)
+        root = _read_with_harmless_errors(source)
     if len(source.data) > ATTRIBUTE_LIMIT:
         _refuse_long_attribute(source, root)
     if _TOO_DEEP(root) and (wrong := syntax_error(source)) is not None:
@@ -171,12 +168,12 @@ def _parser(recover: bool = False, bounded: bool = False) -> etree.XMLParser:
 _BOUNDED = _parser(bounded=True)
 
 
-def _read_with_namespace_errors(source: Source) -> etree._Element:
-    """Read a file that is well-formed but for its namespaces; an undeclared prefix becomes part of the name."""
+def _read_with_harmless_errors(source: Source) -> etree._Element:
+    """Read a file in which libxml2 finds names of namespaces that are no URIs."""
     parser = _parser(recover=True)
     root = etree.fromstring(source.data, parser)
     for entry in parser.error_log:
-        if entry.type not in NAMESPACE_ERRORS:
+        if entry.type not in HARMLESS_ERRORS:
             raise refused(source, entry.type, entry.message, entry.line)
     return root
 

@@ -14,14 +14,21 @@ from eurdf.reading.source import Source, short
 #: Maximum depth of nested elements; the default of libxml2.
 DEPTH_LIMIT = 256
 
-#: libxml2's errors of a namespace that is no URI, or a relative one, and of a prefix that is not declared (xmlerror.h).
-#: URDF parsers ignore namespaces, and many URDFs have such errors.
-NAMESPACE_ERRORS = (99, 100, 201)
+#: libxml2's errors of a namespace whose name is no URI, or a relative one (xmlerror.h): any text is allowed.
+HARMLESS_ERRORS = (99, 100)
 
 #: libxml2's errors for a well-formed file beyond its limits; which one depends on its version.
 _RESOURCE_ERRORS = (1, 110, 114)
 
 _NAME = re.compile(r"[^\s<>/=&;\"'()]*")
+
+#: An attribute: its name, and its value in double or single quotes.
+ATTRIBUTE = re.compile(r"""\s*([^\s=/>]+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
+
+_UNKNOWN_ENTITY = re.compile(r"&(?!#|(?:lt|gt|amp|quot|apos);)")
+
+#: Between the namespace and the rest of a name, where expat gives both: a character that XML does not allow.
+_SEPARATOR = "\f"
 
 
 class _TooDeep(Exception):  # noqa: N818 - never seen outside
@@ -29,7 +36,7 @@ class _TooDeep(Exception):  # noqa: N818 - never seen outside
 
 
 def syntax_error(source: Source, error: Any = None) -> FileError | None:
-    """The error of the text, or None if it has only `NAMESPACE_ERRORS`.
+    """EU-URD-001: the error of the text, or None if it has only `HARMLESS_ERRORS`.
 
     Args:
         source: The text.
@@ -65,9 +72,70 @@ def syntax_error(source: Source, error: Any = None) -> FileError | None:
             return _not_closed(source, problem, at, name, index(byte))
         start, end_, message, hint = _explain(source.text, problem, at)
         return FileError("xml-syntax", message, source.place(start, end_), hint)
-    if error is None or error.code in NAMESPACE_ERRORS:
+    if (wrong := _namespace_error(source)) is not None:
+        return wrong
+    if error is None or error.code in HARMLESS_ERRORS:
         return None
     return refused(source, error.code, error.msg, error.position[0])
+
+
+def _namespace_error(source: Source) -> FileError | None:
+    """What is wrong with the namespaces of a well-formed text."""
+    parser = expat.ParserCreate("utf-8", _SEPARATOR)
+    declared: dict[str | None, list[str]] = {"xml": [""]}  # the namespaces of each prefix, the innermost last
+
+    parser.StartNamespaceDeclHandler = lambda prefix, uri: declared.setdefault(prefix, []).append(uri)
+    parser.EndNamespaceDeclHandler = lambda prefix: declared[prefix].pop()
+    try:
+        parser.Parse(source.data, True)
+    except expat.ExpatError as found:
+        at = len(source.data[: max(parser.ErrorByteIndex, 0)].decode("utf-8", "ignore"))
+        start, end, message, hint = _explain_namespaces(source.text, expat.ErrorString(found.code), at, declared)
+        return FileError("xml-syntax", message, source.place(start, end), hint)
+    return None
+
+
+def _explain_namespaces(
+    text: str, problem: str, at: int, declared: dict[str | None, list[str]]
+) -> tuple[int, int, str, str | None]:
+    """As `_explain`, for namespaces.
+
+    Args:
+        text: The text.
+        problem: What expat says.
+        at: The character it points at: of an element its first, or inside a name.
+        declared: The namespaces of each prefix, the innermost last.
+    """
+    if problem == errors.XML_ERROR_INVALID_TOKEN:
+        while _NAME.fullmatch(text[at - 1]) and text[at - 1] != "?":
+            at -= 1
+        name = _name_at(text, at)
+        hint = "a name has at most one ':', between a prefix and a name; that of an instruction and an entity has none"
+        return *name.span(), f"the ':' in the name '{short(name[0])}' is not allowed there", hint
+    names = [_name_at(text, at + 1)]
+    values: list[re.Match[str]] = []
+    while found := ATTRIBUTE.match(text, names[-1].end() if not values else values[-1].end()):
+        names.append(_name_at(text, found.start(1)))
+        values.append(found)
+    for found in values:  # expat has taken back those of the element itself
+        if found[1].startswith("xmlns:"):
+            declared.setdefault(found[1].removeprefix("xmlns:"), []).append(found[2] or found[3])
+    expanded: dict[tuple[str, str], str] = {}
+    for name in names:
+        prefix, _, local = name[0].rpartition(":")
+        if problem == errors.XML_ERROR_UNBOUND_PREFIX and prefix not in ("", "xmlns") and not declared.get(prefix):
+            hint = f'declare it, as in <robot xmlns:{short(prefix)}="urn:{short(prefix)}">, or remove the prefix'
+            return *name.span(), f"the prefix '{short(prefix)}' of '{short(name[0])}' is not declared", hint
+        if problem == errors.XML_ERROR_DUPLICATE_ATTRIBUTE and declared.get(prefix) and name is not names[0]:
+            other = expanded.setdefault((declared[prefix][-1], local), name[0])
+            if other != name[0]:
+                message = f"the attributes '{short(other)}' and '{short(name[0])}' have one name in one namespace"
+                return *name.span(), message, "remove one of them"
+    if problem == errors.XML_ERROR_UNDECLARING_PREFIX:
+        empty = next(found for found in values if found[1].startswith("xmlns:") and not (found[2] or found[3]))
+        return *empty.span(1), f"the namespace '{short(empty[1])}' is empty", "give it a name, or remove it"
+    reserved = "'xml', 'xmlns' and their namespaces are those of XML: use others" if "prefix" in problem else None
+    return *names[0].span(), f"<{short(names[0][0])}>: {problem}", reserved
 
 
 def refused(source: Source, code: int, message: str, line: int) -> FileError:
@@ -75,7 +143,6 @@ def refused(source: Source, code: int, message: str, line: int) -> FileError:
     if code in _RESOURCE_ERRORS:
         message = "a name, a text or the value of an attribute is too long for the XML parser"
         return FileError("file-too-large", message, source.place_of_line(line))
-    # What only the namespaces of XML forbid, such as two ':' in a name.
     message = re.sub(r",? line \d+, column \d+.*", "", message.strip(), flags=re.DOTALL)
     return FileError("xml-syntax", short(message[:1].lower() + message[1:]), source.place_of_line(line))
 
@@ -115,6 +182,8 @@ def _explain(text: str, problem: str, at: int) -> tuple[int, int, str, str | Non
     if problem == errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT:
         return at, end, "there is content after the end of the root element", "an XML file has one root element"
     if problem == errors.XML_ERROR_UNDEFINED_ENTITY:
+        entity = _UNKNOWN_ENTITY.search(text, at)  # expat points at the element, if it is in an attribute
+        at = entity.start() if entity else at
         end = _name_at(text, at + 1).end()
         hint = "XML defines &lt; &gt; &amp; &quot; and &apos;; write &amp; for a single '&'"
         return at, end, f"the entity '{short(text[at:end])};' is unknown", hint

@@ -97,10 +97,10 @@ def describe_mechanism(
 ) -> DescriptionFiles:
     """The two files of a mechanism. Read again, they are the same mechanism, but for what follows.
 
-    A limit that is infinite beside one that is not is the largest double. Limits of acceleration, deceleration and jerk
-    that differ between the axes of a joint are left out. Where a child's frame is not that of its
-    joint (`Joint.offset`), the joint carries a link without mass, to which the child is fixed. User data whose place
-    does not exist in the new file are in ``x-own-data``, by their JSON pointer.
+    A limit that is infinite beside one that is not is written as the largest double, which is none. Limits of
+    acceleration, deceleration and jerk that differ between the axes of a joint are left out. Where a child's frame is
+    not that of its joint (`Joint.offset`), the joint carries a link without mass, to which the child is fixed. User
+    data whose place does not exist in the new file are in ``x-own-data``, by their JSON pointer.
 
     Args:
         mechanism: The robot.

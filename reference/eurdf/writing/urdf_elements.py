@@ -21,7 +21,7 @@ NO_MATERIALS: Mapping[Color, str] = MappingProxyType({})
 
 NO_RATES: Mapping[str, float] = MappingProxyType({})
 
-#: What is written where there is no limit, but URDF wants a number: rad, m, their rates, N·m or N.
+#: What is written where there is no limit, but the file wants a number (EU-FIL-006): rad, m, their rates, N·m or N.
 LARGEST = sys.float_info.max
 
 #: Attributes of `limit` from version 1.2 on.

@@ -16,6 +16,7 @@ from support.mutants import (  # noqa: F401  each adds its own
     joints,
     merging,
     missing_rules,
+    numbers,
     reading_descriptions,
     reading_urdf,
     reading_yaml,

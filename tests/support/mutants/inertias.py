@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from eurdf_conformance.oracle import kinematics, mass_matrix, urdf
 from eurdf_conformance.oracle.spatial import skew
-from eurdf_conformance.protocol.reply import accepted
-from support.mutants.mutant import Answer, Deviation, answers, instead, means
+from support.mutants.mutant import Deviation, instead, means
 
 
 def _inertia(change: Callable[[Any, Any], Any]) -> Deviation:
@@ -104,47 +102,3 @@ def _all(*deviations: Deviation) -> Deviation:
 def links_behind_fixed_joints_are_not_moved() -> Deviation:
     """The inertia of a link behind a fixed joint counts as if it were at the link before."""
     return instead(kinematics.Kinematics, "pose", lambda right, at, frame: at.bodies[frame.body])
-
-
-def _not_checked(code: str, at: str) -> Callable[[Answer, Path, Path], Answer]:
-    """An error is not found where the line of its place has this text."""
-
-    def answer(right: Answer, *files: Path) -> Answer:
-        if {issue.code for issue in right.issues} != {code}:
-            return right
-        (issue,) = right.issues
-        (file,) = (file for file in files if file.name == issue.file)
-        line = file.read_text(encoding="utf-8").splitlines()[(issue.line or 1) - 1]
-        return accepted() if at in line else right
-
-    return answer
-
-
-@answers("EU-INR-007")
-def distances_of_links_may_overflow(right: Answer, description: Path, urdf: Path) -> Answer:
-    """The coordinates of a link are finite, and its distance is not checked."""
-    return _not_checked("derived-not-finite", "<link")(right, description, urdf)
-
-
-@answers("EU-INR-007", versions=("2",))
-def distances_of_frames_may_overflow(right: Answer, description: Path, urdf: Path) -> Answer:
-    """The coordinates of an added frame are finite, and its distance is not checked."""
-    return _not_checked("derived-not-finite", "name: pad")(right, description, urdf)
-
-
-@answers("EU-INR-007", versions=("2",))
-def screws_may_overflow(right: Answer, description: Path, urdf: Path) -> Answer:
-    """The limits of a screw that was prismatic are not checked."""
-    return _not_checked("derived-not-finite", "pitch: ")(right, description, urdf)
-
-
-@answers("EU-INR-007", versions=("2",))
-def chains_of_mimics_may_overflow(right: Answer, description: Path, urdf: Path) -> Answer:
-    """The offset of a mimic joint with respect to the end of its chain is not checked."""
-    return _not_checked("derived-not-finite", "<mimic")(right, description, urdf)
-
-
-@answers("EU-INR-007", versions=("2.1",))
-def offsets_of_couplings_may_overflow(right: Answer, description: Path, urdf: Path) -> Answer:
-    """The offset of a coupling is not divided by its largest coefficient."""
-    return _not_checked("derived-not-finite", "offset: ")(right, description, urdf)

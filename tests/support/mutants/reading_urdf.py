@@ -46,6 +46,37 @@ def references_of_surrogates_are_dropped(text: str) -> str:
     return re.sub(r"&#x[Dd][89A-Fa-f][0-9A-Fa-f]{2};", "", text)
 
 
+@reads_xml("EU-URD-001")
+def prefixes_need_no_declaration(text: str) -> str:
+    """A prefix is a part of the name, whether it has a namespace or not."""
+    prefixes = sorted({*re.findall(r"[<\s]([a-z]+):[a-z]", text)} - {"xml", "xmlns"})
+    return text.replace("<robot", "<robot" + "".join(f' xmlns:{each}="urn:of-{each}"' for each in prefixes), 1)
+
+
+@reads_xml("EU-URD-001")
+def attributes_are_compared_with_prefixes(text: str) -> str:
+    """Two attributes of one name in one namespace may have two prefixes."""
+    return re.sub(r'xmlns:b="[^"]*"', 'xmlns:b="urn:only-b"', text)
+
+
+@reads_xml("EU-URD-001")
+def colons_are_letters(text: str) -> str:
+    """A name may have any number of colons, as in XML without namespaces."""
+    return re.sub(r"(?<=[<\s?])([a-z]*):([a-z0-9]*)(?:(:)[a-z]+)?(?=[\s=/>])", r"\1\2", text)
+
+
+@reads_xml("EU-URD-001", versions=("2",))
+def prefixes_may_lose_their_namespace(text: str) -> str:
+    """A namespace may be empty, as in XML 1.1."""
+    return re.sub(r'xmlns:([a-z]+)=""', r'xmlns:\1="urn:\1"', text)
+
+
+@reads_xml("EU-URD-001", versions=("2",))
+def namespaces_are_uris(text: str) -> str:
+    """The name of a namespace must be a URI, which has no spaces."""
+    return re.sub(r'(xmlns:[a-z]+=)"[^"]* [^"]*"', r'\1""', text)
+
+
 @reads_xml("EU-FIL-003")
 def ascii_may_be_declared(text: str) -> str:
     """A file of ASCII may declare US-ASCII, of which UTF-8 is a superset."""

@@ -18,7 +18,6 @@ export function linkActuators(description, moving, changes) {
     names.add(name);
     const { gear_ratio = 1, rotor_inertia = 0 } = actuator;
     const armature = gear_ratio * gear_ratio * rotor_inertia;
-    if (!Number.isFinite(armature)) fail(`the armature of joint '${actuator.joint}' is not finite`);
     if (!stated.has(actuator.joint)) joint.armature = joint.armature.map(() => armature);
     return { ...actuator, gear_ratio, rotor_inertia };
   });

@@ -1,6 +1,7 @@
 // The form of values in a description, EU-SCH-001 to -006 and EU-EXT-001. Each check returns the value.
 
 import { fail } from "./invalid.mjs";
+import { bounded, divisor, lowerLimit, upperLimit } from "./numbers.mjs";
 
 export const isUserKey = (key) => key.startsWith("x-");
 
@@ -46,9 +47,19 @@ export function oneOf(...allowed) {
   };
 }
 
-export function number(value, where) {
+function anyNumber(value, where) {
   if (typeof value !== "number") fail(`${where} is not a number`);
   return value;
+}
+
+export const number = (value, where) => bounded(anyNumber(value, where), where);
+export const lower = (value, where) => lowerLimit(anyNumber(value, where), where);
+export const upper = (value, where) => upperLimit(anyNumber(value, where), where);
+
+/** A velocity or effort limit. */
+export function magnitude(value, where) {
+  if (anyNumber(value, where) < 0) fail(`${where} is ${value}, less than 0`);
+  return upper(value, where);
 }
 
 export function atLeast(least) {
@@ -60,7 +71,7 @@ export function atLeast(least) {
 
 export function notZero(value, where) {
   if (number(value, where) === 0) fail(`${where} is 0`);
-  return value;
+  return divisor(value, where);
 }
 
 /** A number, or a list of 1 to `most` numbers. */

@@ -1,6 +1,7 @@
 // Mimic joints and their leaders, EU-URD-021 to -023 and EU-JNT-032.
 
 import { fail } from "./invalid.mjs";
+import { bounded, divisor } from "./numbers.mjs";
 
 const SINGLE = ["revolute", "continuous", "prismatic"];
 
@@ -28,7 +29,7 @@ export function checkMimics(joints) {
 
 export const isMimic = (joint) => joint.mimic !== undefined && joint.mimic !== null && joint.type !== "fixed";
 
-/** Sets `leader` of each mimic joint: `{joint, multiplier, offset}` of the joint at the end of its chain. */
+/** Sets `leader` of each mimic joint: `{joint, multiplier, offset}` of the joint at the end of its chain, EU-FIL-005. */
 export function findLeaders(byName) {
   for (const joint of byName.values()) {
     const chain = [];
@@ -43,6 +44,8 @@ export function findLeaders(byName) {
             offset: multiplier * above.leader.offset + offset,
           }
         : { joint: above, multiplier, offset };
+      divisor(each.leader.multiplier, `the multiplier of joint '${each.name}' at the end of its chain`);
+      bounded(each.leader.offset, `the offset of joint '${each.name}' at the end of its chain`);
     }
   }
 }

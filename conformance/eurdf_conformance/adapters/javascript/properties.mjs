@@ -24,23 +24,21 @@ export function inherited(type, sources, pitch) {
     : properties;
 }
 
-/** Those of a prismatic joint that becomes helical, with d = k θ. */
-function perRadian(properties, { name, lower, upper }, k) {
+/** Those of a prismatic joint that becomes helical, with d = k θ; null where there is no limit. */
+function perRadian(properties, { lower, upper }, k) {
   const size = Math.abs(k);
-  const ends = [lower / k, upper / k];
-  const scaled = (key, factor) => properties[key].map((number) => number * factor);
-  const helical = {
-    lower: [Math.min(...ends)],
-    upper: [Math.max(...ends)],
-    velocity: properties.velocity.map((number) => number / size),
-    effort: scaled("effort", size),
-    damping: scaled("damping", k * k),
-    friction: scaled("friction", size),
+  const scaled = (numbers, factor) => numbers.map((number) => (number === null ? null : number * factor));
+  const ends = k > 0 ? [lower, upper] : [upper, lower];
+  const [first, last] = ends.map((end) => (end === null ? null : end / k));
+  return {
+    ...properties,
+    lower: [first],
+    upper: [last],
+    velocity: properties.velocity.map((number) => (number === null ? null : number / size)),
+    effort: scaled(properties.effort, size),
+    damping: scaled(properties.damping, k * k),
+    friction: scaled(properties.friction, size),
   };
-  for (const [key, [number]] of Object.entries(helical)) {
-    if (!Number.isFinite(number)) fail(`the ${key} of helical joint '${name}' is ${number}: not finite`); // EU-INR-007
-  }
-  return { ...properties, ...helical };
 }
 
 /** Replaces properties by those that the description states. */

@@ -2,7 +2,6 @@
 
 import { checkBounds } from "./bounds.mjs";
 import { readDescription } from "./description.mjs";
-import { checkDerived } from "./derived.mjs";
 import { link } from "./linking.mjs";
 import { readText } from "./text.mjs";
 import { readUrdf } from "./urdf.mjs";
@@ -15,6 +14,5 @@ export function readRobot(descriptionPath, urdfPath) {
   const urdf = readUrdf(parseXml(readText(urdfPath)));
   const robot = link(description, urdf);
   checkBounds(robot);
-  checkDerived(robot);
   return robot;
 }

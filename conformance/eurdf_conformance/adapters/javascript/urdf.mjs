@@ -2,6 +2,7 @@
 // description: see mimic.mjs.
 
 import { fail } from "./invalid.mjs";
+import { bounded, divisor, lowerLimit, upperLimit } from "./numbers.mjs";
 import { fromOrigin, fromQuaternion } from "./spatial.mjs";
 
 const VERSIONS = ["1.0", "1.1", "1.2"];
@@ -123,7 +124,14 @@ function lookUp(table, name) {
   return table && Object.hasOwn(table, name) ? table[name] : undefined;
 }
 
-/** The numbers of an attribute, or undefined if it is left out. */
+// What a number is, by the name of its attribute: within bounds, EU-FIL-005, or no limit, EU-FIL-006.
+const MEANING = {
+  lower: lowerLimit,
+  multiplier: divisor,
+  ...Object.fromEntries(["upper", "effort", "velocity", ...RATES].map((name) => [name, upperLimit])),
+};
+
+/** The numbers of an attribute, null where a limit is none; undefined if it is left out. */
 function numbers(element, name, count, where) {
   const text = element.attributes.get(name);
   if (text === undefined) return undefined;
@@ -132,7 +140,7 @@ function numbers(element, name, count, where) {
   if (values.length !== count || !values.every(Number.isFinite)) {
     fail(`urdf: ${name}="${text}" of ${where} is not ${count} finite decimal number(s)`);
   }
-  return values;
+  return values.map((value) => (MEANING[name] ?? bounded)(value, `${name} of ${where}`));
 }
 
 function checkOrientation(element, where) {
@@ -218,14 +226,15 @@ function jointOf(element, name, version) {
   for (const key of later ? (ranged ? ["lower", "upper"] : []) : ["effort", "velocity"]) {
     if (limit && !limit.attributes.has(key)) fail(`urdf: the <limit> of joint '${name}' has no ${key}`);
   }
-  const [lower] = numbersOf(element, "limit", "lower", [later ? -Infinity : 0]);
-  const [upper] = numbersOf(element, "limit", "upper", [later ? Infinity : 0]);
-  if ((later || ranged) && lower > upper) fail(`urdf: joint '${name}' has lower ${lower} > upper ${upper}`);
+  const [lower] = numbersOf(element, "limit", "lower", [later ? null : 0]);
+  const [upper] = numbersOf(element, "limit", "upper", [later ? null : 0]);
+  const isReversed = lower !== null && upper !== null && lower > upper;
+  if ((later || ranged) && isReversed) fail(`urdf: joint '${name}' has lower ${lower} > upper ${upper}`);
   const [effort] = numbersOf(element, "limit", "effort", [null]);
   const [velocity] = numbersOf(element, "limit", "velocity", [null]);
   const [damping] = numbersOf(element, "dynamics", "damping", [0]);
   const [friction] = numbersOf(element, "dynamics", "friction", [0]);
-  const rates = RATES.map((rate) => numbersOf(element, "limit", rate, [0])[0]);
+  const rates = RATES.map((rate) => numbersOf(element, "limit", rate, [null])[0]);
   if ([effort, velocity, ...rates, damping, friction].some((number) => number < 0)) {
     fail(`urdf: joint '${name}' has a negative limit, damping or friction`);
   }

@@ -1,7 +1,22 @@
 // The form of a description of version 2.0 and 2.1.
 
-import { atLeast, entries, list, mapping, name, notZero, number, oneOf, oneOrMore, vector } from "./form.mjs";
+import {
+  atLeast,
+  entries,
+  list,
+  lower,
+  magnitude,
+  mapping,
+  name,
+  notZero,
+  number,
+  oneOf,
+  oneOrMore,
+  upper,
+  vector,
+} from "./form.mjs";
 import { fail } from "./invalid.mjs";
+import { divisor } from "./numbers.mjs";
 import { userData } from "./own.mjs";
 
 const LETTERS = "xyz";
@@ -12,7 +27,8 @@ const SHORTEST = 1e-4; // m, of a distance
 const NOT_NEGATIVE = oneOrMore(atLeast(0), 6);
 const ANY = oneOrMore(number, 6);
 const COMPLIANCE = { linear: atLeast(0), angular: atLeast(0) };
-const LIMITS = { lower: ANY, upper: ANY, velocity: NOT_NEGATIVE, effort: NOT_NEGATIVE };
+const MAGNITUDE = oneOrMore(magnitude, 6);
+const LIMITS = { lower: oneOrMore(lower, 6), upper: oneOrMore(upper, 6), velocity: MAGNITUDE, effort: MAGNITUDE };
 
 const CHANGE = { limits, damping: NOT_NEGATIVE, friction: NOT_NEGATIVE, armature: NOT_NEGATIVE };
 const ACTUATOR = { gear_ratio: notZero, rotor_inertia: atLeast(0) };
@@ -138,6 +154,7 @@ function change(joint, value, properties) {
   if ("rest" in read && !("stiffness" in read)) fail(`${where} has a rest position and no stiffness`);
   if (!read.type && !Object.keys(read).length) fail(`${where} states nothing`);
   if (read.pitch === 0) fail(`the pitch of ${where} is 0`);
+  if (read.pitch !== undefined) divisor(read.pitch, `the pitch of ${where}`);
   const { mimic, ...rest } = read;
   return { joint, ...rest, ...(mimic === false && { freed: true }) };
 }

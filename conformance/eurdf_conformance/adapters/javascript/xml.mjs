@@ -1,5 +1,5 @@
-// XML 1.0 without a document type, EU-URD-001 and -002, on top of the npm package `saxes`, within bounds of EU-FIL-002.
-// An element is {name, attributes: Map, children}. Text is left out: a URDF has none.
+// XML 1.0 with namespaces and without a document type, EU-URD-001 and -002, on top of the npm package `saxes`, within
+// bounds of EU-FIL-002. An element is {name, attributes: Map, children}. Text is left out: a URDF has none.
 
 import { SaxesParser } from "saxes";
 import { Invalid, fail } from "./invalid.mjs";
@@ -8,10 +8,13 @@ const MOST_MARKS = 1_000_000;
 const MOST_LEVELS = 256;
 const MOST_VALUE_BYTES = 10_000_000;
 
+// `saxes` does not check that what follows a prefix begins as a name does.
+const BAD_LOCAL_NAME = /:[-.0-9\u00B7\u0300-\u036F\u203F\u2040]/;
+
 /** The root element. */
 export function parseXml(text) {
   checkMarks(text);
-  const parser = new SaxesParser({ xmlns: false, position: false, defaultXMLVersion: "1.0", forceXMLVersion: true });
+  const parser = new SaxesParser({ xmlns: true, position: false, defaultXMLVersion: "1.0", forceXMLVersion: true });
   const top = { children: [] };
   const open = [top];
   parser.on("error", (error) => fail(`urdf: ${error.message}`));
@@ -22,8 +25,14 @@ export function parseXml(text) {
   });
   parser.on("opentag", ({ name, attributes }) => {
     if (open.length > MOST_LEVELS) fail(`urdf: elements are nested deeper than ${MOST_LEVELS}`);
-    const element = { name, attributes: new Map(Object.entries(attributes)), children: [] };
-    element.attributes.forEach(checkLength);
+    const element = { name, attributes: new Map(), children: [] };
+    for (const [key, { value }] of Object.entries(attributes)) {
+      checkLength(value, key);
+      element.attributes.set(key, value);
+    }
+    for (const each of [name, ...element.attributes.keys()]) {
+      if (BAD_LOCAL_NAME.test(each)) fail(`urdf: ${each} is not a name with a prefix`);
+    }
     open.at(-1).children.push(element);
     open.push(element);
   });

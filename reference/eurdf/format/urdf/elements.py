@@ -8,6 +8,7 @@ from functools import partial
 
 from eurdf.diagnostics import Hint, did_you_mean
 from eurdf.format.near import near
+from eurdf.format.numbers import HINT, LARGEST, too_large
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 from eurdf.reading.reporter import Element, XmlReporter
@@ -80,6 +81,9 @@ _OPTIONAL_IN_ORIGIN = ("xyz", "rpy", "quat_xyzw")
 
 #: The types of joints that move in a range, and so need a `limit`.
 RANGED = frozenset({JointType.REVOLUTE, JointType.PRISMATIC})
+
+#: Attributes of limits, which may be beyond `LARGEST` on the side where they do not limit: the sign of that side.
+_LIMITS = {"lower": -1.0, "upper": 1.0, "effort": 1.0, "velocity": 1.0}
 
 #: Name of the world.
 RESERVED = "universe"
@@ -163,11 +167,14 @@ class UrdfReader:
         self.reporter.report(code, message, element, attribute, hint)
 
     def numbers(self, element: Element, attribute: str, text: str, count: int) -> tuple[float, ...] | None:
-        """EU-URD-007: an attribute of numbers has the right number of finite decimal numbers."""
+        """EU-URD-007, EU-FIL-005: an attribute of numbers has the right number of decimal numbers within bounds."""
         values = self._floats.get(text)
         if values is None:
+            values = _floats(text, text.split())
+            if values is not None and len(values) == count and not self._are_bounded(element, attribute, values):
+                return None
             # Zeros, units and limits occur often in a file.
-            values = self._floats[text] = _floats(text, text.split())
+            self._floats[text] = values
         if values is not None and len(values) == count:
             return values
         if values is None:
@@ -181,6 +188,20 @@ class UrdfReader:
             attribute,
         )
         return None
+
+    def _are_bounded(self, element: Element, attribute: str, values: tuple[float, ...]) -> bool:
+        """EU-FIL-005: report the first number that is too large."""
+        if math.hypot(*values) <= LARGEST:
+            return True
+        free = _LIMITS.get(attribute, 0.0)
+        large = next((value for value in values if abs(value) > LARGEST and value * free <= 0.0), None)
+        if large is not None:
+            self.out_of_bounds(element, attribute, too_large(large))
+        return large is None
+
+    def out_of_bounds(self, element: Element, attribute: str, what: str) -> None:
+        """EU-FIL-005: report a number by the end of the message about it."""
+        self.report("number-out-of-bounds", f"'{attribute}' of {named(element)} has {what}", element, attribute, HINT)
 
     def _bad_number(self, element: Element, attribute: str, text: str, count: int) -> None:
         wanted = "a finite decimal number" if count == 1 else f"{count} finite decimal numbers separated by spaces"
@@ -229,16 +250,20 @@ class UrdfReader:
             joined = ",".join(texts)  # type: ignore[arg-type]
             values = self._joined.get(joined)
             if values is None:
-                values = self._joined[joined] = _floats(joined, texts)  # type: ignore[arg-type]
+                values = _floats(joined, texts)  # type: ignore[arg-type]
+                if values is not None and math.hypot(*values) > LARGEST:
+                    values = None
+                self._joined[joined] = values
             # A comma in an attribute, which is an error, makes one number more in another element's text.
             if values is not None and len(values) == len(texts):
                 return values
+        found: list[float] = []
         for attribute, text in zip(attributes, texts, strict=True):
             if text is None:
                 self.missing_attribute(element, attribute)
-            else:
-                self.numbers(element, attribute, text, 1)
-        return None
+            elif (value := self.numbers(element, attribute, text, 1)) is not None:
+                found += value
+        return tuple(found) if len(found) == len(texts) else None
 
     def missing_attribute(self, element: Element, attribute: str) -> None:
         """EU-URD-005: report that an element lacks a required attribute."""
@@ -308,7 +333,7 @@ class UrdfReader:
         """The hint for an unknown name without a prefix. Cached, since the same few are in every joint of a file."""
         if (name, optional) in self._strange:
             return self._strange[name, optional]
-        meant = None if "}" in name or ":" in name else near(name, optional)
+        meant = None if "}" in name else near(name, optional)
         hint = meant and f"did you mean '{meant}'?"
         if len(self._strange) < _MOST_STRANGE:
             self._strange[name, optional] = hint

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 
 from eurdf.diagnostics import did_you_mean
+from eurdf.format.numbers import is_too_small, lower_limit, too_small, upper_limit
 from eurdf.format.urdf.data import Limit, UrdfJoint
 from eurdf.format.urdf.elements import RANGED, RESERVED, URDF_JOINT_TYPES, UrdfReader, named
 from eurdf.mechanism.joint_type import JointType
@@ -21,7 +22,7 @@ _LIMIT = {"lower": "0", "upper": "0", "effort": None, "velocity": None}
 _RANGE_1_2 = ("lower", "upper")
 _RATES = ("acceleration", "deceleration", "jerk")
 _LIMIT_1_2 = ("effort", "velocity", *_RATES)
-_NO_LIMIT = {"lower": -math.inf, "upper": math.inf, "velocity": math.inf, "effort": math.inf}
+_NO_LIMIT = {"upper": math.inf, "velocity": math.inf, "effort": math.inf}
 _DYNAMICS = {"damping": "0", "friction": "0"}
 _MIMIC = {"multiplier": "1", "offset": "0"}
 
@@ -119,8 +120,7 @@ def _limit_1_0(reader: UrdfReader, element: Element) -> Limit | None:
             reader.later(element, attribute, "1.2")
     if values is None:
         return None
-    lower, upper, effort, velocity = values
-    return Limit(lower, upper, velocity, effort)
+    return _limits(dict(zip(_LIMIT, values, strict=True)))
 
 
 def _limit_1_2(reader: UrdfReader, kind: JointType, element: Element) -> Limit | None:
@@ -128,7 +128,13 @@ def _limit_1_2(reader: UrdfReader, kind: JointType, element: Element) -> Limit |
     required, optional = (_RANGE_1_2, _LIMIT_1_2) if kind in RANGED else ((), (*_RANGE_1_2, *_LIMIT_1_2))
     stated = dict.fromkeys((*required, *(attribute for attribute in optional if attribute in element.attrib)))
     values = reader.single_numbers(element, stated, optional)
-    return None if values is None else Limit(**{**_NO_LIMIT, **dict(zip(stated, values, strict=True))})
+    return None if values is None else _limits(dict(zip(stated, values, strict=True)))
+
+
+def _limits(stated: dict[str, float]) -> Limit:
+    """EU-FIL-006: the limits that are stated; those that are left out, or too large to be one, do not limit."""
+    lower = lower_limit(stated.pop("lower", -math.inf))
+    return Limit(lower, **{**_NO_LIMIT, **{name: upper_limit(value) for name, value in stated.items()}})
 
 
 def _check_needs_no_limit(reader: UrdfReader, name: str | None, kind: JointType, joint: Element) -> None:
@@ -172,6 +178,9 @@ def _mimic(reader: UrdfReader, name: str | None, kind: JointType, element: Eleme
     """EU-URD-036: a fixed joint has no coordinate, so a `<mimic>` in it has no effect."""
     joint = reader.name(element, "joint")
     values = reader.single_numbers(element, _MIMIC)
+    if values is not None and is_too_small(values[0]):
+        reader.out_of_bounds(element, "multiplier", too_small(values[0]))
+        return None
     if joint is None or values is None:
         return None
     if kind is JointType.FIXED:
