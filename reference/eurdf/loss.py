@@ -192,10 +192,10 @@ BEYOND_LIMITS = LossKind(
     "export-beyond-limits",
     "configuration",
     Effect.APPROXIMATE,
-    "has joints beyond their limits: no other one was found that closes the loops",
+    "has joints beyond their limits: none was found that closes the loops within all of them",
     "widen the limits, or state a configuration 'assembled' within them",
     error="a simulation that starts there pushes the joints back",
-    only="loops that close beyond the limits only",
+    only="joints beyond their limits",
 )
 
 #: Of a mesh that is converted though it should have been referenced.

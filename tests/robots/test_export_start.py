@@ -59,3 +59,10 @@ def test_joint_outside_of_loops_starts_within_its_limits(name: str) -> None:
         if limited
     ]
     assert all(within)
+
+
+def test_mimic_joint_that_starts_beyond_its_limits_is_a_loss() -> None:
+    urdf = hanging('<mimic joint="j" multiplier="-2" offset="-10"/>')
+    (loss,) = (each for each in eurdf.export(urdf, "mjcf").losses if each.code == "export-beyond-limits")
+    assert (loss.name, loss.effect) == ("neutral", "approximate")
+    assert "'k' at -10 rad (limits -9 to 9)" in loss.message

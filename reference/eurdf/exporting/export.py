@@ -249,7 +249,8 @@ def _export(
         if joint.lacks_range:
             shared.add("export-no-range", joint.name)
     for name, coordinates in list(configurations.items())[:1] if BEYOND_LIMITS in kinds else ():
-        if beyond := beyond_limits(robot.mechanism.joints, coordinates):
+        every = robot.joint_coordinates(robot.configuration(coordinates))
+        if beyond := beyond_limits(robot.mechanism.joints, every):
             shared.add("export-beyond-limits", name, f"has joints beyond their limits: {', '.join(map(str, beyond))}")
     for path in folders.let_through:
         shared.add("export-file-outside", path)
