@@ -414,7 +414,7 @@ class UrdfReader:
         stated = f"version {self.version}" if self.version else "no version"
         for (what, version), found in self._later.items():
             element, attribute = found[0]
-            effect = "has no effect" if attribute else "is ignored by other parsers"
+            effect = "has no effect" if attribute else "is ignored by ROS and Pinocchio"
             times = f" ({len(found)} times in the file)" if len(found) > 1 else ""
             self.report(
                 "urdf-later-version",
