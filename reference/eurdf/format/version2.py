@@ -486,7 +486,8 @@ class Version2(StrictMapping):
         title="Configurations",
         description="By name, the coordinates of joints: a number or a list. Angle in rad, length in m; spherical: a"
         " unit quaternion x y z w; universal: two angles; cylindrical: length, angle; planar: x, y, angle; floating: x"
-        " y z and a quaternion. Other joints are neutral. All closures are closed at 'assembled'.",
+        " y z and a quaternion. Other joints are neutral, which must be within their limits. All closures are closed at"
+        " 'assembled'.",
         examples=[{"assembled": {"motor_knee": 0.4, "hip_ball": [0, 0, 0, 1]}}],
     )
     metadata: dict[str, Any] = Field(
