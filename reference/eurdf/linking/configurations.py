@@ -127,13 +127,13 @@ def beyond_limits(joints: Iterable[Joint], coordinates: Mapping[str, Sequence[fl
     """EU-CFG-004: the coordinates of a configuration that are beyond their limits.
 
     Args:
-        joints: The joints to check; those without coordinates of their own, or with a quaternion, have no limits.
-        coordinates: Coordinates by joint; a joint that is left out is at its neutral.
+        joints: The joints to check; those with a quaternion have no limits.
+        coordinates: Coordinates by joint; a joint that is left out is at its neutral, or mimics another.
     """
     return [
         BeyondLimit(joint.name, name, value, lower, upper)
         for joint in joints
-        if joint.mimic is None and joint.coordinates.quaternion is None
+        if joint.coordinates.quaternion is None and (joint.mimic is None or joint.name in coordinates)
         for name, value, (lower, upper) in zip(
             joint.coordinates.names,
             coordinates.get(joint.name, joint.coordinates.neutral),
