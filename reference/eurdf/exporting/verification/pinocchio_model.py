@@ -56,7 +56,7 @@ class PinocchioModel:
     def ranges(self, q: Vector) -> tuple[Range, ...]:  # noqa: D102
         values, _ = self._moved(q)
         found = []
-        for name, joint in zip(self.model.names, self.model.joints, strict=True):
+        for name, joint in list(zip(self.model.names, self.model.joints, strict=True))[1:]:  # after the universe
             if joint.nq == joint.nv == 1:
                 at = joint.idx_q
                 limits = self.model.lowerPositionLimit[at], self.model.upperPositionLimit[at]
@@ -72,20 +72,16 @@ class PinocchioModel:
         """Pinocchio's configuration at q (nq,) of the robot, and T: its velocities are T v. Mimic joints follow."""
         map_, model = self._exported.coordinates, self.model
         given, rates = map_.to_q(q), map_.rates(q)
-        angles = map_.nq != sum(model.joints[model.getJointId(name)].nq for name in map_.names)
         values, T = pin.neutral(model), np.zeros((model.nv, rates.shape[1]))
         own: dict[str, tuple[float, Any]] = {}
         at_q = at_v = 0
         for name in map_.names:
             joint = model.joints[model.getJointId(name)]
-            n = joint.nv if angles and joint.nq == joint.nv + 1 < 7 else joint.nq
-            mine = given[at_q : at_q + n]
-            if n < joint.nq:  # Pinocchio has an angle without limits as its cosine and sine
-                mine = np.array((*mine[:-1], np.cos(mine[-1]), np.sin(mine[-1])))
+            mine = given[at_q : at_q + joint.nq]
             values[joint.idx_q : joint.idx_q + joint.nq] = mine
             T[joint.idx_v : joint.idx_v + joint.nv] = rates[at_v : at_v + joint.nv]
             own[name] = float(mine[0] if joint.nq == 1 else np.arctan2(mine[1], mine[0])), rates[at_v]
-            at_q, at_v = at_q + n, at_v + joint.nv
+            at_q, at_v = at_q + joint.nq, at_v + joint.nv
         for name, mimic in self._mimics.items():
             factor, offset = float(mimic.get("multiplier", 1.0)), float(mimic.get("offset", 0.0))
             value, rate = own[mimic.get("joint")]
