@@ -146,8 +146,8 @@ def test_message_says_what_to_write_of_joints_left_out(tmp_path: Path) -> None:
     assert "'ready' leaves out joints" in found.message
     assert "'a' (limits 0.1 to 2 rad), 'd' (limits -2 to -0.5 rad)" in found.message
     added = (found.hint or "").partition("for example ")[2]
-    assert added == "a: 0.1, d: [0, -0.5]"
-    path.write_text(path.read_text(encoding="utf-8").replace("b: 1", f"b: 1, {added}"), encoding="utf-8")
+    assert added == "{a: 0.1, d: [0.0, -0.5]}"
+    path.write_text(path.read_text(encoding="utf-8").replace("{b: 1}", added), encoding="utf-8")
     assert eurdf.check(path).diagnostics == ()
 
 

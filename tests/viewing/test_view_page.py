@@ -274,6 +274,24 @@ def test_pose_is_saved_to_the_description_and_comments_stay(tmp_path: Path) -> N
         files.save("open", session)
 
 
+def test_pose_beyond_limits_is_saved_only_after_assembling(tmp_path: Path) -> None:
+    lid = (
+        '<link name="lid"/><joint name="hinge" type="revolute"><parent link="ground"/><child link="lid"/>'
+        '<axis xyz="0 0 1"/><limit lower="0.5" upper="1" effort="1" velocity="1"/></joint></robot>'
+    )
+    urdf, yaml = ((COLLECTION / "four_bar" / name).read_text() for name in ("robot.urdf", "robot.yaml"))
+    (tmp_path / "robot.urdf").write_text(urdf.replace("</robot>", lid))
+    (tmp_path / "robot.yaml").write_text(yaml.replace("assembled: {}", "assembled: {hinge: 0.5}"))
+    files = RobotOnDisk(tmp_path, {})
+    session = Session(files.load())
+    session.show(session.robot.tree.neutral())
+    with pytest.raises(CannotSave, match=r"leaves out joints.*'hinge' \(limits 0.5 to 1 rad\)"):
+        files.save("low", session)
+    session.assemble()
+    files.save("low", session)
+    assert dict(eurdf.load(tmp_path).mechanism.configurations["low"]) == {"hinge": (0.5,)}
+
+
 @pytest.mark.parametrize("path", ["four_bar", os.fspath(COLLECTION / "four_bar/robot.v1.yaml")])
 def test_pose_is_not_saved_where_it_cannot_be(path: str) -> None:
     assert not RobotOnDisk(path, {}).can_save

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from eurdf.diagnostics import Hint, did_you_mean
 from eurdf.format.extension import ConfigurationEntry
+from eurdf.format.yaml_text import Value, flow
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.reading.reporter import YamlReporter
@@ -149,25 +150,24 @@ def _check_left_out(joints: Sequence[Joint], entry: ConfigurationEntry, reporter
     beyond = beyond_limits(joints, {})
     if not beyond:
         return
-    names = list(dict.fromkeys(found.joint for found in beyond))
+    names = {found.joint for found in beyond}
+    example: dict[str, Value] = {joint.name: _nearest(joint) for joint in joints if joint.name in names}
     told = ", ".join(f"'{found.joint}' (limits {found.limits})" for found in beyond[:_MOST_TOLD])
     more = f", and {len(beyond) - _MOST_TOLD} more" if len(beyond) > _MOST_TOLD else ""
     reporter.report(
         "configuration-limits",
         f"configuration '{entry.name}' leaves out joints, which are then at 0, outside their limits: {told}{more}",
         entry.pointer,
-        f"add coordinates within the limits, for example "
-        f"{', '.join(f'{joint.name}: {_nearest(joint)}' for joint in joints if joint.name in names)}",
+        f"add coordinates within the limits, for example {flow(example)}",
         key=True,
     )
 
 
-def _nearest(joint: Joint) -> str:
+def _nearest(joint: Joint) -> float | list[float]:
     """The coordinates within the limits that are nearest to neutral, as a file states them."""
     neutral = zip(joint.coordinates.neutral, joint.ranges, strict=True)
     nearest = [value if within_limits(value, *ends) else min(max(value, ends[0]), ends[1]) for value, ends in neutral]
-    shown = [f"{value:.12g}" for value in nearest]
-    return shown[0] if len(shown) == 1 else f"[{', '.join(shown)}]"
+    return nearest[0] if len(nearest) == 1 else nearest
 
 
 def _coordinates(

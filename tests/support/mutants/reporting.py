@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 from unittest.mock import patch
 
 from lxml import etree
@@ -71,19 +72,30 @@ def open_loops_are_not_reported(found: list[Issue], *files: Path) -> list[Issue]
     return [issue for issue in found if issue.code not in late]
 
 
-@reports("EU-CLO-016")
-def search_ends_after_one_step(found: list[Issue], *files: Path) -> list[Issue]:
-    """Loops that one step from each start does not close are reported."""
+def _searching(name: str, less: Any, found: list[Issue], files: tuple[Path, ...]) -> list[Issue]:
+    """The issues of a parser whose search has less than the least one."""
     if found:
         return found
     try:
-        with patch.object(closing, "STEPS", 1):
+        with patch.object(closing, name, less):
             closes = read(*files).loops_close()
     except NotRead:
         return found
-    line = {"file": files[0].name, "line": 1, "column": 1}
-    error = Issue(code="closure-cannot-close", severity="error", message="no configuration closes the loops", **line)
+    place = {"file": files[0].name, "line": 1, "column": 1}
+    error = Issue(code="closure-cannot-close", severity="error", message="no configuration closes the loops", **place)
     return [] if closes else [error]
+
+
+@reports("EU-CLO-016")
+def search_ends_after_one_step(found: list[Issue], *files: Path) -> list[Issue]:
+    """Loops that one step from each start does not close are reported."""
+    return _searching("STEPS", 1, found, files)
+
+
+@reports("EU-CLO-016", versions=("2.1",))
+def search_starts_at_neutral_alone(found: list[Issue], *files: Path) -> list[Issue]:
+    """Loops that are not closed from the neutral configuration are reported."""
+    return _searching("ASIDE", (), found, files)
 
 
 @reports("EU-INR-002")
