@@ -305,7 +305,7 @@ def test_oracle_refuses_a_doubtful_urdf(element: str) -> None:
         robot([*chain(joint("j", "revolute", "base", "end")), element], two(""))
 
 
-def test_prefix_needs_no_definition_and_hides_its_name() -> None:
+def test_prefix_hides_the_name_of_an_element() -> None:
     elements = chain(joint("j", "revolute", "base", "end"))
-    found = robot([*elements, '<drake:link name="base"/>', "<gazebo><link name='base'/></gazebo>"])
+    found = robot([*elements, '<drake:link name="base" xmlns:drake="urn:d"/>', "<gazebo><link name='base'/></gazebo>"])
     assert list(found.urdf.links) == ["base", "end"]

@@ -15,9 +15,28 @@ from eurdf.reading.yaml_reader import read_yaml
 from eurdf_conformance.corpus.case import InvalidCase
 from eurdf_conformance.corpus.read import all_cases
 
-CODES = ("missing-key", "unknown-key", "wrong-type", "wrong-length", "wrong-value", "out-of-range", "conflicting-keys")
+CODES = (
+    "missing-key",
+    "unknown-key",
+    "wrong-type",
+    "wrong-length",
+    "wrong-value",
+    "out-of-range",
+    "conflicting-keys",
+    "number-out-of-bounds",
+)
 OF_CASES: dict[str, Version] = {"1": "1", "2": "2.0", "2.1": "2.1"}
-REMOVED = ("additionalProperties", "dependentRequired", "minItems", "maxItems", "minLength", "minimum", "not", "enum")
+REMOVED = (
+    "additionalProperties",
+    "dependentRequired",
+    "minItems",
+    "maxItems",
+    "minLength",
+    "minimum",
+    "maximum",
+    "not",
+    "enum",
+)
 
 #: What distinguishes the forms of an entry: an entry without it has another form.
 TOLD_APART = {"type"}

@@ -6,8 +6,8 @@ from typing import ClassVar
 
 from pydantic import ConfigDict, Field
 
-from eurdf.format.field import MayLack, StrictMapping
-from eurdf.format.version2 import NonNegative, SaysSomething
+from eurdf.format.field import MayLack, NonNegative, StrictMapping
+from eurdf.format.version2 import SaysSomething
 
 
 class Compliance(SaysSomething):

@@ -107,15 +107,22 @@ def _refuse_zero(number: float) -> float:
     return number
 
 
-#: A number, EU-FIL-005.
-Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
-
+# Named, so that the schema holds the bounds of EU-FIL-005 once.
+Number = TypeAliasType("Number", Annotated[float, Field(ge=-LARGEST, le=LARGEST)])
+NonNegative = TypeAliasType("NonNegative", Annotated[float, Field(ge=0, le=LARGEST)])
 #: One that others are divided by.
-NonZero = Annotated[
-    Number,
-    AfterValidator(_refuse_zero),
-    Field(json_schema_extra={"not": {"exclusiveMinimum": -SMALLEST, "exclusiveMaximum": SMALLEST}}),
-]
+NonZero = TypeAliasType(
+    "NonZero",
+    Annotated[
+        float,
+        Field(
+            ge=-LARGEST,
+            le=LARGEST,
+            json_schema_extra={"not": {"exclusiveMinimum": -SMALLEST, "exclusiveMaximum": SMALLEST}},
+        ),
+        AfterValidator(_refuse_zero),
+    ],
+)
 
 
 _T = TypeVar("_T")

@@ -16,12 +16,12 @@ HINT = "check its exponent and its unit"
 
 def too_large(number: float) -> str:
     """The end of a message about a number beyond `LARGEST`."""
-    return f"{number:g}; the size of a number must be at most {LARGEST:g}"
+    return f"{number!r}; the size of a number must be at most {LARGEST:g}"
 
 
 def too_small(number: float) -> str:
     """The end of a message about a number that is not 0, below `SMALLEST`."""
-    return f"{number:g}; its size must be at least {SMALLEST:g}"
+    return f"{number!r}; its size must be at least {SMALLEST:g}"
 
 
 def is_too_small(number: float) -> bool:

@@ -17,6 +17,7 @@ from eurdf.format.field import (
     LinkName,
     MayLack,
     MovingJointName,
+    NonNegative,
     NonZero,
     Number,
     StrictMapping,
@@ -26,7 +27,6 @@ from eurdf.format.field import (
 from eurdf.format.numbers import LARGEST
 
 Name = Annotated[str, Field(min_length=1)]
-NonNegative = Annotated[float, Field(ge=0, le=LARGEST)]
 
 # Named, so that the schema holds each of them once.
 Vector = TypeAliasType("Vector", Annotated[list[Number], Field(min_length=3, max_length=3)])
