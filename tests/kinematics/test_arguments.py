@@ -68,7 +68,7 @@ CALLS: dict[str, dict[str, Any]] = {
     "actuator_values": {"joints": {"free_rocker": -0.1}, "q0": "q"},
     "joint_values": {"motors": {"motor_crank": 1}, "q0": "q"},
     "workspace": {"joints": "free_rocker", "q": "q", "grid": 3},
-    "serial_twin": {"joints": "free_rocker", "q": "q", "grid": 3},
+    "serial_twin": {"joints": "free_rocker", "q": "q", "grid": 9},
     "prepare_transmission": {"joints": "free_rocker", "q": "q"},
     "transmission": {"joints": "free_rocker", "q": "q"},
     "sweep": {"actuator": "motor_crank", "q0": "q"},

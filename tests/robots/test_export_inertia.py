@@ -14,11 +14,12 @@ from hypothesis import strategies as st
 
 import eurdf
 from eurdf.exporting.inertia import about_centre
+from eurdf.exporting.verification.read_model import without_armature
 from eurdf.mechanism.body import Body, Inertia
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import Robot, build_robot
-from support.exported import InMuJoCo, without_armature
+from support.exported import InMuJoCo
 from support.plain_urdf import inertial, link_element
 from support.plain_urdf import robot as robot_element
 from support.wild import FACTS, WILD, needs_wild

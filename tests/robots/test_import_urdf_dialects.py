@@ -150,7 +150,8 @@ def test_other_elements_and_loops_are_losses(tmp_path: Path) -> None:
             "'xyz' of <link1> is '1 2'; it must be 3 finite numbers",
         ),
         (
-            '<loop_joint name="l" type="fixed"><link1 link="top" quat_xyzw="0 0 0 1"/></loop_joint>',
+            '<loop_joint name="l" type="fixed">'
+            '<link1 link="top" quat_xyzw="0 0 0 1"/><link2 link="right"/></loop_joint>',
             "<link1> has 'quat_xyzw'; only links and joints can",
         ),
         (
@@ -176,7 +177,7 @@ def test_bad_element_is_refused_with_file_and_line(tmp_path: Path, content: str,
 
 
 def test_attribute_of_a_later_version_is_a_loss(tmp_path: Path) -> None:
-    loop = '<loop_joint name="l"><link1 link="top"/><link2 link="right"/></loop_joint>'
+    loop = '<loop_joint name="l" type="spherical"><link1 link="top"/><link2 link="right"/></loop_joint>'
     turned = robot(loop).replace('<origin xyz="0 0 1"/>', '<origin xyz="0 0 1" quat_xyzw="0 0 1 1"/>')
     (loss,) = imported(tmp_path, turned).losses
     assert (loss.code, loss.name) == ("import-later-version", "quat_xyzw")
