@@ -35,5 +35,5 @@ def lower_limit(number: float) -> float:
 
 
 def upper_limit(number: float) -> float:
-    """EU-FIL-006: an upper, velocity or effort limit; inf if the number is so large that it is none."""
+    """EU-FIL-006: an upper limit, or one of a rate or an effort; inf if the number is so large that it is none."""
     return math.inf if number > LARGEST else number

@@ -83,7 +83,10 @@ _OPTIONAL_IN_ORIGIN = ("xyz", "rpy", "quat_xyzw")
 RANGED = frozenset({JointType.REVOLUTE, JointType.PRISMATIC})
 
 #: Attributes of limits, which may be beyond `LARGEST` on the side where they do not limit: the sign of that side.
-_LIMITS = {"lower": -1.0, "upper": 1.0, "effort": 1.0, "velocity": 1.0}
+_LIMITS = {
+    "lower": -1.0,
+    **dict.fromkeys(("upper", "effort", "velocity", "acceleration", "deceleration", "jerk"), 1.0),
+}
 
 #: Name of the world.
 RESERVED = "universe"
