@@ -29,6 +29,9 @@ PERMITTED = ('yaml: Missing closing "quote', "yaml: Missing closing 'quote")
 #: What the reference rejects as it permits: a key of more than 1024 characters.
 LONG_KEY = re.compile(rb"[^\r\n]{1025}:")
 
+#: What the oracle rejects as it permits: a tab outside scalars and comments.
+TAB = "found character '\\t'"
+
 #: What a description of a bare URDF says.
 BARE = b'extended_urdf: "2.0"\n'
 
@@ -76,6 +79,8 @@ def try_parsers(description: Path, urdf: Path, clock: Callable[[], None] = lambd
     try:
         oracle = read(description, urdf)
     except NotRead as error:
+        if TAB in str(error):
+            return "permitted"
         raise AssertionError(f"only the oracle does not read it: {error}") from error
     _compare("reference", first.robot, oracle.canonical(), oracle.bodies)
     _compare("JavaScript", second.robot, oracle.canonical(), oracle.bodies)
