@@ -169,7 +169,7 @@ def _mass_matrix(
     dropped = [loss for loss in losses if loss.code == "export-armature" and loss.effect is Effect.DROPPED]
     if dropped:
         robot = without_armature(robot, [loss.name for loss in dropped])
-        without = f"the armature of {_count(dropped, 'joint')} is left out of both mass matrices"
+        without = f"the mass matrices are compared without the armature of {_count(dropped, 'joint')}"
         reported.append(f"{without} [{dropped[0].code}]; {dropped[0].hint}")
     expected = mass_matrix(robot, q)
     if not expected.size:
