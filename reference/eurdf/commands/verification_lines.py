@@ -24,11 +24,13 @@ def verification_lines(found: Verification) -> Iterator[Line]:
         read, own = found.mass
         yield [(f"    mass: {read:.6g} kg, of the robot {own:.6g} kg", "")]
         yield [(f"    mass matrix: differs by {found.mass_matrix_error:.1g} of its largest entry", "")]
+        if found.fall is not None:
+            yield [(f"    simulated: {found.fall.seconds:.3g} s, without control", "")]
         for index, opening in enumerate(found.openings):
             line = f"    '{visible(opening.name)}': open by {amount(opening)} at the start"
             if found.fall is not None and found.fall.openings:
                 most, time = found.fall.openings[index], found.fall.times[index]
-                line += f", by up to {amount(most)} in {found.fall.seconds:.3g} s, at {time:.3g} s"
+                line += f", by up to {amount(most)} in the simulation, at {time:.3g} s"
             yield [(line, "")]
     for finding in found.findings:
         yield [("error: ", "bold red"), (visible(finding.message), "bold")]
