@@ -31,19 +31,11 @@ def exported(name: str, to: str) -> eurdf.Export:
 @pytest.mark.parametrize("name", [name for name in ROBOTS if name not in INVALID])
 def test_start_is_closed_and_within_limits(name: str, to: str) -> None:
     try:
-        export = exported(name, to)
-        found = export.verify(seconds=0.0)
+        found = exported(name, to).verify(seconds=0.0)
     except eurdf.MissingExtra as missing:
         pytest.skip(str(missing))
-    assert found.refused == ""
+    assert found.findings == ()
     assert [each for each in found.openings if max(each.position, each.angle) > 1e-8] == []
-    assert found.beyond_limits == ()
-    losses = {loss.code for loss in export.losses}
-    read, own = found.mass
-    if not losses & {"export-massless-base", "export-massless-link"}:
-        assert read == pytest.approx(own, rel=1e-6)
-        if "export-inertia" not in losses:
-            assert found.mass_matrix_error < 1e-6
 
 
 @pytest.mark.parametrize("name", sorted(ROBOTS.keys() & INVALID.keys()))

@@ -101,6 +101,8 @@ class VerificationInfo(_Entry):
     """The simulation; null if the program simulates nothing."""
     findings: tuple[FindingInfo, ...]
     """What is wrong; empty if nothing is."""
+    listed: tuple[str, ...]
+    """What differs as losses say."""
     unverified: tuple[str, ...]
     """What this program cannot compare."""
 
@@ -178,6 +180,7 @@ def _verification_info(found: Verification) -> VerificationInfo:
             FindingInfo(message=encodable(each.message), causes=tuple(map(encodable, each.causes)))
             for each in found.findings
         ),
+        listed=found.listed,
         unverified=found.unverified,
     )
 

@@ -27,7 +27,7 @@ from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 from eurdf.mechanism.same_model import with_universal_joints
 from eurdf.writing.angles import rpy_of
 from eurdf.writing.urdf_elements import (
-    LARGEST,
+    UNLIMITED,
     Color,
     add_dynamics,
     add_inertial,
@@ -332,7 +332,7 @@ def _is_geared(joint: Joint) -> bool:
 
 def _each(values: Sequence[float]) -> Any:
     """One number if all are equal, else a list; infinite ones are the largest double."""
-    finite = [min(max(value, -LARGEST), LARGEST) for value in values]
+    finite = [min(max(value, -UNLIMITED), UNLIMITED) for value in values]
     return finite[0] if len(set(finite)) == 1 else finite
 
 

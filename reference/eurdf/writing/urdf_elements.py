@@ -22,7 +22,7 @@ NO_MATERIALS: Mapping[Color, str] = MappingProxyType({})
 NO_RATES: Mapping[str, float] = MappingProxyType({})
 
 #: What is written where there is no limit, but the file wants a number (EU-FIL-006): rad, m, their rates, N·m or N.
-LARGEST = sys.float_info.max
+UNLIMITED = sys.float_info.max
 
 #: Attributes of `limit` from version 1.2 on.
 _RATES = frozenset({"acceleration", "deceleration", "jerk"})
@@ -120,9 +120,9 @@ def add_limit(
     """
     limit = {}
     if position is not None:
-        lower, upper = (min(max(each, -LARGEST), LARGEST) for each in position)
+        lower, upper = (min(max(each, -UNLIMITED), UNLIMITED) for each in position)
         limit = {"lower": numbers((lower,)), "upper": numbers((upper,))}
-    limit["effort"], limit["velocity"] = (numbers((min(each, LARGEST),)) for each in (effort, velocity))
+    limit["effort"], limit["velocity"] = (numbers((min(each, UNLIMITED),)) for each in (effort, velocity))
     limit |= {name: numbers((value,)) for name, value in rates.items()}
     etree.SubElement(joint, "limit", limit)
 
@@ -136,7 +136,7 @@ def state_version(robot: etree._Element) -> None:
         robot.set("version", "1.2")
         for limit in robot.iter("limit"):
             for name in ("effort", "velocity"):
-                if float(limit.get(name, "0")) >= LARGEST:
+                if float(limit.get(name, "0")) >= UNLIMITED:
                     del limit.attrib[name]
     elif next(robot.iter("capsule"), None) is not None:
         robot.set("version", "1.1")

@@ -25,7 +25,7 @@ from eurdf.mechanism.body import Body, Inertia
 from eurdf.mechanism.constraint import Closure, Coupling, DistanceClosure, FrameClosure, HingeClosure, PointClosure
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import ROOT_JOINT
+from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.mechanism.mimic import drivers
 from eurdf.mechanism.motor import Motor
 from eurdf.mechanism.pose import IDENTITY, Vector3, direction
@@ -196,10 +196,10 @@ LOSSES = (
         "link without mass",
         Effect.APPROXIMATE,
         f"gets {LEAST:g} kg and kg·m²: Drake replaces inertia without mass by 1 kg of water, and does not simulate a "
-        "mimic joint, which is free there, without inertia",
+        "joint that moves no inertia, nor a mimic joint, which is free there, whose link has none",
         "give the link its mass",
         error=f"{LEAST:g} kg and kg·m² in the mass matrix",
-        only="links with inertia, or with a mimic joint",
+        only="links with inertia, with a mimic joint, or with a joint that moves no inertia",
     ),
     LossKind(
         "export-inertia",
@@ -227,6 +227,18 @@ def write(given: Exportable) -> Written:
     return Written(files, tree.losses.found, Coordinates(tuple(tree.parts), given.own, "wxyz"))
 
 
+def _moved_without_mass(mechanism: Mechanism) -> set[str]:
+    """The links that need inertia: those that a joint moves with no inertia beyond it, or a mimic joint."""
+    with_inertia = {body.name for body in mechanism.bodies if has_inertia(body)}
+    found = set()
+    for joint in reversed(mechanism.joints):  # from the leaves
+        if joint.child in with_inertia:
+            with_inertia.add(joint.parent)
+        if joint.mimic is not None or (joint.type is not JointType.FIXED and joint.child not in with_inertia):
+            found.add(joint.child)
+    return found
+
+
 def _tag(name: str) -> str:
     return f"{{{_NAMESPACE}}}{name}"
 
@@ -241,8 +253,7 @@ class _Tree(UrdfTree):
         self.base = mechanism.bodies[0].name
         if _WORLD in self.links and not (mechanism.root == "fixed" and self.base == _WORLD):
             self.links[_WORLD] = self.names.new(_WORLD)
-        #: Links that a mimic joint moves, which is free in Drake.
-        self.coupled = {joint.child for joint in mechanism.joints if joint.mimic is not None}
+        self.without_mass = _moved_without_mass(mechanism)
         self.mimics = drivers({joint.name: joint.mimic for joint in mechanism.joints if joint.mimic is not None})
 
     def write(self) -> None:
@@ -265,7 +276,7 @@ class _Tree(UrdfTree):
             self._coupling(coupling)
 
     def inertia(self, body: Body) -> Inertia | None:
-        if has_inertia(body) or body.name in self.coupled:
+        if has_inertia(body) or body.name in self.without_mass:
             return accepted_inertia(body, self.losses, LEAST)
         return body.inertia
 

@@ -94,6 +94,7 @@ class DrakeModel:
     unverified: tuple[str, ...] = ("the robot falls without contacts: its shapes are not read",)
     tolerance = mass_tolerance = 1e-6
     step = 1e-3
+    shorter = "divide the time step of MultibodyPlant by 2"
 
     def __init__(self, exported: Exported) -> None:
         self._exported, self.coordinates = exported, exported.coordinates
@@ -192,6 +193,7 @@ class SdfTree:
     # Links between the joints that a joint becomes have 1e-9 kg and kg·m², which small robots notice.
     mass_tolerance = 1e-4
     step = 0.0
+    shorter = ""
     velocities: tuple[tuple[str, str], ...] = ()
 
     def __init__(self, exported: Exported) -> None:

@@ -23,6 +23,8 @@ _MOST_SHOWN = 4
 #: An opening above this is reported, m or rad.
 OPENS = 5e-3
 
+_BOUND = f"{OPENS * 1e3:g} mm or {np.degrees(OPENS):.2g} degrees"
+
 #: A joint that turns by more than this in a step is too fast for the step, rad or m.
 _TOO_FAST = 0.1
 
@@ -95,7 +97,7 @@ class _Run:
         if self.fall.diverged:
             return f"it diverges at {self.fall.seconds:.3g} s"
         distance, angle = (max((getattr(o, x) for o in self.fall.openings), default=0.0) for x in ("position", "angle"))
-        return f"constraints open by up to {distance * 1e3:.2g} mm and {np.degrees(angle):.2g} degrees"
+        return f"constraints open by up to {amount(Opening('', distance, angle))}"
 
 
 def simulate(
@@ -116,9 +118,9 @@ def simulate(
     said = f" ({run.message})" if run.message else ""
     what = [f"the simulation diverges at {run.fall.seconds:.3g} s{said}"] if run.fall.diverged else []
     if opened:
-        what.append(f"constraints open in the fall: {listed(opened)}")
+        what.append(f"constraints open by more than {_BOUND} in the fall: {listed(opened)}")
     halved = _run(model.fall(motion.start, seconds, slower=2), seconds, progress)
-    helps = "; shorten the time step" if not halved.fall.diverged and halved.opening <= OPENS else ""
+    helps = f"; {model.shorter}" if not halved.fall.diverged and halved.opening <= OPENS else ""
     again = [f"with half the time step, {model.step / 2:g} s, {halved.result}{helps}"]
     if any(each.contact for each in run.worst):
         free = _run(model.fall(motion.start, seconds, contacts=False), seconds, progress)
@@ -159,6 +161,13 @@ def _run(instants: Iterator[Instant], seconds: float, progress: Callable[[float,
 def size(opening: Opening) -> float:
     """Of an opening, the larger of its distance and its angle, m or rad."""
     return max(opening.position, opening.angle)
+
+
+def amount(opening: Opening) -> str:
+    """Distance and angle of an opening, with two digits; the angle only if it is not 0."""
+    # Through a number: format codes alone write 540 as 5.4e+02.
+    text, angle = (f"{float(f'{each:.2g}'):g}" for each in (opening.position * 1e3, np.degrees(opening.angle)))
+    return f"{text} mm and {angle} degrees" if opening.angle else f"{text} mm"
 
 
 # -- why: only what the run shows -------------------------------------------------------------------------------------
@@ -211,8 +220,8 @@ def _singular(motion: Motion, worst: Sequence[Instant]) -> Iterator[str]:
         joints = _most(directions[rank - 1], list(columns.values()))
         yield (
             f"at {time:.4g} s, the loops are close to a singular pose, at which {_quoted(joints)} can move without the "
-            f"actuated joints: the smallest singular value of K of the passive joints is {least[rank - 1]:.1e}, "
-            f"{values[rank - 1]:.1e} at the start"
+            "actuated joints: the smallest singular value of the constraint Jacobian of the passive joints is "
+            f"{least[rank - 1]:.1e}, {values[rank - 1]:.1e} at the start"
         )
         unlimited = [name for name in joints if not _has_limits(robot, name)]
         without = f"{_quoted(unlimited)} {'have' if len(unlimited) > 1 else 'has'} no limits; " if unlimited else ""
@@ -231,8 +240,8 @@ def _massless(motion: Motion, worst: Sequence[Instant]) -> Iterator[str]:
         joints = _most(directions[:, 0], list(joint_of_velocity(robot).values()))
         yield (
             f"at {time:.4g} s, {_quoted(joints)} {'move' if len(joints) > 1 else 'moves'} almost no mass: the smallest "
-            f"eigenvalue of M is {values[0]:.1e}, {before:.1e} at the start; if they are one ball joint, describe it "
-            "as 'spherical', else give the links between them their mass"
+            f"eigenvalue of the mass matrix is {values[0]:.1e}, {before:.1e} at the start; if they are one ball joint, "
+            "describe it as 'spherical', else give the links between them their mass"
         )
 
 

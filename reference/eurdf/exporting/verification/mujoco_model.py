@@ -22,6 +22,7 @@ class MuJoCoModel:
     reader = f"MuJoCo {mujoco.__version__}"
     unverified: tuple[str, ...] = ()
     tolerance = mass_tolerance = 1e-6
+    shorter = "divide timestep, and the first number of solref, by 2 in the file"
 
     def __init__(self, exported: Exported) -> None:
         self.coordinates = exported.coordinates

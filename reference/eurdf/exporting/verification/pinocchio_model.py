@@ -21,6 +21,7 @@ class PinocchioModel:
     unverified: tuple[str, ...] = ("the fall is not simulated: Pinocchio reads no loops",)
     tolerance = mass_tolerance = 1e-6
     step = 0.0
+    shorter = ""
     velocities: tuple[tuple[str, str], ...] = ()
 
     def __init__(self, exported: Exported) -> None:

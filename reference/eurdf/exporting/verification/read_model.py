@@ -112,6 +112,10 @@ class ReadModel(Protocol):
         """Time step of its simulations, s; 0 if it simulates nothing."""
 
     @property
+    def shorter(self) -> str:
+        """What to do for a shorter time step."""
+
+    @property
     def velocities(self) -> Sequence[tuple[str, str]]:
         """Joint and unit (rad or m) of each velocity of the model."""
 

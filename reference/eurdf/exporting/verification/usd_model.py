@@ -72,6 +72,7 @@ class UsdModel:
     # USD has inertias, and frames of joints, in single precision.
     tolerance = mass_tolerance = 1e-5
     step = 0.0
+    shorter = ""
     velocities: tuple[tuple[str, str], ...] = ()
 
     def __init__(self, exported: Exported) -> None:

@@ -26,7 +26,7 @@ from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import IDENTITY, Pose
 from eurdf.reading.resource import FileFinder
 from eurdf.writing.names import UniqueNames
-from eurdf.writing.urdf_elements import LARGEST
+from eurdf.writing.urdf_elements import UNLIMITED
 
 _WORLD = "world"
 _X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
@@ -142,9 +142,9 @@ def _make_plain(root: etree._Element, elements: Elements, joints: _Joints) -> No
             for key in map(str, limit.keys()):
                 if key.endswith(("}acceleration", ":acceleration")):
                     joints.acceleration[name] = elements.attribute(limit, key)
-            unlimited = {"effort": f"{LARGEST!r}", "velocity": f"{LARGEST!r}"}
+            unlimited = {"effort": f"{UNLIMITED!r}", "velocity": f"{UNLIMITED!r}"}
             if kind in ("revolute", "prismatic"):
-                unlimited |= {"lower": f"{-LARGEST!r}", "upper": f"{LARGEST!r}"}
+                unlimited |= {"lower": f"{-UNLIMITED!r}", "upper": f"{UNLIMITED!r}"}
             for attribute, value in unlimited.items():
                 if limit.get(attribute) is None:
                     limit.set(attribute, value)
