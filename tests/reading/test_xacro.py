@@ -136,6 +136,17 @@ def test_named_xacro_does_nothing_but_read_files_of_the_robot(
     assert "a xacro, which is a program" in found.message
 
 
+@pytest.mark.parametrize("where", ["environ", "environb", "sys.modules[posix].environ"])
+def test_named_xacro_does_not_see_the_environment(folder: Path, where: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SECRET", "swordfish")
+    path = f"'\\x7b0._' + '_globals_' + '_[os].{where}\\x7d'"
+    content = f"<link name=\"seen ${{({path}).format(xacro.load_yaml).count('swordfish')}} times\"/>"
+    describe_arm(folder, robot_with(content))
+    (folder / "arm.yaml").write_text('extended_urdf: "2.0"\nurdf: arm.urdf.xacro\n', encoding="utf-8")
+    assert [body.name for body in describe("arm.yaml").mechanism.bodies] == ["seen 0 times"]
+    assert [body.name for body in describe("arm.urdf.xacro").mechanism.bodies] == ["seen 1 times"]
+
+
 def test_links_of_an_installer_are_followed(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     describe_arm(folder, ARM.replace("<link", '<xacro:include filename="part.xacro"/>\n<link', 1))
     (folder / "part.xacro").write_text(robot_with(""), encoding="utf-8")
