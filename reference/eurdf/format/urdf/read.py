@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-
 from eurdf.diagnostics import Diagnostics
 from eurdf.format.urdf.data import Urdf, UrdfJoint, UrdfLink
 from eurdf.format.urdf.elements import UrdfReader
