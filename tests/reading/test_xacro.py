@@ -96,6 +96,14 @@ def test_error_in_a_named_xacro_is_at_its_name(folder: Path) -> None:
     assert {found.file for found in eurdf.check("arm.yaml").errors} == {"arm.urdf.xacro (expanded)"}
 
 
+def test_named_xacro_is_a_regular_file(folder: Path) -> None:
+    describe_arm(folder)
+    (folder / "arm.urdf.xacro").unlink()
+    os.mkfifo(folder / "arm.urdf.xacro")
+    (found,) = eurdf.check("arm.yaml").diagnostics
+    assert found.message == "'arm.urdf.xacro' is a pipe or a device, not a file"
+
+
 #: Through the frames of Python: the globals of the module xacro.
 GLOBALS = "(lambda l: [l.append((x.gi_frame.f_back.f_back.f_back.f_globals for x in l)), *l[0]])([])[1]"
 
