@@ -116,6 +116,16 @@ def test_invalid_robot_is_refused(here: Path, capsys: pytest.CaptureFixture[str]
     assert [path.name for path in here.iterdir()] == ["robot.urdf"]
 
 
+def test_loop_of_another_dialect_is_not_lost_in_silence(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = '<robot name="r"><link name="base"/><loop_joint name="pin" type="revolute"/></robot>'
+    (here / "isaac.urdf").write_text(text, encoding="utf-8")
+    assert main(["export", "isaac.urdf", "--to", "mjcf", "--json"]) == 0
+    captured = capsys.readouterr()
+    assert "isaac.urdf:1:36: warning: <loop_joint>" in captured.err
+    assert "eurdf import" in captured.err
+    assert json.loads(captured.out)["refused"] is None
+
+
 def test_name_of_the_robot_leads_to_no_other_folder(here: Path) -> None:
     (here / "robot.urdf").write_text('<robot name="../../x y"><link name="a"/></robot>')
     assert main(["export", "robot.urdf", "--to", "mjcf"]) == 0

@@ -42,6 +42,10 @@ FILES = {
     "robot.sdf": (b'<?xml version="1.0"?>\n<!-- r -->\n<sdf version="1.11"><model name="r"/></sdf>', "sdf"),
     "isaac.urdf": (robot(JOINT + '<loop_joint name="l"/>'), "loop-joint"),
     "drake.urdf": (robot(JOINT + '<drake:ball_constraint name="l"/>'), "drake"),
+    "other_namespace.urdf": (
+        robot(JOINT + '<drake:ball_constraint name="l"/>').replace(b"http://drake.mit.edu", b"urn:drake"),
+        "drake",
+    ),
     "joint.urdf": (robot('<drake:joint name="j" type="ball"/>'), "drake"),
     "plus.urdf": (robot(JOINT + '<coupling name="l"/>'), "urdf-plus"),
     "proposal.urdf": (robot(JOINT + '<constraint name="l"/>'), "cannot read the <constraint> proposed for URDF; write"),

@@ -96,6 +96,14 @@ def test_error_in_a_named_xacro_is_at_its_name(folder: Path) -> None:
     assert {found.file for found in eurdf.check("arm.yaml").errors} == {"arm.urdf.xacro (expanded)"}
 
 
+def test_named_xacro_is_a_regular_file(folder: Path) -> None:
+    describe_arm(folder)
+    (folder / "arm.urdf.xacro").unlink()
+    os.mkfifo(folder / "arm.urdf.xacro")
+    (found,) = eurdf.check("arm.yaml").diagnostics
+    assert found.message == "'arm.urdf.xacro' is a pipe or a device, not a file"
+
+
 #: Through the frames of Python: the globals of the module xacro.
 GLOBALS = "(lambda l: [l.append((x.gi_frame.f_back.f_back.f_back.f_globals for x in l)), *l[0]])([])[1]"
 
@@ -134,6 +142,17 @@ def test_named_xacro_does_nothing_but_read_files_of_the_robot(
         assert "file-unreadable" not in {each.code for each in eurdf.check("arm.yaml", allow_outside=True).diagnostics}
     (found,) = eurdf.check("arm.yaml", confined=True).diagnostics
     assert "a xacro, which is a program" in found.message
+
+
+@pytest.mark.parametrize("where", ["environ", "environb", "sys.modules[posix].environ"])
+def test_named_xacro_does_not_see_the_environment(folder: Path, where: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SECRET", "swordfish")
+    path = f"'\\x7b0._' + '_globals_' + '_[os].{where}\\x7d'"
+    content = f"<link name=\"seen ${{({path}).format(xacro.load_yaml).count('swordfish')}} times\"/>"
+    describe_arm(folder, robot_with(content))
+    (folder / "arm.yaml").write_text('extended_urdf: "2.0"\nurdf: arm.urdf.xacro\n', encoding="utf-8")
+    assert [body.name for body in describe("arm.yaml").mechanism.bodies] == ["seen 0 times"]
+    assert [body.name for body in describe("arm.urdf.xacro").mechanism.bodies] == ["seen 1 times"]
 
 
 def test_links_of_an_installer_are_followed(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

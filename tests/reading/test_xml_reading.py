@@ -415,6 +415,7 @@ def test_any_text_gives_document_or_error(pieces: list[str]) -> None:
         ("<robot><?é:y z?></robot>", (1, 10), "the ':' in the name 'é:y'", "an instruction"),
         ("<robot xmlns:x='u' x:1='2'/>", (1, 20), "the ':' in the name 'x:1'", "at most one ':'"),
         ("<robot>\n<sensor:eye/></robot>", (2, 2), "'sensor' of 'sensor:eye' is not declared", 'xmlns:sensor="'),
+        ("<robot><drake:joint/></robot>", (1, 9), "'drake' of 'drake:joint'", 'xmlns:drake="http://drake.mit.edu"'),
         ("<robot><é xmlns:x='u' x:b='1' y:c='2'/></robot>", (1, 31), "'y' of 'y:c' is not declared", "declare it"),
         ("<robot><a xmlns:x='u'/><x:b/></robot>", (1, 25), "the prefix 'x' of 'x:b' is not declared", "declare it"),
         ("<robot xmlns:x='u' x:a='1' xmlns:y='u' y:a='2'/>", (1, 40), "'x:a' and 'y:a' have one name", "remove one"),

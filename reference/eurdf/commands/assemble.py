@@ -6,7 +6,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from eurdf.commands.cannot_run import CannotRun
-from eurdf.commands.migrate import print_notes, show_refusal
+from eurdf.commands.migrate import print_notes, show_report
 from eurdf.commands.output import cell, new_table, write_json, write_rendered
 from eurdf.commands.robot_options import add_robot_options, add_robot_path, ending, robot_options
 from eurdf.commands.selection import select_one
@@ -78,7 +78,7 @@ def run(args: argparse.Namespace) -> int:
         raise CannotRun("--force has no effect without --write; add --write")
     description = describe(path, geometry=False, **robot_options(args))
     if isinstance(description, Unlinked) or description.diagnostics.refused:
-        show_refusal(description.path, tuple(description.diagnostics), args.json)
+        show_report(description.path, tuple(description.diagnostics), args.json)
         return 1
     if not isinstance(description, Described):
         raise CannotRun(

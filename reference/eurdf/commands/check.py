@@ -24,8 +24,8 @@ a robot if its name is *.eurdf.yaml, or if it has the top-level key extended_urd
 pipe contains one text: a URDF, which begins with <, or a description, whose paths are relative to the working
 directory.
 
-Of several paths, a folder without a robot is skipped, and named on the standard error: eurdf check robots/*/. A single
-one is an error, and so is a folder with several files that may be the robot.
+Of several paths, a folder without a robot is skipped, and named on the standard error: eurdf check robots/*/. It is an
+error if no other path is left, and if a folder has several files that may be the robot.
 
 A warning whose code begins with x- is advice: the file conforms, but is probably not what you intended.
 """

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.loss_lines import loss_lines
-from eurdf.commands.migrate import print_notes, show_refusal
+from eurdf.commands.migrate import print_notes, show_report
 from eurdf.commands.output import write_json, write_lines
 from eurdf.commands.output_file import writing
 from eurdf.commands.progress import progress_bar
@@ -105,8 +105,10 @@ def run(args: argparse.Namespace) -> int:
     description = describe(path, **options)
     as_json = args.format == "json"
     if isinstance(description, Unlinked) or description.diagnostics.refused:
-        show_refusal(description.path, tuple(description.diagnostics), as_json)
+        show_report(description.path, tuple(description.diagnostics), as_json)
         return 1
+    if description.diagnostics:  # such as closures of another dialect, which the file will not have
+        show_report(description.path, tuple(description.diagnostics), False)
 
     from eurdf.exporting.exceptions import CannotExport
     from eurdf.exporting.export import Choices, export_linked

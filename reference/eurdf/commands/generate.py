@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.editor_schema import NOT_BESIDE, EditorSchema, add_schema_option, schema_beside, write_described
-from eurdf.commands.migrate import print_notes, report_schema, show_refusal, urdf_named, urdf_notes, write_yaml
+from eurdf.commands.migrate import print_notes, report_schema, show_report, urdf_named, urdf_notes, write_yaml
 from eurdf.commands.output import write_json
 from eurdf.commands.output_file import add_output_option, refuse_to_replace
 from eurdf.commands.robot_options import add_urdf_options, add_urdf_path, ending, require_urdf, urdf_options
@@ -101,7 +101,7 @@ def run(args: argparse.Namespace) -> int:
     diagnostics = Diagnostics()
     urdf = read_urdf_alone(args.urdf, diagnostics, **options)
     if urdf is None:
-        show_refusal(shown(args.urdf), tuple(diagnostics), args.json)
+        show_report(shown(args.urdf), tuple(diagnostics), args.json)
         return 1
     source = urdf.document.source
     if args.version == "1":  # which cannot name a xacro
@@ -122,7 +122,7 @@ def run(args: argparse.Namespace) -> int:
     schema = beside(generation.version)
     advice = hints(urdf, generation.found, convention)
     if generation.mechanism is None:
-        show_refusal(shown(args.urdf), tuple(generation.diagnostics), args.json)
+        show_report(shown(args.urdf), tuple(generation.diagnostics), args.json)
         print_notes(["nothing was written: the names contradict each other"])
         return 1
     if args.output is not None:

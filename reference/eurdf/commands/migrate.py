@@ -63,7 +63,7 @@ def run(args: argparse.Namespace) -> int:
     description = describe(path, **options)
     path = description.path
     if isinstance(description, Unlinked) or description.diagnostics.refused:
-        show_refusal(path, tuple(description.diagnostics), args.json)
+        show_report(path, tuple(description.diagnostics), args.json)
         return 1
     if not isinstance(description, Described):
         raise CannotRun(
@@ -160,8 +160,8 @@ def urdf_from(description: str | os.PathLike[str], urdf: str | os.PathLike[str])
         return place.as_posix()
 
 
-def show_refusal(path: str, diagnostics: tuple[Any, ...], as_json: bool) -> None:
-    """Show why nothing is written, on the standard error if the output is a description."""
+def show_report(path: str, diagnostics: tuple[Any, ...], as_json: bool) -> None:
+    """Show the diagnostics of a robot: on the standard error, or as JSON in place of the output."""
     from eurdf.commands.check import write_reports
     from eurdf.diagnostics.report import Report, reports_to_json
 

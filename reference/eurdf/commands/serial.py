@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from eurdf.commands.cannot_run import CannotRun
-from eurdf.commands.migrate import print_notes, show_refusal
+from eurdf.commands.migrate import print_notes, show_report
 from eurdf.commands.output import cell, new_table, write_rendered
 from eurdf.commands.output_file import writing
 from eurdf.commands.robot_options import add_robot_options, add_robot_path, add_serial_joints, ending, robot_options
@@ -74,7 +74,7 @@ def run(args: argparse.Namespace) -> int:
     try:
         robot = load(path, **robot_options(args))
     except InvalidRobot as refusal:
-        show_refusal(path, tuple(refusal.diagnostics), False)
+        show_report(path, tuple(refusal.diagnostics), False)
         return 1
     from eurdf.transmissions.serial_twin import serial_twin
 

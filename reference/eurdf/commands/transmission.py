@@ -12,7 +12,7 @@ from itertools import product
 from typing import TYPE_CHECKING, Any
 
 from eurdf.commands.cannot_run import CannotRun
-from eurdf.commands.migrate import print_notes, show_refusal
+from eurdf.commands.migrate import print_notes, show_report
 from eurdf.commands.output import cell, new_table, write_json, write_rendered
 from eurdf.commands.output_file import refuse_to_replace, write_new, writing
 from eurdf.commands.robot_options import add_robot_options, add_robot_path, add_serial_joints, ending, robot_options
@@ -97,7 +97,7 @@ def run(args: argparse.Namespace) -> int:
     try:
         robot = load(path, geometry=False, **robot_options(args))
     except InvalidRobot as refusal:
-        show_refusal(path, tuple(refusal.diagnostics), args.json)
+        show_report(path, tuple(refusal.diagnostics), args.json)
         return 1
     try:
         info = _info(robot, args)

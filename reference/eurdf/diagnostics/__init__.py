@@ -1,6 +1,15 @@
 """Diagnostics: codes, places, messages, and how they are shown."""
 
-from eurdf.diagnostics.diagnostic import Diagnostic, Diagnostics, FileError, Hint, Place, did_you_mean, quoted
+from eurdf.diagnostics.diagnostic import (
+    Diagnostic,
+    Diagnostics,
+    FileError,
+    Hint,
+    Place,
+    did_you_mean,
+    enumerated,
+    quoted,
+)
 from eurdf.diagnostics.registry import REGISTRY, Phase, Rule, Severity
 
 __all__ = [
@@ -14,5 +23,6 @@ __all__ = [
     "Rule",
     "Severity",
     "did_you_mean",
+    "enumerated",
     "quoted",
 ]

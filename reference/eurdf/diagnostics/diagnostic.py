@@ -222,6 +222,14 @@ def quoted(names: Sequence[str], most: int = 3) -> str:
     return ", ".join(f"'{name}'" for name in names[:most]) + (", ..." if len(names) > most else "")
 
 
+def enumerated(names: Sequence[str], most: int = 6) -> str:
+    """Quoted names for a sentence: the first ones, and how many more there are: "'a', 'b' and 2 more"."""
+    items = [f"'{name}'" for name in names[:most]]
+    if len(names) > most:
+        items.append(f"{len(names) - most} more")
+    return " and ".join(filter(None, (", ".join(items[:-1]), items[-1])))
+
+
 def did_you_mean(wrong: str, known: Iterable[str], beside: str = "") -> str | None:
     """The hint for a misspelt name: the most similar known name, or None if none is similar.
 

@@ -93,5 +93,5 @@ def named(element: etree._Element) -> str:
 
 
 def local(element: etree._Element) -> str:
-    """The tag of an element without its namespace or prefix."""
-    return str(element.tag).rpartition("}")[2].rpartition(":")[2]
+    """The tag of an element without its namespace."""
+    return str(element.tag).rpartition("}")[2]

@@ -44,13 +44,13 @@ def _refuse_yaml(path: Path) -> None:
     except FileError:
         return  # what is wrong with it as XML is reported
     if found := of_mapping(data):
-        raise CannotImport(path, f"it is {found.title}; {found.hint}")
+        raise CannotImport(path, found.hint)
     if VERSION_KEY in data:
         raise CannotImport(path, "it is a description; use it as it is: `eurdf check`")
 
 
 def _dialect(path: Path, root: etree._Element) -> OtherFormat:
-    found = [(element, dialect) for element in root if (dialect := of_element(str(element.tag)))]
+    found = [(element, dialect) for element in root if (dialect := of_element(element))]
     if not found:
         raise CannotImport(
             path, "it is a URDF without loops of another dialect; use it as it is: `eurdf check`, `eurdf generate`"

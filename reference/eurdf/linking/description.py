@@ -23,7 +23,7 @@ from eurdf.mechanism.mechanism import Mechanism, Root
 from eurdf.mesh_files.folders import Folders
 from eurdf.reading.given import Given, shown, source_of
 from eurdf.reading.resource import HINT, FileFinder
-from eurdf.reading.source import Source, read_source
+from eurdf.reading.source import Source, read_bytes, read_source
 from eurdf.reading.xacro import expand, is_xacro
 from eurdf.reading.xml_reader import read_xml
 from eurdf.reading.yaml_reader import YamlDocument, read_yaml
@@ -256,13 +256,15 @@ def _named_xacro(
 
     Raises:
         CannotExpand: It has an error, and arguments are given, which may be the reason.
-        FileError: ``file-unreadable``: it has an error, or files are confined; or ``file-too-large``.
+        FileError: ``file-unreadable``: it is no regular file, has an error, or files are confined; or
+            ``file-too-large``.
         MissingExtra: The extra ``xacro`` is not installed.
     """
     place = extension.document.place(("urdf",))
     if folders is None:
         message = f"the URDF '{urdf}' is a xacro, which is a program, and files are confined to their folder"
         raise FileError("file-unreadable", message, place, "expand it, and name the result")
+    read_bytes(os.fspath(urdf))  # refuses what is no regular file, as of every file that a description names
     try:
         source, warnings = expand(urdf, xacro_args, package_dirs, folders)
     except CannotExpand as error:

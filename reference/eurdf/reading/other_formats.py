@@ -9,6 +9,8 @@ import re
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
+from lxml import etree
+
 from eurdf.diagnostics import FileError, Place
 
 _CLOSURES = (
@@ -72,7 +74,9 @@ _BY_ELEMENT = {
     "coupling": IMPORTED["urdf-plus"],
     "constraint": _CONSTRAINT,
 }
-_DRAKE = ("{http://drake.mit.edu}", "drake:")
+
+#: Namespaces of others, by their usual prefix.
+NAMESPACES = {"drake": "http://drake.mit.edu"}
 
 #: Root elements of the files that can be imported, in the order for messages.
 ROOTS = (*_BY_ROOT, "robot")
@@ -90,13 +94,11 @@ def of_root(tag: str) -> OtherFormat | None:
     return _BY_ROOT.get(tag)
 
 
-def of_element(tag: str) -> OtherFormat | None:
-    """The dialect of URDF that has an element in ``robot``.
-
-    Args:
-        tag: Its name as lxml gives it, or as written if the prefix is not declared.
-    """
-    return IMPORTED["drake"] if tag.startswith(_DRAKE) else _BY_ELEMENT.get(tag)
+def of_element(element: etree._Element) -> OtherFormat | None:
+    """The dialect of URDF that has an element in ``robot``. Drake knows its own by the prefix."""
+    tag = str(element.tag)
+    is_drake = element.prefix == "drake" or tag.startswith(f"{{{NAMESPACES['drake']}}}")
+    return IMPORTED["drake"] if is_drake else _BY_ELEMENT.get(tag)
 
 
 def of_mapping(data: Mapping[str, Any]) -> OtherFormat | None:

@@ -100,7 +100,7 @@ def read_source(path: str | os.PathLike[str], limit: int = FILE_LIMIT, *, is_quo
         FileError: ``file-unreadable``, ``file-too-large`` or ``file-not-utf8``.
     """
     file = os.fsdecode(path)
-    return decoded(_read_bytes(file, limit), file, is_quoted=is_quoted)
+    return decoded(read_bytes(file, limit), file, is_quoted=is_quoted)
 
 
 def decoded(data: bytes, file: str, base: Path | None = None, *, is_quoted: bool = True) -> Source:
@@ -133,7 +133,12 @@ def decoded(data: bytes, file: str, base: Path | None = None, *, is_quoted: bool
     return Source(file, text, data, base, is_quoted)
 
 
-def _read_bytes(file: str, limit: int) -> bytes:
+def read_bytes(file: str, limit: int = FILE_LIMIT) -> bytes:
+    """Read a file as `read_source` does; its text may have any encoding.
+
+    Raises:
+        FileError: ``file-unreadable`` or ``file-too-large``.
+    """
     place = Place(file)
     try:
         descriptor = open_now(file)

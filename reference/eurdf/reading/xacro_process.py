@@ -28,7 +28,8 @@ _LATE = ("glob", "xacro.substitution_args", "xml.dom.expatbuilder", "xml.parsers
 #: What an expansion does, by the names of Python's audit events.
 _HARMLESS = ("builtins.id", "compile", "exec", "glob.glob", "glob.glob/2", "open", "os.listdir", "os.scandir")
 
-_NOT_TRUSTED = "a xacro that a description names may not; if you trust it, give it with --urdf (urdf= in Python)"
+_MAY_NOT = "which a xacro that a description names may not"
+_IF_TRUSTED = "if you trust the xacro, give it with --urdf (urdf= in Python)"
 
 
 class Arguments(dict[str, str]):
@@ -73,12 +74,14 @@ class _Watch:
         self.read: dict[str, None] = {}
         self.refused: list[str] = []
         if self._folders is not None:
+            os.environ.clear()
+            import_module(os.name).environ.clear()  # its own copy
             os.environ = _NoEnvironment(self)  # type: ignore[assignment]  # noqa: B003 - for this process alone
         sys.addaudithook(self._audit)
 
     def refuse(self, what: str) -> PermissionError:
         """The exception for what a confined expansion may not do."""
-        self.refused.append(f"{what}; {_NOT_TRUSTED}")
+        self.refused.append(f"{what}; {_IF_TRUSTED}")
         return PermissionError(what)
 
     def _audit(self, event: str, arguments: tuple[Any, ...]) -> None:
@@ -87,10 +90,10 @@ class _Watch:
             is_read = not flags & (os.O_WRONLY | os.O_RDWR | os.O_CREAT)
             if self._folders is not None and not (is_read and self._folders.contains(path)):
                 hint = "give the folder of its package with --package-dir (package_dirs= in Python)"
-                raise self.refuse(f"it opens '{path}', which is outside {self._folders}: {hint}")
+                raise self.refuse(f"it opens '{path}', which is outside {self._folders}; {hint}")
             self.read[os.path.abspath(path)] = None
         elif self._folders is not None and event not in _HARMLESS:
-            raise self.refuse(f"it uses '{event}' of Python")
+            raise self.refuse(f"it uses '{event}' of Python, {_MAY_NOT}")
 
 
 class _NoEnvironment(dict[str, str]):
@@ -101,10 +104,10 @@ class _NoEnvironment(dict[str, str]):
         self._watch = watch
 
     def __contains__(self, name: object) -> bool:
-        raise self._watch.refuse(f"it reads the environment variable '{name}'")
+        raise self._watch.refuse(f"it reads the environment variable '{name}', {_MAY_NOT}")
 
     def __getitem__(self, name: str) -> str:
-        raise self._watch.refuse(f"it reads the environment variable '{name}'")
+        raise self._watch.refuse(f"it reads the environment variable '{name}', {_MAY_NOT}")
 
 
 def main() -> None:

@@ -8,7 +8,7 @@ from xml.parsers import expat
 from xml.parsers.expat import errors
 
 from eurdf.diagnostics import FileError
-from eurdf.reading.other_formats import of_text
+from eurdf.reading.other_formats import NAMESPACES, of_text
 from eurdf.reading.source import Source, short
 
 #: Maximum depth of nested elements; the default of libxml2.
@@ -124,7 +124,8 @@ def _explain_namespaces(
     for name in names:
         prefix, _, local = name[0].rpartition(":")
         if problem == errors.XML_ERROR_UNBOUND_PREFIX and prefix not in ("", "xmlns") and not declared.get(prefix):
-            hint = f'declare it, as in <robot xmlns:{short(prefix)}="urn:{short(prefix)}">, or remove the prefix'
+            namespace = NAMESPACES.get(prefix, f"urn:{short(prefix)}")
+            hint = f'declare it, as in <robot xmlns:{short(prefix)}="{namespace}">, or remove the prefix'
             return *name.span(), f"the prefix '{short(prefix)}' of '{short(name[0])}' is not declared", hint
         if problem == errors.XML_ERROR_DUPLICATE_ATTRIBUTE and declared.get(prefix) and name is not names[0]:
             other = expanded.setdefault((declared[prefix][-1], local), name[0])

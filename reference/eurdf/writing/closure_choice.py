@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from eurdf.dataclass import dataclass
+from eurdf.diagnostics import enumerated
 from eurdf.mechanism.constraint import CLOSURES, Closure
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.writing.naming_conventions import ClosureType
@@ -153,18 +154,11 @@ def _with_type(closure: Closure, type_: ClosureType | None) -> Closure:
 
 
 def _dependent(together: Sequence[str]) -> str:
-    return f"{_names(together)} {'cannot move' if len(together) == 1 else 'depend on one another'}"
+    return f"{enumerated(together)} {'cannot move' if len(together) == 1 else 'depend on one another'}"
 
 
 def _are(names: Sequence[str], kind: str) -> str:
-    return f"{_names(names)} {'is' if len(names) == 1 else 'are'} {kind}"
-
-
-def _names(names: Sequence[str]) -> str:
-    quoted = [f"'{name}'" for name in names]
-    if len(quoted) > 6:
-        return f"{', '.join(quoted[:6])} and {len(quoted) - 6} more"
-    return " and ".join(filter(None, (", ".join(quoted[:-1]), quoted[-1])))
+    return f"{enumerated(names)} {'is' if len(names) == 1 else 'are'} {kind}"
 
 
 def _effect(candidate: _Candidate) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from eurdf.dataclass import dataclass
-from eurdf.diagnostics import Diagnostics
+from eurdf.diagnostics import Diagnostics, enumerated
 from eurdf.format.own_key import is_own_key
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.version import VERSION2_0, VERSION2_1
@@ -116,7 +116,7 @@ def _mate_notes(mates: Mates, version: GeneratedVersion) -> tuple[str, ...]:
     """What is said of revolute mates: that they are hinges, or that several points hold them."""
     notes = []
     for points in mates.hinges:
-        names = " and ".join(f"'{name}'" for name in points)
+        names = enumerated(points)
         if version == "2.1":
             notes.append(f"{names} are one hinge, which needs version 2.1: their points are as far apart in both parts")
         else:

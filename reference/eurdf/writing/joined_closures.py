@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from eurdf.dataclass import dataclass
+from eurdf.diagnostics import enumerated
 from eurdf.kinematics.array import Matrix
 from eurdf.mechanism.constraint import RIGID, Closure, FrameClosure, HingeClosure, PointClosure
 from eurdf.mechanism.frame import Anchor
@@ -41,8 +42,7 @@ class Joined:
 
     def __str__(self) -> str:
         kind = "hinge" if isinstance(self.closure, HingeClosure) else "6d closure"
-        names = [f"'{name}'" for name in self.points]
-        return f"{', '.join(names[:-1])} and {names[-1]} are one {kind}: their points are as far apart in both bodies"
+        return f"{enumerated(self.points)} are one {kind}: their points are as far apart in both bodies"
 
 
 @dataclass(frozen=True, slots=True)

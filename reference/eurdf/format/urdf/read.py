@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-
 from eurdf.diagnostics import Diagnostics
 from eurdf.format.urdf.data import Urdf, UrdfJoint, UrdfLink
 from eurdf.format.urdf.elements import UrdfReader
@@ -111,10 +109,10 @@ def _has_known_version(reader: UrdfReader, root: Element) -> bool:
 
 def _is_of_other_dialect(reader: UrdfReader, element: Element) -> bool:
     """EU-URD-027: whether an element of the robot states a closure in another dialect, which is reported."""
-    local = re.split("[}:]", str(element.tag))[-1]
+    local = str(element.tag).rpartition("}")[2]
     if local not in _CLOSURE_DIALECTS and not local.endswith("_constraint"):
         return False
-    found, hint = of_element(str(element.tag)), "describe it under 'closures' in the description"
+    found, hint = of_element(element), "describe it under 'closures' in the description"
     if found is not None:
         hint = f"{found.hint}, or {hint}" if found.importer else found.hint
     reader.report(

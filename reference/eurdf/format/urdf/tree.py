@@ -146,9 +146,8 @@ def _has_one_root(reader: UrdfReader, roots: Sequence[UrdfLink]) -> bool:
     if len(roots) == 1:
         return True
     names = quoted([link.name for link in roots], 5)
-    tags = [str(child.tag) for child in reader.reporter.document.root]
-    tags = [tag for tag in tags if tag.endswith(("}joint", ":joint"))]
-    other = next(filter(None, map(of_element, tags)), None)  # the joints that are missed are of this dialect
+    joints = [child for child in reader.reporter.document.root if str(child.tag).endswith("}joint")]
+    other = next(filter(None, map(of_element, joints)), None)  # the joints that are missed are of this dialect
     reader.report(
         "urdf-two-roots",
         f"{len(roots)} links have no parent: {names}; a robot has one root",
