@@ -118,7 +118,8 @@ NonZero = TypeAliasType(
         Field(
             ge=-LARGEST,
             le=LARGEST,
-            json_schema_extra={"not": {"exclusiveMinimum": -SMALLEST, "exclusiveMaximum": SMALLEST}},
+            # With its type, so that a text is one error in an editor, not two.
+            json_schema_extra={"not": {"type": "number", "exclusiveMinimum": -SMALLEST, "exclusiveMaximum": SMALLEST}},
         ),
         AfterValidator(_refuse_zero),
     ],
