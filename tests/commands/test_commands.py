@@ -258,8 +258,13 @@ def test_folders_without_robot_among_others_are_skipped(folder: Path, run: Run) 
     robot(folder / "robots" / "arm")
     robot(folder / "robots" / "broken", ACTUATES_NOTHING)
     robot(folder / "robots" / "group" / "leg")
-    for name, content in (("quality/__init__.py", ""), ("xacros/macros.xacro", "<robot/>"), ("meshes/deep/a.stl", "")):
-        (folder / "robots" / name).parent.mkdir(parents=True)
+    for name, content in (
+        ("quality/__init__.py", ""),
+        ("xacros/macros.xacro", "<robot/>"),
+        ("meshes/deep/a.stl", ""),
+        ("xacros/limits.yaml", "speed: 2\n"),
+    ):
+        (folder / "robots" / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / "robots" / name).write_text(content, encoding="utf-8")
     paths = sorted(glob.glob("robots/*/"))
     code, out, err = run("check", *paths)

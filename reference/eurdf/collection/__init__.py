@@ -92,13 +92,13 @@ def find_robot(path: Given, urdf: Given | None = None) -> RobotFiles:
     raise RobotNotFound(name, f"there is no '{name}': it is not a file, a folder, or a robot of the collection; {hint}")
 
 
-def has_robot_file(folder: Path) -> bool:
-    """Whether a file in a folder may be a robot: a YAML file or a URDF.
+def has_urdf(folder: Path) -> bool:
+    """Whether a file in a folder is a URDF by its name.
 
     Raises:
         FileError: The folder cannot be read.
     """
-    return any(path.suffix.lower() in (*_YAML, ".urdf") for path in _files(folder))
+    return any(path.suffix.lower() == ".urdf" for path in _files(folder))
 
 
 def _files(folder: Path) -> list[Path]:

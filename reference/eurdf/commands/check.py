@@ -25,7 +25,7 @@ pipe contains one text: a URDF, which begins with <, or a description, whose pat
 directory.
 
 Of several paths, a folder without a robot is skipped, and named on the standard error: eurdf check robots/*/. It is an
-error if no other path is left, and if a folder has several files that may be the robot.
+error if no other path is left, and if a folder has several URDFs and no description.
 
 A warning whose code begins with x- is advice: the file conforms, but is probably not what you intended.
 """

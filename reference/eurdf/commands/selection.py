@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from eurdf.collection import find_robot, has_robot_file
+from eurdf.collection import find_robot, has_urdf
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.diagnostics import FileError
 from eurdf.exceptions import RobotNotFound
@@ -61,7 +61,7 @@ def without_robot(paths: Sequence[str]) -> list[str]:
 
 def _has_robot(folder: str) -> bool:
     try:
-        return has_robot_file(Path(folder)) or bool(_robots_below(folder))
+        return has_urdf(Path(folder)) or bool(_robots_below(folder))
     except FileError:
         return True  # it is reported when the robot is checked
 

@@ -58,7 +58,7 @@ COMMON = (
         "3d closure",
         Effect.EXACT,
         "is one hinge or 6d closure with others of the same two bodies: their points are as far apart in both",
-        "use the hinge or the 6d closure: it has no redundant rows",
+        "use the hinge or the 6d closure: it has fewer rows",
     ),
     LossKind(
         "import-points-apart",

@@ -2,7 +2,8 @@
 
 For a mechanism that is a plain URDF the result equals ``pin.buildModelFromUrdf(path, mimic=True)`` to the last bit
 where Pinocchio builds one: the same operations in the same order, through the same functions if Python can reach them.
-For a mechanism linked with ``mimic=False`` it equals ``pin.buildModelFromUrdf(path)``.
+For a mechanism linked with ``mimic=False`` it equals ``pin.buildModelFromUrdf(path)``. Limits beyond 1e15, which are
+none (EU-FIL-006), are infinite; those of acceleration and jerk are left out, as Python cannot set them.
 """
 
 from __future__ import annotations
