@@ -71,7 +71,7 @@ def read_case(folder: Path) -> Case:
     return Case(said["kind"], said["title"], files, said["path"], said["call"])
 
 
-#: Kinds of cases, each with its share of ten. That of no share needs Node.js, and is tried if it is asked for.
+#: Kinds of cases, each with its share of ten. The one without a share needs Node.js and runs only on request.
 KINDS = {"robot": 5, "mesh": 2, "call": 2, "import": 1, "parsers": 0}
 
 

@@ -96,6 +96,7 @@ ERRORS = [
     ("xml-doctype", URDF, '<robot name="workbench">', '<!DOCTYPE robot><robot name="workbench">', None, ""),
     ("urdf-not-found", YAML, "urdf: workbench.urdf", "urdf: workbnech.urdf", "workbnech.urdf", "workbench.urdf"),
     ("urdf-root-element", URDF, None, "<sdf/>", "<sdf", "this is SDFormat"),
+    ("urdf-root-element", URDF, None, "<p:robot xmlns:p='u'/>", "<p:robot", "the root element is <p:robot>"),
     ("urdf-missing-element", URDF, '<mass value="2"/>', "", "<inertial", "<mass>"),
     ("urdf-missing-element", URDF, '<parent link="wrist_1"/>', "", '<joint name="wrist_y"', "<parent>"),
     (

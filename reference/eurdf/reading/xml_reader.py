@@ -56,7 +56,7 @@ class XmlDocument:
         pointer, (start, after_name) = self._of_root() if element is self.root else self._of(element)
         if attribute is None:
             return self.source.place(start, after_name, pointer)
-        name = _written_name(element, attribute)
+        name = written_name(element, attribute)
         pointer += "/@" + name
         end = after_name
         while found := ATTRIBUTE.match(self.source.text, end):
@@ -68,7 +68,7 @@ class XmlDocument:
     def _of_root(self) -> tuple[str, tuple[int, int]]:
         """Its pointer and its tag, without those of all others: of a file that is too large, only this is wanted."""
         first = next(found.span() for found in _MARKUP.finditer(self.source.text) if found[1])
-        return f"/{_written_name(self.root, self.root.tag)}", first
+        return f"/{written_name(self.root, self.root.tag)}", first
 
     def _of(self, element: etree._Element) -> tuple[str, tuple[int, int]]:
         if not self._tags:
@@ -89,12 +89,12 @@ class XmlDocument:
         while step is not None:
             parent = step.getparent()
             index = f"[{self._ordinals[step]}]" if self._totals[parent, step.tag] > 1 else ""
-            steps.append(f"/{_written_name(step, step.tag)}{index}")
+            steps.append(f"/{written_name(step, step.tag)}{index}")
             step = parent
         return "".join(reversed(steps))
 
 
-def _written_name(element: etree._Element, name: str) -> str:
+def written_name(element: etree._Element, name: str) -> str:
     """Name of an element or of one of its attributes as the file has it, with its prefix."""
     if not name.startswith("{"):
         return name

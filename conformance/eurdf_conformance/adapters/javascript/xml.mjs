@@ -3,20 +3,19 @@
 
 import { SaxesParser } from "saxes";
 import { Invalid, fail } from "./invalid.mjs";
+import { OUTERMOST, namespacesIn } from "./namespaces.mjs";
 
 const MOST_MARKS = 1_000_000;
 const MOST_LEVELS = 256;
 const MOST_VALUE_BYTES = 10_000_000;
 
-// `saxes` does not check that what follows a prefix begins as a name does.
-const BAD_LOCAL_NAME = /:[-.0-9\u00B7\u0300-\u036F\u203F\u2040]/;
-
 /** The root element. */
 export function parseXml(text) {
   checkMarks(text);
-  const parser = new SaxesParser({ xmlns: true, position: false, defaultXMLVersion: "1.0", forceXMLVersion: true });
+  const parser = new SaxesParser({ xmlns: false, position: false, defaultXMLVersion: "1.0", forceXMLVersion: true });
   const top = { children: [] };
   const open = [top];
+  const namespaces = [OUTERMOST];
   parser.on("error", (error) => fail(`urdf: ${error.message}`));
   parser.on("doctype", () => fail("urdf: a document type declaration is not allowed"));
   parser.on("xmldecl", ({ encoding }) => {
@@ -25,18 +24,19 @@ export function parseXml(text) {
   });
   parser.on("opentag", ({ name, attributes }) => {
     if (open.length > MOST_LEVELS) fail(`urdf: elements are nested deeper than ${MOST_LEVELS}`);
-    const element = { name, attributes: new Map(), children: [] };
-    for (const [key, { value }] of Object.entries(attributes)) {
-      checkLength(value, key);
-      element.attributes.set(key, value);
-    }
-    for (const each of [name, ...element.attributes.keys()]) {
-      if (BAD_LOCAL_NAME.test(each)) fail(`urdf: ${each} is not a name with a prefix`);
-    }
+    const element = { name, attributes: new Map(Object.entries(attributes)), children: [] };
+    element.attributes.forEach(checkLength);
+    namespaces.push(namespacesIn(element, namespaces.at(-1)));
     open.at(-1).children.push(element);
     open.push(element);
   });
-  parser.on("closetag", () => open.pop());
+  parser.on("closetag", () => {
+    open.pop();
+    namespaces.pop();
+  });
+  parser.on("processinginstruction", ({ target }) => {
+    if (target.includes(":")) fail(`urdf: the target ${target} of an instruction has a colon`);
+  });
   try {
     parser.write(text).close();
   } catch (error) {

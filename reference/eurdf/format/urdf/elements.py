@@ -174,10 +174,11 @@ class UrdfReader:
         values = self._floats.get(text)
         if values is None:
             values = _floats(text, text.split())
-            if values is not None and len(values) == count and not self._are_bounded(element, attribute, values):
+            if values is None or math.hypot(*values) <= LARGEST:
+                # Zeros, units and limits occur often in a file. Larger numbers are an error in some attributes only.
+                self._floats[text] = values
+            elif len(values) == count and not self._are_bounded(element, attribute, values):
                 return None
-            # Zeros, units and limits occur often in a file.
-            self._floats[text] = values
         if values is not None and len(values) == count:
             return values
         if values is None:
@@ -194,8 +195,6 @@ class UrdfReader:
 
     def _are_bounded(self, element: Element, attribute: str, values: tuple[float, ...]) -> bool:
         """EU-FIL-005: report the first number that is too large."""
-        if math.hypot(*values) <= LARGEST:
-            return True
         free = _LIMITS.get(attribute, 0.0)
         large = next((value for value in values if abs(value) > LARGEST and value * free <= 0.0), None)
         if large is not None:

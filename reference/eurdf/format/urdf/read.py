@@ -11,7 +11,7 @@ from eurdf.format.urdf.materials import Materials
 from eurdf.format.urdf.tree import build_tree
 from eurdf.reading.other_formats import of_element, of_root
 from eurdf.reading.reporter import Element, XmlReporter
-from eurdf.reading.xml_reader import XmlDocument
+from eurdf.reading.xml_reader import XmlDocument, written_name
 
 #: Elements by which other dialects state a closure or a coupling; a parser of this format would ignore them.
 _CLOSURE_DIALECTS = frozenset({"loop", "loop_joint", "constraint", "coupling"})
@@ -89,7 +89,7 @@ def _is_robot(reader: UrdfReader, root: Element) -> bool:
     if root.tag == "robot":
         return True
     found = of_root(str(root.tag))
-    message = f"the root element is <{root.tag}>; it must be <robot>"
+    message = f"the root element is <{written_name(root, str(root.tag))}>; it must be <robot>"
     reader.report("urdf-root-element", message, root, hint=found and found.hint)
     return False
 

@@ -10,6 +10,7 @@ from eurdf.format.urdf.materials import Look, Materials
 from eurdf.mechanism.body import Shape
 from eurdf.mechanism.pose import Pose
 from eurdf.reading.reporter import Element
+from eurdf.reading.xml_reader import written_name
 
 _Primitive = Literal["box", "cylinder", "sphere", "capsule"]
 
@@ -50,7 +51,8 @@ def _only_shape(reader: UrdfReader, geometry: Element) -> Element | None:
         message = f"<{other.tag}> is a shape from URDF 1.1 on, and <robot> has version {reader.version}"
         reader.report("urdf-geometry", message, other, hint='write version="1.1" in <robot>')
     else:
-        message = f"<{other.tag}> is not a shape; it must be box, cylinder, sphere, capsule or mesh"
+        name = written_name(other, str(other.tag))
+        message = f"<{name}> is not a shape; it must be box, cylinder, sphere, capsule or mesh"
         reader.report("urdf-geometry", message, other, hint=did_you_mean(str(other.tag), _SHAPES))
     return None
 
