@@ -40,6 +40,9 @@ NODE_LIMIT = 100_000
 #: %TAG directives that a file may have; the time libyaml takes grows with the square of their number.
 DIRECTIVE_LIMIT = 64
 
+#: What libyaml from 0.2.6 on says at 1,000 levels, which its scanner may reach before its parser reaches `DEPTH_LIMIT`.
+_TOO_DEEP_TO_SCAN = "exceeded maximum nesting depth"
+
 _CORE_TAGS = ("!!str", "!!int", "!!float", "!!bool", "!!null", "!!map", "!!seq")
 #: After the end of a document: white space, comments and further ends.
 _BETWEEN_DOCUMENTS = re.compile(r"(?:\s|#[^\r\n]*|\.\.\.(?=\s))*")
@@ -124,6 +127,9 @@ def _read_nodes(source: Source) -> Collection:
     try:
         root = _Reader(source, CSafeLoader(data).get_event, original).read()
     except (YAMLError, UnicodeDecodeError) as error:
+        if isinstance(error, MarkedYAMLError) and error.problem == _TOO_DEEP_TO_SCAN and error.problem_mark:
+            start = data.decode()[: error.problem_mark.index].encode()
+            _Reader(source, CSafeLoader(start).get_event, original).read()  # which refuses less depth
         raise syntax_error(source, error) from None
     if "\ufeff" in source.text and (mark := stray_mark(source, data)) is not None:
         raise mark
