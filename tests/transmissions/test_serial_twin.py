@@ -144,3 +144,9 @@ def test_wrong_arguments_are_errors(ankle: eurdf.Robot) -> None:
         eurdf.serial_twin(ankle, ANKLE, limits="best")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="degree is 0"):
         eurdf.serial_twin(ankle, ANKLE, degree=0)
+
+
+def test_linkage_with_motors_of_other_joints_is_refused() -> None:
+    robot = eurdf.load("kangaroo_leg", geometry=False)
+    with pytest.raises(eurdf.NoTransmission, match="'motor_ankle_outer' and 'motor_ankle_inner'; add the joints"):
+        eurdf.serial_twin(robot, ["free_knee"])

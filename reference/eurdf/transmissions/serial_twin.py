@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, cast
 import numpy as np
 
 from eurdf.dataclass import dataclass
+from eurdf.diagnostics import enumerated
 from eurdf.exporting.export import export, files_of_meshes
 from eurdf.kinematics.array import Mask, Matrix, Vector
 from eurdf.kinematics.driven_motion import DrivenMotion
@@ -20,6 +21,7 @@ from eurdf.mechanism.joint import JointProperties
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.robot import build_robot
 from eurdf.transmissions.drive import closed_pose
+from eurdf.transmissions.exceptions import NoTransmission
 from eurdf.transmissions.inertia import reflected_inertia
 from eurdf.transmissions.joint_coordinates import coordinates_of
 from eurdf.transmissions.limits import CommonLimits, serial_limits, unlimited_motors
@@ -199,7 +201,8 @@ def serial_twin(
 
     Raises:
         NotClosable: The loops cannot be closed near q.
-        NoTransmission: The motors do not hold the joints at q, or other actuated joints are in the way.
+        NoTransmission: The motors do not hold the joints at q, other actuated joints are in the way, or the
+            linkage has other motors.
         ValueError: An argument is wrong, as in `workspace`; or the grid is too coarse to find a range of a joint.
     """
     if limits not in ("conservative", "fitted"):
@@ -210,8 +213,9 @@ def serial_twin(
     by = motors_of(robot, serial) if motors is None else selection(robot, motors, "motors")
     pose = closed_pose(robot, q)
     grid = max(5, min(_MOST_ALONG, round(_POINTS ** (1.0 / len(serial))))) if grid is None else grid
-    found = workspace(robot, serial.joints, pose, by.joints, grid=grid, ranges=ranges)
     bodies = linkage_bodies(robot, serial.joints, by.joints)
+    _refuse_other_motors(robot, bodies, serial, by)
+    found = workspace(robot, serial.joints, pose, by.joints, grid=grid, ranges=ranges)
     plain = _without_linkage(robot, pose, bodies, serial, by)
     inside = _box(found, coordinates_of(robot, serial).read(pose))
     chosen = inside if limits == "conservative" else np.ones(len(found.q), dtype=bool)
@@ -268,6 +272,18 @@ def serial_twin(
         found,
         notes,
     )
+
+
+def _refuse_other_motors(robot: Robot, bodies: Sequence[str], joints: Selection, motors: Selection) -> None:
+    """Refuse a linkage that carries motors of other joints, which would go with it."""
+    lost = [name for name in robot.actuation.joints if name not in motors.joints]
+    lost = [name for name in lost if robot.slots[name].joint.child in bodies]
+    if lost:
+        reason = (
+            f"the linkage of {enumerated(joints.joints)}, which it leaves out, has other motors: {enumerated(lost)}; "
+            "add the joints that they drive"
+        )
+        raise NoTransmission("the serial twin", reason)
 
 
 def _without_linkage(robot: Robot, q: Vector, bodies: Sequence[str], joints: Selection, motors: Selection) -> Robot:
