@@ -180,23 +180,27 @@ class _Fall:
             self._robot.model.gravity.linear = pin.XYZQUATToSE3(self._root).rotation.T @ self._gravity
 
     def advance(self, steps: int, dissipation: bool) -> tuple[Vector, float]:
-        """The configuration (nq,) of the robot after some steps, and how long they took, s."""
+        """The configuration (nq,) of the robot after some steps, and how long they took, s.
+
+        Each step is simulated alone, so that the motion does not depend on how many a frame has time for.
+        """
         begin = time.monotonic()
-        motion = self._simulated(steps * _STEP, dissipation)
-        while motion is None:
-            self._step /= 2.0
-            motion = self._simulated(steps * _STEP, dissipation)
-        self._q, self._v = motion.q[-1], motion.v[-1]
+        for _ in range(steps):
+            motion = self._simulated(dissipation)
+            while motion is None:
+                self._step /= 2.0
+                motion = self._simulated(dissipation)
+            self._q, self._v = motion.q[-1], motion.v[-1]
         return np.concatenate((self._root, self._q)), time.monotonic() - begin
 
-    def _simulated(self, duration: float, dissipation: bool) -> Simulation | None:
-        """A part of the motion; None if the time step is too long for it, and can be shorter."""
+    def _simulated(self, dissipation: bool) -> Simulation | None:
+        """One step of the motion; None if the time step is too long for it, and can be shorter."""
         may_be_shorter = self._step > _SHORTEST_STEP
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # a time step that is too long for the energy
                 motion = simulate(
-                    self._robot, self._q, self._v, duration=duration, step=self._step, dissipation=dissipation
+                    self._robot, self._q, self._v, duration=_STEP, step=self._step, dissipation=dissipation
                 )
         except SimulationDiverged:
             if may_be_shorter:
