@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
 from pydantic import ConfigDict, Field, GetJsonSchemaHandler, Tag, model_validator
 from pydantic.json_schema import JsonSchemaValue
@@ -40,51 +40,18 @@ def _number_form(value: Any) -> str | None:
 
 _NUMBERS = either(_number_form, "a number or a list of numbers")
 
-PerCoordinate = TypeAliasType(
-    "PerCoordinate",
-    Annotated[
-        Annotated[Number, Tag("one number")]
-        | Annotated[list[Number], Field(min_length=1, max_length=6), Tag("list of numbers")],
-        _NUMBERS,
-    ],
-)
-NonNegativePerVelocity = TypeAliasType(
-    "NonNegativePerVelocity",
-    Annotated[
-        Annotated[NonNegative, Tag("one number")]
-        | Annotated[list[NonNegative], Field(min_length=1, max_length=6), Tag("list of numbers")],
-        _NUMBERS,
-    ],
-)
+_T = TypeVar("_T")
+_OneOrList = Annotated[
+    Annotated[_T, Tag("one number")] | Annotated[list[_T], Field(min_length=1, max_length=6), Tag("list of numbers")],
+    _NUMBERS,
+]
 
+PerCoordinate = TypeAliasType("PerCoordinate", _OneOrList[Number])
+NonNegativePerVelocity = TypeAliasType("NonNegativePerVelocity", _OneOrList[NonNegative])
 # EU-FIL-006: limits have no bound on the side where they do not limit.
-_Lower = Annotated[float, Field(le=LARGEST)]
-_Upper = Annotated[float, Field(ge=-LARGEST)]
-_Largest = Annotated[float, Field(ge=0)]
-LowerLimit = TypeAliasType(
-    "LowerLimit",
-    Annotated[
-        Annotated[_Lower, Tag("one number")]
-        | Annotated[list[_Lower], Field(min_length=1, max_length=6), Tag("list of numbers")],
-        _NUMBERS,
-    ],
-)
-UpperLimit = TypeAliasType(
-    "UpperLimit",
-    Annotated[
-        Annotated[_Upper, Tag("one number")]
-        | Annotated[list[_Upper], Field(min_length=1, max_length=6), Tag("list of numbers")],
-        _NUMBERS,
-    ],
-)
-LimitPerVelocity = TypeAliasType(
-    "LimitPerVelocity",
-    Annotated[
-        Annotated[_Largest, Tag("one number")]
-        | Annotated[list[_Largest], Field(min_length=1, max_length=6), Tag("list of numbers")],
-        _NUMBERS,
-    ],
-)
+LowerLimit = TypeAliasType("LowerLimit", _OneOrList[Annotated[float, Field(le=LARGEST)]])
+UpperLimit = TypeAliasType("UpperLimit", _OneOrList[Annotated[float, Field(ge=-LARGEST)]])
+LimitPerVelocity = TypeAliasType("LimitPerVelocity", _OneOrList[Annotated[float, Field(ge=0)]])
 Coordinates = TypeAliasType(
     "Coordinates",
     Annotated[
