@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 
 from eurdf.dataclass import dataclass
+from eurdf.diagnostics import enumerated
 from eurdf.exporting.coordinates import Coordinates, Matrix, Vector
 from eurdf.exporting.verification.finding import Finding
 from eurdf.exporting.verification.read_model import Diverged, Instant, ReadModel
@@ -177,7 +178,7 @@ def _causes(model: ReadModel, motion: Motion, worst: Sequence[Instant]) -> Itera
     yield from _fast(model, worst)
     contact = max((each.contact for each in worst if each.contact), key=lambda contact: contact[2], default=None)
     if contact is not None and contact[2] > _OVERLAP:
-        yield f"{_quoted(contact[:2])} collide, and overlap by {contact[2] * 1e3:.3g} mm"
+        yield f"{enumerated(contact[:2])} collide, and overlap by {contact[2] * 1e3:.3g} mm"
     yield from _singular(motion, worst)
     yield from _massless(motion, worst)
     for body in motion.robot.mechanism.bodies:
@@ -218,13 +219,18 @@ def _singular(motion: Motion, worst: Sequence[Instant]) -> Iterator[str]:
     least, directions, time = min(found, key=lambda each: float(each[0][rank - 1]))
     if least[rank - 1] < _NEAR * values[rank - 1]:
         joints = _most(directions[rank - 1], list(columns.values()))
+        named = enumerated(joints, len(joints))
         yield (
-            f"at {time:.4g} s, the loops are close to a singular pose, at which {_quoted(joints)} can move without the "
+            f"at {time:.4g} s, the loops are close to a singular pose, at which {named} can move without the "
             "actuated joints: the smallest singular value of the constraint Jacobian of the passive joints is "
             f"{least[rank - 1]:.1e}, {values[rank - 1]:.1e} at the start"
         )
         unlimited = [name for name in joints if not _has_limits(robot, name)]
-        without = f"{_quoted(unlimited)} {'have' if len(unlimited) > 1 else 'has'} no limits; " if unlimited else ""
+        without = (
+            f"{enumerated(unlimited, len(unlimited))} {'have' if len(unlimited) > 1 else 'has'} no limits; "
+            if unlimited
+            else ""
+        )
         yield without + "limit the joints so that the loops do not get there, or control the actuated joints"
 
 
@@ -238,8 +244,9 @@ def _massless(motion: Motion, worst: Sequence[Instant]) -> Iterator[str]:
     values, directions, time = min(found, key=lambda each: float(each[0][0]))
     if values[0] < min(_NEAR * before, _LIGHT):
         joints = _most(directions[:, 0], list(joint_of_velocity(robot).values()))
+        named = enumerated(joints, len(joints))
         yield (
-            f"at {time:.4g} s, {_quoted(joints)} {'move' if len(joints) > 1 else 'moves'} almost no mass: the smallest "
+            f"at {time:.4g} s, {named} {'move' if len(joints) > 1 else 'moves'} almost no mass: the smallest "
             f"eigenvalue of the mass matrix is {values[0]:.1e}, {before:.1e} at the start; if they are one ball joint, "
             "describe it as 'spherical', else give the links between them their mass"
         )
@@ -268,8 +275,3 @@ def listed(found: Sequence[str]) -> str:
     """The first of them, and how many more there are."""
     more = len(found) - _MOST_SHOWN
     return ", ".join(found[:_MOST_SHOWN]) + (f", and {more} more" if more > 0 else "")
-
-
-def _quoted(names: Sequence[str]) -> str:
-    *first, last = (f"'{name}'" for name in names)
-    return f"{', '.join(first)} and {last}" if first else last
