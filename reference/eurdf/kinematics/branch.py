@@ -17,9 +17,10 @@ from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.evaluation import evaluations
 from eurdf.kinematics.loop import independent_groups
-from eurdf.kinematics.position_limit import BEYOND, PositionLimits
+from eurdf.kinematics.position_limit import PositionLimits
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
+from eurdf.mechanism.joint import LIMIT_TOLERANCE
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -145,14 +146,14 @@ class Branch:
         )
         before, after = here.q[coordinates], there.q[coordinates]
         # Within the tolerance it is at its limit, so that the steps of a motion do not add their tolerances up.
-        highest = np.where(before > upper + BEYOND, before, upper)
-        lowest = np.where(before < lower - BEYOND, before, lower)
+        highest = np.where(before > upper + LIMIT_TOLERANCE, before, upper)
+        lowest = np.where(before < lower - LIMIT_TOLERANCE, before, lower)
         over = np.maximum(after - highest, lowest - after)
-        if not over.max(initial=0.0) > BEYOND:
+        if not over.max(initial=0.0) > LIMIT_TOLERANCE:
             return None
         part = np.full(len(over), -np.inf)
         # A joint that goes beyond has moved. Half the tolerance is left, so that a search for the limit ends within it.
-        np.divide(over - 0.5 * BEYOND, np.abs(after - before), out=part, where=over > BEYOND)
+        np.divide(over - 0.5 * LIMIT_TOLERANCE, np.abs(after - before), out=part, where=over > LIMIT_TOLERANCE)
         first = int(np.argmax(part))
         return self._limits.joints[self.passive[first]], max(0.0, 1.0 - float(part[first]))
 

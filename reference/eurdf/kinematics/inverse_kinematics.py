@@ -18,11 +18,12 @@ from eurdf.kinematics.damped_step import damped_step
 from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.least_solution import certain_inverse
 from eurdf.kinematics.opening import Opening
-from eurdf.kinematics.position_limit import BEYOND, JointAtLimit, chosen_limits
+from eurdf.kinematics.position_limit import JointAtLimit, chosen_limits
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.residual import all_openings
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.kinematics.tree_kinematics import PairMemory
+from eurdf.mechanism.joint import LIMIT_TOLERANCE
 from eurdf.pinocchio.arguments import checked_array, checked_count, checked_tolerance
 from eurdf.pinocchio.logarithm import log3, log3_derivative
 
@@ -275,7 +276,7 @@ class _Search:
             return ("singular" if singular else "out of reach"), ()
         if at_limits:
             G, h = self._bounds(q, Z)
-            at_bounds = h <= BEYOND
+            at_bounds = h <= LIMIT_TOLERANCE
             down = bounded_step(np.eye(len(slope)), slope, G[at_bounds], np.zeros(int(at_bounds.sum())))
             if np.linalg.norm(down) <= _FLAT * size:
                 return "joint limits", at_limits

@@ -10,13 +10,10 @@ import numpy as np
 from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Indices, Mask, Vector
 from eurdf.kinematics.derived import derived
-from eurdf.mechanism.joint import is_no_range
+from eurdf.mechanism.joint import LIMIT_TOLERANCE, is_no_range
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
-
-#: Tolerance of a limit, rad or m, as in EU-CFG-004.
-BEYOND = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,8 +85,8 @@ class PositionLimits:
     def pressed(self, q: Vector, v: Vector) -> tuple[JointAtLimit, ...]:
         """The joints that are within 1e-9 of a limit at q, and that v (nv,) would move beyond it."""
         at, least = q[self.coordinates], 1e-6 * float(np.abs(v).max(initial=0.0))
-        low = (at - self.lower <= BEYOND) & (v < -least)
-        high = (self.upper - at <= BEYOND) & (v > least)
+        low = (at - self.lower <= LIMIT_TOLERANCE) & (v < -least)
+        high = (self.upper - at <= LIMIT_TOLERANCE) & (v > least)
         found = [self._at(index, "lower") for index in np.flatnonzero(low).tolist()]
         return (*found, *(self._at(index, "upper") for index in np.flatnonzero(high).tolist()))
 

@@ -10,15 +10,12 @@ from typing import NamedTuple
 from eurdf.diagnostics import Hint, did_you_mean
 from eurdf.format.extension import ConfigurationEntry
 from eurdf.format.yaml_text import Value, flow
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import LIMIT_TOLERANCE, Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.reading.reporter import YamlReporter
 
 #: A quaternion in a file may be off unit length by this much; it is normalised when read (EU-CFG-003).
 QUATERNION_TOLERANCE = 1e-6
-
-#: A coordinate may be beyond its limit by this much, in rad or m (EU-CFG-004).
-LIMIT_TOLERANCE = 1e-9
 
 # Maximum number of joints in a message.
 _MOST_TOLD = 4

@@ -10,6 +10,9 @@ from eurdf.mechanism.joint_type import COORDINATES, Coordinates, JointType
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 
+#: A coordinate may be beyond its limit by this much, rad or m (EU-CFG-004).
+LIMIT_TOLERANCE = 1e-9
+
 _NO_RANGE = (-math.inf, math.inf)
 
 

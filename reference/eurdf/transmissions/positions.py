@@ -11,7 +11,8 @@ from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import assemble, start
 from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.forward_kinematics import farthest
-from eurdf.kinematics.position_limit import BEYOND, position_limits
+from eurdf.kinematics.position_limit import position_limits
+from eurdf.mechanism.joint import LIMIT_TOLERANCE
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.transmissions.exceptions import NoTransmission, OutOfReach
 from eurdf.transmissions.motors import motors_of, passive_joints_of
@@ -157,7 +158,7 @@ def beyond_limits(robot: Robot, q: Vector) -> tuple[str, ...]:
     """Names of the joints with a coordinate beyond a position limit at q (nq,)."""
     limits = position_limits(robot)
     own = q[limits.coordinates]
-    outside = (own < limits.lower - BEYOND) | (own > limits.upper + BEYOND)
+    outside = (own < limits.lower - LIMIT_TOLERANCE) | (own > limits.upper + LIMIT_TOLERANCE)
     return tuple(dict.fromkeys(limits.joints[index] for index in np.flatnonzero(outside).tolist()))
 
 

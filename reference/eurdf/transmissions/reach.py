@@ -12,8 +12,9 @@ from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.batch.forward_kinematics import forward_kinematics
 from eurdf.kinematics.derived import derived
-from eurdf.kinematics.position_limit import BEYOND, position_limits
+from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.tangent_space import TangentSpaces
+from eurdf.mechanism.joint import LIMIT_TOLERANCE
 from eurdf.pinocchio.robot import build_robot
 from eurdf.transmissions.joint_coordinates import coordinates_of
 from eurdf.transmissions.selection import Selection
@@ -115,7 +116,7 @@ class Reach:
     def _moved(self, q: Matrix, positions: Matrix) -> tuple[Matrix, Indices]:
         """The configurations (B, nq) after a step, and what stops the joints (B,)."""
         over = np.concatenate((self._lower - positions, positions - self._upper), axis=1)
-        stop = np.where(over.max(axis=1) > BEYOND, self._not_closed + 1 + over.argmax(axis=1), -1)
+        stop = np.where(over.max(axis=1) > LIMIT_TOLERANCE, self._not_closed + 1 + over.argmax(axis=1), -1)
         end, left = q.copy(), np.flatnonzero(stop < 0)
         found = forward_kinematics(self._driven, self._values(positions[left]), q[left])
         end[left] = found.q
@@ -147,7 +148,7 @@ class Reach:
         limits = self._limits
         own = q[:, limits.coordinates]
         over = np.concatenate((limits.lower - own, own - limits.upper), axis=1)
-        return over.max(axis=1, initial=-np.inf) > BEYOND, over.argmax(axis=1)
+        return over.max(axis=1, initial=-np.inf) > LIMIT_TOLERANCE, over.argmax(axis=1)
 
     def _signs(self, q: Matrix) -> Vector:
         """Sign of det G (B,), which changes where motors do not hold the joints; 0 where there is no G or B_J."""

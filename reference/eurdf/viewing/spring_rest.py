@@ -9,10 +9,11 @@ import numpy as np
 from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Indices, Vector
 from eurdf.kinematics.derived import derived
-from eurdf.kinematics.position_limit import BEYOND, driven_coordinates, position_limits
+from eurdf.kinematics.position_limit import driven_coordinates, position_limits
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.residual import residual, residual_and_jacobian
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
+from eurdf.mechanism.joint import LIMIT_TOLERANCE
 
 if TYPE_CHECKING:
     from eurdf.kinematics.array import Matrix
@@ -77,7 +78,9 @@ class SpringRest:
             q = self._robot.tree.normalized(self._robot.tree.integrate(q, v))
             if size <= _LAST:
                 break
-        at_limits = all(abs(q[self._coordinates[column]] - limit) <= BEYOND for column, limit in pressed.items())
+        at_limits = all(
+            abs(q[self._coordinates[column]] - limit) <= LIMIT_TOLERANCE for column, limit in pressed.items()
+        )
         closed = np.abs(residual(self._robot, q)).max(initial=0.0) <= _CLOSED
         return Rest(q if closed and at_limits else None, tuple(int(self._free[column]) for column in pressed))
 
@@ -94,7 +97,7 @@ class SpringRest:
             rows = np.vstack([K, np.eye(len(self._free))[columns]])
             wanted = np.concatenate([-self._rows * r, (limits - at[columns]) / self._unit[columns]])
             step, free = _solutions(rows, wanted)
-            if len(pressed) > 1 and np.abs(rows @ step - wanted).max() > BEYOND:
+            if len(pressed) > 1 and np.abs(rows @ step - wanted).max() > LIMIT_TOLERANCE:
                 first = columns[0]  # they cannot all be at their limits: the first one has left its limit
                 del pressed[first]
                 released.add(first)
@@ -104,7 +107,7 @@ class SpringRest:
             after = at + self._unit * step
             over = np.maximum(after - upper, lower - after)
             over[[column for column in range(len(over)) if column in pressed or column in released]] = 0.0
-            met = self._bounded[over[self._bounded] > BEYOND]
+            met = self._bounded[over[self._bounded] > LIMIT_TOLERANCE]
             if not len(met):
                 return step, pressed
             column = int(met[np.argmax(over[met] / np.abs(after - at)[met])])

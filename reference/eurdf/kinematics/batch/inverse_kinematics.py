@@ -25,8 +25,9 @@ from eurdf.kinematics.batch.problem import Problem, problem
 from eurdf.kinematics.batch.tangent import SURE, tangents
 from eurdf.kinematics.bounded_step import bounded_step
 from eurdf.kinematics.inverse_kinematics import InverseKinematicsReason
-from eurdf.kinematics.position_limit import BEYOND, PositionLimits, chosen_limits
+from eurdf.kinematics.position_limit import PositionLimits, chosen_limits
 from eurdf.kinematics.rank import numerical_ranks
+from eurdf.mechanism.joint import LIMIT_TOLERANCE
 from eurdf.pinocchio.arguments import checked_array, checked_count, checked_tolerance
 
 if TYPE_CHECKING:
@@ -419,7 +420,7 @@ class _Search:
             return "singular" if singular else "out of reach"
         if self._task.limits is not None and self._task.limits.pressed(q[:, 0], -Z @ slope):
             G, h = self._bounds(q, Z)
-            at_bounds = h <= BEYOND
+            at_bounds = h <= LIMIT_TOLERANCE
             down = bounded_step(np.eye(len(slope)), slope, G[at_bounds], np.zeros(int(at_bounds.sum())))
             if np.linalg.norm(down) <= _FLAT * size:
                 return "joint limits"
