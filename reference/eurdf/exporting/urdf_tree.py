@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import cached_property
 
 from lxml import etree
 
@@ -18,7 +19,6 @@ from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.mimic import Mimic
-from eurdf.mechanism.motor import Motor
 from eurdf.mechanism.pose import IDENTITY, Vector3
 from eurdf.writing.names import UniqueNames
 from eurdf.writing.urdf_elements import (
@@ -358,9 +358,9 @@ class PlainTree(UrdfTree):
             if any(joint.properties.armature):
                 losses.add("export-armature", joint.name)
             if any(ratio != 1.0 for ratio in joint.properties.gear_ratio) or any(joint.properties.rotor_inertia):
-                losses.add("export-gear-ratio", mechanism.motors.get(joint.name, Motor(joint.name)).name)
+                losses.add("export-gear-ratio", mechanism.motor(joint.name).name)
         for name in mechanism.actuators:
-            motor = mechanism.motors.get(name, Motor(name))
+            motor = mechanism.motor(name)
             losses.add("export-actuators", motor.name)
             if motor.control is not None:
                 losses.add("export-control-range", motor.name)
@@ -369,6 +369,11 @@ class PlainTree(UrdfTree):
             # The coordinates are those of the URDF once it is loaded as the hint says.
             self.parts.insert(0, Part((ROOT_JOINT,), ROOT_JOINT, JointType.FLOATING))
 
+    @cached_property
+    def _leaders(self) -> frozenset[str]:
+        """Names of the joints that others mimic."""
+        return frozenset(joint.mimic.joint for joint in self.mechanism.joints if joint.mimic is not None)
+
     def steps(self, joint: Joint) -> Sequence[Step]:
         """The joints, from the parent outwards, that a joint is: without limits, a revolute one is continuous.
 
@@ -376,8 +381,7 @@ class PlainTree(UrdfTree):
         """
         if joint.type is not JointType.REVOLUTE or any(map(math.isfinite, joint.ranges[0])):
             return super().steps(joint)
-        leaders = [other.mimic.joint for other in self.mechanism.joints if other.mimic is not None]
-        kind = joint.type if joint.mimic is not None or joint.name in leaders else JointType.CONTINUOUS
+        kind = joint.type if joint.mimic is not None or joint.name in self._leaders else JointType.CONTINUOUS
         return [Step("", kind, joint.axes[0], 0)]
 
     def _report_axes(self, joint: Joint) -> None:

@@ -60,6 +60,10 @@ class Mechanism:
     couplings: tuple[Coupling, ...] = ()
     motors: Mapping[str, Motor] = field(default_factory=lambda: MappingProxyType({}))
 
+    def motor(self, joint: str) -> Motor:
+        """The motor of an actuated joint; by default, it has the name of the joint."""
+        return self.motors.get(joint) or Motor(joint)
+
     @property
     def constraints(self) -> tuple[Constraint, ...]:
         """Every closure, then every coupling: the order of their rows."""

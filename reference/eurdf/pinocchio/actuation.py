@@ -12,7 +12,6 @@ import pinocchio as pin
 
 from eurdf.dataclass import dataclass
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.motor import Motor
 from eurdf.pinocchio.coordinates import Slot, slots
 
 _UNLIMITED = (-math.inf, math.inf)
@@ -72,7 +71,7 @@ def build_actuation(mechanism: Mechanism, model: pin.Model, at: Mapping[str, Slo
     actuated = [at[name] for name in mechanism.actuators]
     idx_q = np.array([slot.idx_q + k for slot in actuated for k in range(slot.nq)], np.intp)
     idx_v = np.array([slot.idx_v + k for slot in actuated for k in range(slot.nv)], np.intp)
-    motors = [mechanism.motors.get(name, Motor(name)) for name in mechanism.actuators]
+    motors = [mechanism.motor(name) for name in mechanism.actuators]
     control = [
         motor.control or _UNLIMITED for motor, slot in zip(motors, actuated, strict=True) for _ in range(slot.nv)
     ]

@@ -27,7 +27,6 @@ from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.mechanism.mimic import drivers
-from eurdf.mechanism.motor import Motor
 from eurdf.mechanism.pose import IDENTITY, Vector3, direction
 from eurdf.writing.angles import rpy_of
 from eurdf.writing.urdf_elements import add_dynamics, add_joint
@@ -369,7 +368,7 @@ class _Tree(UrdfTree):
             if any(armature):
                 self.losses.add("export-armature", joint.name)
             return
-        motor = mechanism.motors.get(joint.name, Motor(joint.name))
+        motor = mechanism.motor(joint.name)
         shown = motor.name
         if motor.control is not None:
             self.losses.add("export-control-range", shown)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from functools import cached_property
 from pathlib import PurePosixPath
 
 from lxml import etree
@@ -36,7 +37,6 @@ from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic, drivers
-from eurdf.mechanism.motor import Motor
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.writing.names import UniqueNames
 from eurdf.writing.xml_text import file_content, numbers, representable
@@ -408,7 +408,7 @@ class _Writer:
     def _fixed(self, body: Body, host: etree._Element, pose: Pose) -> None:
         """A link that is fixed to its host: a body, or a site if it has no mass."""
         # Of what is below the world, Pinocchio reads one body alone: a base that carries several is a body.
-        if not has_inertia(body) and not (host is self.world and self._branches() > 1):
+        if not has_inertia(body) and not (host is self.world and self._branches > 1):
             self._content(body, host, pose)
             if not body.virtual:
                 self._site(body.name, IDENTITY, body.name)
@@ -417,6 +417,7 @@ class _Writer:
         self._inertial(body, element, 0.0)
         self._content(body, element, IDENTITY)
 
+    @cached_property
     def _branches(self) -> int:
         """Number of bodies on the base and on the links without mass that are fixed to it."""
         base, number = {self.mechanism.bodies[0].name}, 0
@@ -693,7 +694,7 @@ class _Writer:
 
     def _actuator(self, name: str, actuator: etree._Element) -> None:
         mechanism = self.mechanism
-        motor = mechanism.motors.get(name, Motor(name))
+        motor = mechanism.motor(name)
         shown, control = motor.name, motor.control
         if self.given.actuators == "none":
             self.losses.add("export-no-actuator", shown)

@@ -31,7 +31,6 @@ from eurdf.mechanism.joint_transform import joint_transform
 from eurdf.mechanism.joint_type import COORDINATES, JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.mimic import drivers
-from eurdf.mechanism.motor import Motor
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.writing.angles import rpy_of
 from eurdf.writing.names import UniqueNames
@@ -275,7 +274,7 @@ class _Writer:
         for coupling in mechanism.couplings:
             self._coupling(coupling)
         for name in mechanism.actuators:
-            motor = mechanism.motors.get(name, Motor(name))
+            motor = mechanism.motor(name)
             self.losses.add("export-actuators", motor.name)
             if motor.control is not None:
                 self.losses.add("export-control-range", motor.name)
@@ -450,7 +449,7 @@ class _Writer:
         if any(properties.armature):
             self.losses.add("export-armature", joint.name)
         if any(ratio != 1.0 for ratio in properties.gear_ratio) or any(properties.rotor_inertia):
-            self.losses.add("export-gear-ratio", self.mechanism.motors.get(joint.name, Motor(joint.name)).name)
+            self.losses.add("export-gear-ratio", self.mechanism.motor(joint.name).name)
         if joint.type not in (JointType.SPHERICAL, JointType.FLOATING):
             return
         turning = slice(0, 3) if joint.type is JointType.SPHERICAL else slice(3, 6)

@@ -41,7 +41,6 @@ from eurdf.mechanism.joint_transform import joint_transform
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic, drivers
-from eurdf.mechanism.motor import Motor
 from eurdf.mechanism.pose import IDENTITY, Pose, Quaternion, Vector3, direction
 from eurdf.mechanism.spanning_tree import rigid_roots
 from eurdf.writing.names import UniqueNames
@@ -577,7 +576,7 @@ class _Writer:
             if damping or stiffness:
                 self.stage.drive(path, freedom.axis, stiffness, damping, target, math.inf)
             return
-        motor = self.mechanism.motors.get(joint.name, Motor(joint.name))
+        motor = self.mechanism.motor(joint.name)
         most = effort if effort > 0.0 else math.inf
         if motor.control is not None:
             lower, upper = motor.control
@@ -597,7 +596,7 @@ class _Writer:
         """The name of the actuator of a joint, if it is to have one; with what is lost of it."""
         if joint.name not in self.mechanism.actuators:
             return None
-        shown = self.mechanism.motors.get(joint.name, Motor(joint.name)).name
+        shown = self.mechanism.motor(joint.name).name
         if self.given.actuators == "none":
             self.losses.add("export-no-actuator", shown)
             return None
