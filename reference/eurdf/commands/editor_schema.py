@@ -6,12 +6,12 @@ import argparse
 import json
 import os
 import re
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.output_file import write_all_new
-from eurdf.dataclass import dataclass
 
 if TYPE_CHECKING:
     from eurdf.format.schema import SchemaVersion

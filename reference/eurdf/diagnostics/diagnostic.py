@@ -6,10 +6,9 @@ import difflib
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 
-from eurdf.dataclass import dataclass
 from eurdf.diagnostics.lines import Lines
 from eurdf.diagnostics.registry import REFUSED_PHASES, REGISTRY, Phase, Severity
 from eurdf.diagnostics.visible import no_command, visible

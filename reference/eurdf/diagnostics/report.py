@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import Any
 
-from eurdf.dataclass import dataclass
 from eurdf.diagnostics.diagnostic import Diagnostic
 from eurdf.diagnostics.registry import OWN_PREFIX, Phase, Severity
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import reduce
 from operator import mul
 from typing import Literal
@@ -12,7 +12,6 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from eurdf.dataclass import dataclass
 from eurdf.mechanism.joint_type import COORDINATES, JointType
 from eurdf.mechanism.pose import Pose, Quaternion
 from eurdf.writing.angles import rpy_of

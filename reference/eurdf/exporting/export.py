@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType
 from typing import get_args
 
-from eurdf.dataclass import dataclass
 from eurdf.diagnostics import did_you_mean
 from eurdf.exceptions import InvalidRobot
 from eurdf.exporting.coordinates import Coordinates, OwnVectors, Place

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from lxml import etree
 
-from eurdf.dataclass import dataclass
 from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.mesh_file import MeshFiles
 from eurdf.exporting.written import Exportable

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from eurdf.dataclass import dataclass
 from eurdf.exporting.coordinates import Coordinates, OwnVectors
 from eurdf.loss import Loss, LossKind
 from eurdf.mechanism.mechanism import Mechanism

@@ -7,10 +7,9 @@ line and a column.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
-from eurdf.dataclass import dataclass
 from eurdf.mechanism.constraint import Compliance
 from eurdf.mechanism.mechanism import Root
 from eurdf.mechanism.pose import Vector3

@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
 from pydantic import BaseModel
 
-from eurdf.dataclass import dataclass
 from eurdf.format.own_key import OWN_KEY, is_own_key
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.version1 import Version1

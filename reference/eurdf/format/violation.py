@@ -10,11 +10,11 @@ import difflib
 import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel, ValidationError
 
-from eurdf.dataclass import dataclass
 from eurdf.diagnostics import Diagnostic, did_you_mean
 from eurdf.format.described import described, quoted
 from eurdf.format.misplaced import (

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
-from eurdf.dataclass import dataclass
 from eurdf.reading.core_schema import resolve
 
 Value = str | int | float | bool | Sequence["Value"] | Mapping[str, "Value"] | None

@@ -7,7 +7,7 @@ import os
 import re
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
@@ -15,7 +15,6 @@ from types import MappingProxyType
 import numpy as np
 
 from eurdf.checking.check import check
-from eurdf.dataclass import dataclass
 from eurdf.diagnostics import Diagnostic, Severity, did_you_mean
 from eurdf.diagnostics.visible import visible
 from eurdf.exceptions import RobotNotFound

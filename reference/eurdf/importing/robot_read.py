@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 
-from eurdf.dataclass import dataclass
 from eurdf.loss import Loss, LossKind
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.reading.other_formats import IMPORTED

@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from lxml import etree
 
-from eurdf.dataclass import dataclass
 from eurdf.diagnostics import Diagnostics, FileError
 from eurdf.format.urdf.read import read_urdf
 from eurdf.importing.elements import Elements, local

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.evaluation import evaluations
 from eurdf.kinematics.loop import independent_groups

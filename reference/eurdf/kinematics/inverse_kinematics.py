@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from pinocchio import SE3
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import Assembler, Assembly, start
 from eurdf.kinematics.bounded_step import bounded_step

@@ -5,10 +5,9 @@ from __future__ import annotations
 import difflib
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.exceptions import CannotLock
 from eurdf.mechanism.constraint import Constraint
 from eurdf.mechanism.joint import Joint

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
+from dataclasses import dataclass
 
 import numpy as np
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Indices, Vector
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.exceptions import CannotLock, LockedOpen

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-
-from eurdf.dataclass import dataclass
+from dataclasses import dataclass
 
 #: A closure that is open by no more than this, in m or rad, counts as closed (EU-CLO-005).
 CLOSED = 1e-6

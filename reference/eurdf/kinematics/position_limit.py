@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Indices, Mask, Vector
 from eurdf.kinematics.derived import derived
 from eurdf.mechanism.joint import LIMIT_TOLERANCE, is_no_range

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.branch import Branch, Point

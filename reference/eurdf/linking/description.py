@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Literal, NamedTuple
 
 from eurdf.collection import find_robot
-from eurdf.dataclass import dataclass
 from eurdf.diagnostics import Diagnostics, FileError, Place, quoted
 from eurdf.exceptions import CannotExpand
 from eurdf.format.extension import ClosureEntry, CouplingEntry, Extension

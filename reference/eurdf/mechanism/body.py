@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Literal
 
-from eurdf.dataclass import dataclass
 from eurdf.mechanism.pose import IDENTITY, Pose
 
 

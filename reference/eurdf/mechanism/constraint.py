@@ -6,10 +6,9 @@ What a kind means, its residual and the derivatives of that, is in `eurdf.kinema
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, ClassVar, Literal
 
-from eurdf.dataclass import dataclass
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.pose import Vector3
 

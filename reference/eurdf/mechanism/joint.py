@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import cache
 
-from eurdf.dataclass import dataclass
 from eurdf.mechanism.joint_type import COORDINATES, Coordinates, JointType
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import dataclass
 
-from eurdf.dataclass import dataclass
 from eurdf.text_enum import TextEnum
 
 

@@ -7,12 +7,12 @@ body come in the byte order of their names: the order of Pinocchio's and urdfdom
 
 from __future__ import annotations
 
+import copyreg
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Literal
+from typing import Any, Literal
 
-from eurdf.dataclass import dataclass
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.constraint import Closure, Constraint, Coupling
 from eurdf.mechanism.frame import Frame
@@ -23,6 +23,14 @@ Root = Literal["fixed", "floating"]
 
 #: Name of the joint by which a floating root moves in the world, in every model.
 ROOT_JOINT = "root_joint"
+
+
+def _read_only(content: dict[Any, Any]) -> MappingProxyType[Any, Any]:
+    return MappingProxyType(content)
+
+
+# Python can neither pickle nor copy a read-only mapping by itself.
+copyreg.pickle(MappingProxyType, lambda mapping: (_read_only, (mapping.copy(),)))
 
 
 @dataclass(frozen=True, slots=True)

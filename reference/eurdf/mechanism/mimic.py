@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
-from eurdf.dataclass import dataclass
 from eurdf.mechanism.joint_type import JointType
 
 #: The types of the joints that can mimic and be mimicked (EU-URD-023): those of URDF with one coordinate.

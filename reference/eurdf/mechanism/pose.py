@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import field
-
-from eurdf.dataclass import dataclass
+from dataclasses import dataclass, field
 
 Vector3 = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]

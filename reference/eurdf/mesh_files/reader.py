@@ -9,11 +9,11 @@ import os
 import posixpath
 import re
 from collections.abc import Callable, Iterator, MutableMapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO
 from urllib.parse import unquote, unquote_to_bytes
 
-from eurdf.dataclass import dataclass
 from eurdf.mesh_files.folders import Folders
 from eurdf.mesh_files.kinds import (
     HEAD,

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from eurdf.dataclass import dataclass
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.coordinates import Slot, slots
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -16,7 +17,6 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from eurdf.dataclass import dataclass
 from eurdf.pinocchio.ancestry import Ancestry
 
 Vector = npt.NDArray[np.float64]

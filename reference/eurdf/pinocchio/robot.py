@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import field, fields
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import pinocchio as pin
 
-from eurdf.dataclass import dataclass
 from eurdf.diagnostics import Diagnostic
 from eurdf.mechanism.constraint import Constraint
 from eurdf.mechanism.mechanism import Mechanism

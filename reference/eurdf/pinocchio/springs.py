@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from eurdf.dataclass import dataclass
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.mimic import Mimic
 from eurdf.pinocchio.coordinates import Slot

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import partial
 
 from lxml import etree
 
-from eurdf.dataclass import dataclass
 from eurdf.diagnostics import Diagnostics, Hint
 from eurdf.reading.xml_reader import XmlDocument
 from eurdf.reading.yaml_node import Pointer

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import os
 import stat
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from eurdf.dataclass import dataclass
 from eurdf.diagnostics import FileError, Place
 from eurdf.diagnostics.lines import Lines
 from eurdf.reading.other_formats import of_binary, other_format

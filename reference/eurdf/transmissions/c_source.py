@@ -6,11 +6,11 @@ import math
 import os
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import MOST_STEPS, RESTARTS, SPREADS
 from eurdf.kinematics.constraint_stack import all_constraints

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
 from typing import TYPE_CHECKING
@@ -10,7 +11,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Indices, Matrix, Vector
 from eurdf.kinematics.several import several
 from eurdf.pinocchio.arguments import checked_array

@@ -11,11 +11,11 @@ their joints where they are: the motions are those with S_sᵀ Z = 0. The power 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.batch.problem import Problem
 from eurdf.kinematics.batch.tangent import tangents

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.pinocchio.arguments import checked_array
 

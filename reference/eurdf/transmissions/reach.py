@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.batch.forward_kinematics import forward_kinematics
 from eurdf.kinematics.derived import derived

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Matrix
 from eurdf.transmissions.maps import MOVES, pseudoinverse
 from eurdf.transmissions.selection import Selection, selectable

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Indices
 from eurdf.kinematics.several import several
 from eurdf.mechanism.joint_type import JointType

@@ -5,14 +5,13 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, cast
 
 import numpy as np
 
-from eurdf.dataclass import dataclass
 from eurdf.diagnostics import enumerated
 from eurdf.exporting.export import export, files_of_meshes
 from eurdf.kinematics.array import Mask, Matrix, Vector

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.batch.arguments import checked_configurations, shape_of

@@ -5,14 +5,13 @@ from __future__ import annotations
 import io
 import os
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from eurdf.dataclass import dataclass
 from eurdf.diagnostics.extras import install_command
 from eurdf.exceptions import MissingExtra
 from eurdf.kinematics.array import Vector

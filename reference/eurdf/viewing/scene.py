@@ -5,13 +5,13 @@ Knows no viewer and no renderer.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import coal
 import numpy as np
 import pinocchio as pin
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.opening import Opening

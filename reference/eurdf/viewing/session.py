@@ -7,12 +7,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.analysis import Analysis, analyze
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import Assembly, assemble, start

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Indices, Vector
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.position_limit import driven_coordinates, position_limits

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -10,7 +11,6 @@ import coal
 import numpy as np
 import numpy.typing as npt
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Matrix, Vector
 
 # Vertices on a circle, and on a quarter of one.

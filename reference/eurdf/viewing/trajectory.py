@@ -6,9 +6,9 @@ import csv
 import io
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from eurdf.dataclass import dataclass
 from eurdf.diagnostics import did_you_mean
 
 if TYPE_CHECKING:

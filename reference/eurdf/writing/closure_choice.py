@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from eurdf.dataclass import dataclass
 from eurdf.diagnostics import enumerated
 from eurdf.mechanism.constraint import CLOSURES, Closure
 from eurdf.mechanism.mechanism import Mechanism

@@ -5,13 +5,12 @@ from __future__ import annotations
 import re
 from bisect import bisect
 from collections.abc import Iterable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import yaml
 from yaml.cyaml import CLoader
 from yaml.tokens import BlockEntryToken, FlowSequenceStartToken, KeyToken
 
-from eurdf.dataclass import dataclass
 from eurdf.reading.source import Source
 from eurdf.reading.yaml_node import Pointer
 from eurdf.reading.yaml_reader import YamlDocument, without_other_breaks

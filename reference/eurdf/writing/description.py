@@ -9,11 +9,11 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, Literal, cast
 
 from lxml import etree
 
-from eurdf.dataclass import dataclass
 from eurdf.diagnostics.visible import visible
 from eurdf.format.own_key import is_own_key
 from eurdf.format.yaml_text import Entry, Value, item_of_mapping, lines_of, lines_of_item, modeline, section, text_of

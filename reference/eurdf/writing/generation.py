@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from eurdf.dataclass import dataclass
 from eurdf.diagnostics import Diagnostics, enumerated
 from eurdf.format.own_key import is_own_key
 from eurdf.format.urdf.data import Urdf

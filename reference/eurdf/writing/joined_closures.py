@@ -5,10 +5,10 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from eurdf.dataclass import dataclass
 from eurdf.diagnostics import enumerated
 from eurdf.kinematics.array import Matrix
 from eurdf.mechanism.constraint import RIGID, Closure, FrameClosure, HingeClosure, PointClosure

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Literal
 
-from eurdf.dataclass import dataclass
 from eurdf.diagnostics import FileError
 from eurdf.diagnostics.lines import BREAK
 from eurdf.format.extension import Extension, FrameReference, JointEntry

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from eurdf.dataclass import dataclass
+from dataclasses import dataclass
+
 from eurdf.diagnostics import Diagnostics
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.urdf.elements import UrdfReader

@@ -5,10 +5,9 @@ from __future__ import annotations
 import re
 import shlex
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import Literal, cast
 
-from eurdf.dataclass import dataclass
 from eurdf.format.own_key import is_own_key
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.version import VERSION2_0

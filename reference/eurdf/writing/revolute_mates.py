@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from eurdf.dataclass import dataclass
 from eurdf.format.urdf.data import Urdf
 from eurdf.mechanism.constraint import HingeClosure, PointClosure
 from eurdf.mechanism.frame import Anchor

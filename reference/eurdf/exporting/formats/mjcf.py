@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import PurePosixPath
 
 from lxml import etree
 
-from eurdf.dataclass import dataclass
 from eurdf.exporting.contacts import neighbours
 from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.exceptions import CannotExport

@@ -11,12 +11,11 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from operator import mul
 
 from lxml import etree
 
-from eurdf.dataclass import dataclass
 from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.exceptions import CannotExport
 from eurdf.exporting.inertia import accepted_inertia

@@ -9,14 +9,13 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from itertools import combinations, permutations
 
 import numpy as np
 import numpy.typing as npt
 
-from eurdf.dataclass import dataclass
 from eurdf.diagnostics.extras import install_command
 from eurdf.exceptions import MissingExtra
 from eurdf.exporting.contacts import neighbours

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from eurdf.dataclass import dataclass
 from eurdf.diagnostics import enumerated
 from eurdf.exporting.coordinates import Coordinates, Matrix, Vector
 from eurdf.exporting.verification.finding import Finding

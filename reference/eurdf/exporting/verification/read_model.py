@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 import pinocchio as pin
 
-from eurdf.dataclass import dataclass
 from eurdf.exporting.coordinates import Coordinates, Matrix, Vector
 from eurdf.kinematics.opening import Opening
 from eurdf.mechanism.constraint import Closure, DistanceClosure, FrameClosure, HingeClosure

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from importlib.util import find_spec
 
 import numpy as np
 
-from eurdf.dataclass import dataclass
 from eurdf.diagnostics.extras import install_command
 from eurdf.exceptions import MissingExtra
 from eurdf.exporting.coordinates import Coordinates, Matrix, Vector

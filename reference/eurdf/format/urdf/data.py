@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from eurdf.dataclass import dataclass
 from eurdf.mechanism.body import Inertia, Shape
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mimic import Mimic

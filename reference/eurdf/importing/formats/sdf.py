@@ -12,14 +12,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 from lxml import etree
 
-from eurdf.dataclass import dataclass
 from eurdf.importing.elements import Elements, named
 from eurdf.importing.locked import LOCKED, without_locks
 from eurdf.importing.mesh_copies import NAMED_FILE, MeshCopies

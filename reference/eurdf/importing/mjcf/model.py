@@ -7,11 +7,11 @@ import os
 import subprocess
 import tempfile
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from eurdf.dataclass import dataclass
 from eurdf.exceptions import MissingExtra
 from eurdf.importing.exceptions import CannotImport
 from eurdf.importing.xml_files import included_by

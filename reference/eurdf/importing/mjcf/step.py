@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from eurdf.dataclass import dataclass
+from dataclasses import dataclass
+
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 

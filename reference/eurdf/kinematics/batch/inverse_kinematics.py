@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pinocchio import SE3
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.batch import linear, rigid
 from eurdf.kinematics.batch.arguments import checked_rows, shape_of, starts

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Indices, Matrix, Vector
 from eurdf.kinematics.batch.stack import BatchStack, State
 from eurdf.kinematics.batch.tree import BatchTree

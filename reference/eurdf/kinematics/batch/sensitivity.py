@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from concurrent.futures import Executor
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from pinocchio import LOCAL, LOCAL_WORLD_ALIGNED, WORLD
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.batch import linear, rigid
 from eurdf.kinematics.batch.arguments import checked_configurations

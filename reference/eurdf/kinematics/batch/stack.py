@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.batch import rigid
 from eurdf.kinematics.batch.constraints import CLOSURE_KINDS, ClosureKind

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Indices, Matrix
 from eurdf.kinematics.batch.problem import Group, Problem
 from eurdf.kinematics.rank import numerical_ranks

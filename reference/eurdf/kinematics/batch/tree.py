@@ -6,11 +6,11 @@ Configurations and velocities are those of the robot's model, with elements last
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.batch import rigid
 from eurdf.kinematics.batch.joints import Floating, Motion, Screw, motion

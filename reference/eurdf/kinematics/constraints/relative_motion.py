@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Matrix
 from eurdf.kinematics.constraints.vector import cross, origins
 
