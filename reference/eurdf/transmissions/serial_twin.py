@@ -84,7 +84,7 @@ class Neglected:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SerialTwin:
-    """A serial robot that stands for one with a parallel transmission.
+    """The serial equivalent of a robot with a parallel transmission.
 
     Attributes:
         robot: The serial robot. Its joints are actuated, with the limits and armatures below.
