@@ -280,7 +280,7 @@ REFERENCE = Path(eurdf.__file__).parent
 #: configurations.
 STATING = (
     "checking/",
-    "exporting/",
+    "convert/",
     "format/",
     "importing/",
     "linking/",

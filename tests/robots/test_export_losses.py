@@ -17,8 +17,9 @@ import numpy as np
 import pytest
 
 import eurdf
-from eurdf.exporting.formats import FORMATS
-from eurdf.exporting.hinges import with_hinges
+from eurdf.convert.export_format import export_format
+from eurdf.convert.formats import EXPORTS
+from eurdf.convert.hinges import with_hinges
 from eurdf.mechanism.body import Inertia, Shape
 from eurdf.mechanism.constraint import Compliance, Coupling
 from eurdf.mechanism.frame import Frame
@@ -166,22 +167,22 @@ def _odd(mechanism: Mechanism, axes: tuple[Vector3, Vector3]) -> Mechanism:
 
 @pytest.mark.slow
 def test_every_kind_of_loss_occurs() -> None:
-    found: dict[str, set[str]] = {name: set() for name in FORMATS}
+    found: dict[str, set[str]] = {name: set() for name in EXPORTS}
     for mechanism, options in robots():
         robot = build_robot(mechanism, geometry=False)
-        for name in FORMATS:
+        for name in EXPORTS:
             if name in MISSING or (name == "sdf" and mechanism.closures and not mechanism.configurations):
                 continue
             found[name] |= {loss.code for loss in eurdf.export(robot, name, **options).losses}
     missing = {
         name: {kind.code for kind in each.losses} - found[name] - ELSEWHERE[name]
-        for name, each in FORMATS.items()
+        for name, each in ((name, export_format(name)) for name in EXPORTS)
         if name not in MISSING
     }
     assert not any(missing.values()), missing
 
 
-@pytest.mark.parametrize("name", sorted(FORMATS.keys() - MISSING))
+@pytest.mark.parametrize("name", sorted(set(EXPORTS) - MISSING))
 def test_limits_of_zero_are_written_as_none(name: str) -> None:
     mechanism = random_robot(3, "floating")[0].mechanism
     none = eurdf.export(with_limits(mechanism, -math.inf, math.inf), name)
@@ -193,7 +194,7 @@ def test_limits_of_zero_are_written_as_none(name: str) -> None:
     assert [loss for loss in zero.losses if loss.code != "export-no-range"] == list(none.losses)
 
 
-@pytest.mark.parametrize("name", [name for name in FORMATS if name not in MISSING])
+@pytest.mark.parametrize("name", [name for name in EXPORTS if name not in MISSING])
 def test_actuators_are_named_as_the_description_names_them(name: str) -> None:
     _, rich = (mechanism for mechanism, _ in islice(robots(), 2))
     losses = eurdf.export(build_robot(rich, geometry=False), name).losses

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from lxml import etree
 
 import eurdf
-from eurdf.exporting.verification.read_model import without_armature
+from eurdf.convert.verification.read_model import without_armature
 from eurdf.mechanism.joint_type import JointType
 from eurdf.pinocchio.robot import Robot
 from support.drake_witness import InDrake, TreeInDrake

@@ -393,7 +393,7 @@ def test_names_that_usd_cannot_have_are_shown(tmp_path: Path) -> None:
 
 
 def test_missing_extra_is_named(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("eurdf.exporting.formats.usd.find_spec", lambda name: None)
+    monkeypatch.setattr("eurdf.convert.usd.write.find_spec", lambda name: None)
     assert main(["export", "four_bar", "--to", "usd"]) == 2
     assert "the package that writes USD is not installed; install it with: " in (err := capsys.readouterr().err)
     assert "[usd]" in err

@@ -13,9 +13,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import eurdf
-from eurdf.exporting.coordinates import Part
-from eurdf.exporting.verification.read_model import without_armature
-from eurdf.loss import Effect
+from eurdf.convert.coordinates import Part
+from eurdf.convert.losses import Effect
+from eurdf.convert.verification.read_model import without_armature
 from eurdf.mechanism.constraint import HingeClosure
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties

@@ -12,8 +12,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import eurdf
-from eurdf.exporting.inertia import about_centre
-from eurdf.loss import Effect
+from eurdf.convert.inertia import about_centre
+from eurdf.convert.losses import Effect
 from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT

@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 
 import eurdf
-from eurdf.exporting.coordinates import Coordinates
+from eurdf.convert.coordinates import Coordinates
 from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_type import JointType

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import fields, replace
 
-from eurdf.loss import Effect, Losses, LossKind
+from eurdf.convert.losses import Effect, Losses, LossKind
 from eurdf.mechanism.joint import Joint, JointProperties, is_no_range
 from eurdf.mechanism.joint_type import JointType
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from lxml import etree
 
+from eurdf.convert.losses import Effect, Losses, LossKind
 from eurdf.diagnostics import Diagnostics, FileError
 from eurdf.format.urdf.read import read_urdf
 from eurdf.importing.elements import Elements, local
@@ -17,7 +18,6 @@ from eurdf.importing.exceptions import CannotImport
 from eurdf.importing.mesh_copies import NAMED_FILE, MeshCopies
 from eurdf.importing.xml_files import inside, read_root
 from eurdf.linking.link import link
-from eurdf.loss import Effect, Losses, LossKind
 from eurdf.mechanism.body import Shape
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType

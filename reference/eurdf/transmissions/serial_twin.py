@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, cast
 
 import numpy as np
 
+from eurdf.convert.export import export, files_of_meshes
 from eurdf.diagnostics import enumerated
-from eurdf.exporting.export import export, files_of_meshes
 from eurdf.kinematics.array import Mask, Matrix, Vector
 from eurdf.kinematics.driven_motion import DrivenMotion
 from eurdf.mechanism.joint import JointProperties

@@ -13,11 +13,12 @@ from pathlib import Path
 
 from lxml import etree
 
+from eurdf.convert.losses import Effect, Losses, LossKind
+from eurdf.convert.names import UniqueNames
 from eurdf.importing.elements import Elements, local, named
 from eurdf.importing.locked import LOCKED, without_locks
 from eurdf.importing.robot_read import ImportFormat, RobotRead
 from eurdf.importing.urdf_tree import URDF_LOSSES, UrdfTree, read_tree
-from eurdf.loss import Effect, Losses, LossKind
 from eurdf.mechanism.constraint import Closure, Coupling, PointClosure
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
@@ -25,7 +26,6 @@ from eurdf.mechanism.joint_type import COORDINATES, JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import IDENTITY, Pose
 from eurdf.reading.resource import FileFinder
-from eurdf.writing.names import UniqueNames
 from eurdf.writing.urdf_elements import UNLIMITED
 
 _WORLD = "world"

@@ -19,12 +19,13 @@ from typing import Any
 
 from lxml import etree
 
+from eurdf.convert.losses import Effect, Losses, LossKind
+from eurdf.convert.names import UniqueNames
 from eurdf.importing.elements import Elements, named
 from eurdf.importing.locked import LOCKED, without_locks
 from eurdf.importing.mesh_copies import NAMED_FILE, MeshCopies
 from eurdf.importing.robot_read import ImportFormat, RobotRead
 from eurdf.importing.xml_files import inside, read_root
-from eurdf.loss import Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.constraint import Closure, FrameClosure, HingeClosure, PointClosure
 from eurdf.mechanism.frame import Anchor, Frame
@@ -36,7 +37,6 @@ from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 from eurdf.mechanism.spanning_tree import depth_first
 from eurdf.mesh_files.reader import RefusedFile
 from eurdf.reading.resource import FileFinder
-from eurdf.writing.names import UniqueNames
 
 #: A limit beyond this is none: 1e16 is the default of SDFormat.
 UNLIMITED = 1e15

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
+from eurdf.convert.names import UniqueNames
 from eurdf.importing.mjcf.joints import coordinates_at
 from eurdf.importing.mjcf.reading import MjcfReading
 from eurdf.importing.mjcf.values import usable, xyzw
 from eurdf.linking.configurations import beyond_limits
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
-from eurdf.writing.names import UniqueNames
 
 
 def read_configurations(
