@@ -18,7 +18,7 @@ from eurdf.importing.urdf_tree import URDF_LOSSES, UrdfTree, loop_left_out, read
 from eurdf.loss import Effect, Losses, LossKind
 from eurdf.mechanism.constraint import Closure, Coupling, FrameClosure, HingeClosure, PointClosure
 from eurdf.mechanism.frame import Anchor
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.reading.resource import FileFinder
 from eurdf.writing.names import UniqueNames
 
