@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 import eurdf
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from support.by_hand import quaternion_rotation, rotation, transform
 from support.described import at, body, codes, frame_poses, free_names, link_poses, load, mass_matrix, q_of
 from support.plain_urdf import Root, inertial, joint_element, link_element, mechanism_of, pinocchios_own, robot, trees
@@ -291,7 +291,7 @@ def _as_replaced(kind: str, joint: Joint, values: tuple[float, ...]) -> tuple[tu
         return (values[0], 0.0), np.array([[1.0], [0.0]])
     if kind == "cylindrical":
         return (0.0, values[0]), np.array([[0.0], [1.0]])
-    return values, np.eye(joint.coordinates.nv)
+    return values, np.eye(joint.type.nv)
 
 
 @settings(max_examples=60, deadline=None)
@@ -311,9 +311,9 @@ def test_replacement_contains_original_motion_and_inertia(data: st.DataObject, u
         if joint.type is JointType.FIXED:
             continue
         kind = replacements.get(joint.name, "")
-        values = random.uniform(-1, 1, len(joint.coordinates.names))
-        if joint.coordinates.quaternion is not None:
-            values[joint.coordinates.quaternion :] /= np.linalg.norm(values[joint.coordinates.quaternion :])
+        values = random.uniform(-1, 1, len(joint.type.coordinates))
+        if joint.type.quaternion is not None:
+            values[joint.type.quaternion :] /= np.linalg.norm(values[joint.type.quaternion :])
         _, _, idx_v, nv = at(plain.model, joint.name)
         if kind in ("fixed", "helical"):  # at its zero; they do not move as the URDF's did
             continue

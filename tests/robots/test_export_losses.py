@@ -24,7 +24,7 @@ from eurdf.mechanism.body import Inertia, Shape
 from eurdf.mechanism.constraint import Compliance, Coupling
 from eurdf.mechanism.frame import Frame
 from eurdf.mechanism.joint import Joint, JointProperties
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.motor import Motor
 from eurdf.mechanism.pose import IDENTITY, Vector3
@@ -53,7 +53,7 @@ SKEW = ((1.0, 0.0, 0.0), (1.0, 2.0, 0.5))
 
 def every_property(joint: Joint) -> Joint:
     """The joint with each property, of other values on each axis."""
-    kind, n = joint.type, joint.coordinates.nv
+    kind, n = joint.type, joint.type.nv
     if kind is JointType.FIXED or joint.mimic is not None:
         return joint
     some = tuple(float(value) for value in range(1, n + 1))
@@ -67,7 +67,7 @@ def every_property(joint: Joint) -> Joint:
         rotor_inertia=some,
         acceleration=some,
     )
-    if joint.coordinates.quaternion is None:
+    if joint.type.quaternion is None:
         properties = replace(properties, lower=(-9.0,) * n, upper=(9.0,) * n)
         if kind is not JointType.PLANAR:
             properties = replace(properties, stiffness=some, rest=(0.1,) * n)
@@ -78,8 +78,8 @@ def with_limits(mechanism: Mechanism, lower: float, upper: float) -> Robot:
     """The robot with these limits of each coordinate that can have some."""
 
     def limited(joint: Joint) -> Joint:
-        n = len(joint.coordinates.names)
-        if joint.coordinates.quaternion is not None:
+        n = len(joint.type.coordinates)
+        if joint.type.quaternion is not None:
             return joint
         return joint.with_properties(replace(joint.properties, lower=(lower,) * n, upper=(upper,) * n))
 
@@ -189,8 +189,8 @@ def test_limits_of_zero_are_written_as_none(name: str) -> None:
     zero = eurdf.export(with_limits(mechanism, 0.0, 0.0), name)
     assert zero.files == none.files
     losses = {loss.name for loss in zero.losses if loss.code == "export-no-range"}
-    kinds = {joint.name: joint.coordinates for joint in mechanism.joints}
-    assert losses == {name for name, kind in kinds.items() if kind.names and kind.quaternion is None}
+    kinds = {joint.name: joint.type for joint in mechanism.joints}
+    assert losses == {name for name, kind in kinds.items() if kind.coordinates and kind.quaternion is None}
     assert [loss for loss in zero.losses if loss.code != "export-no-range"] == list(none.losses)
 
 

@@ -16,7 +16,7 @@ import pytest
 import eurdf
 from eurdf.commands.main import main
 from eurdf.mechanism.constraint import Coupling, HingeClosure
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand
 from support.exported import random_robot

@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from eurdf.mechanism.joint_type import COORDINATES, JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import Pose, Quaternion
 from eurdf.writing.angles import rpy_of
 
@@ -89,13 +89,13 @@ class Part:
     @property
     def nq(self) -> int:
         """Number of coordinates in the model."""
-        n = (len(self.ratios) or len(COORDINATES[self.type].names)) + len(self.circular)
+        n = (len(self.ratios) or len(self.type.coordinates)) + len(self.circular)
         return n if self.rotation == "quaternion" else n - 1
 
     @property
     def nv(self) -> int:
         """Number of velocities in the model."""
-        return len(self.ratios) or COORDINATES[self.type].nv
+        return len(self.ratios) or self.type.nv
 
 
 @dataclass(frozen=True)
@@ -152,8 +152,7 @@ class Coordinates:
         """
         found = np.empty(self.nq)
         for part, start in zip(self.parts, self._idx_q, strict=False):
-            kind = COORDINATES[part.type]
-            given = tuple(coordinates.get(part.joint, kind.neutral if not part.mimics else (0.0,)))
+            given = tuple(coordinates.get(part.joint, part.type.neutral if not part.mimics else (0.0,)))
             found[start : start + part.nq] = _on_circles(self._in_model(part, given), part.circular)
         return found
 
@@ -234,7 +233,7 @@ class Coordinates:
     def _own_coordinates(self, part: Part, q: Vector) -> tuple[float, ...]:
         place = self.own.places[part.joint]
         own = q[place.idx_q : place.idx_q + place.nq].tolist()
-        expected = 1 if part.mimics else len(COORDINATES[part.type].names)
+        expected = 1 if part.mimics else len(part.type.coordinates)
         if place.nq > expected:
             own[-2:] = [math.atan2(own[-1], own[-2])]
         return tuple(own)
@@ -242,7 +241,7 @@ class Coordinates:
     def _in_model(self, part: Part, own: Sequence[float]) -> Sequence[float]:
         if part.ratios:
             return [multiplier * own[index] + offset for index, multiplier, offset in part.ratios]
-        at = COORDINATES[part.type].quaternion
+        at = part.type.quaternion
         if at is None:
             return [value - zero for value, zero in zip(own, part.zero or (0.0,) * len(own), strict=True)]
         position = [value - zero for value, zero in zip(own[:at], part.zero[:at] or (0.0,) * at, strict=True)]
@@ -262,12 +261,12 @@ class Coordinates:
 
     def _from_model(self, part: Part, given: list[float]) -> list[float]:
         if part.ratios:
-            own = [0.0] * len(COORDINATES[part.type].names)
+            own = [0.0] * len(part.type.coordinates)
             for value, (index, multiplier, offset) in zip(given, part.ratios, strict=True):
                 if multiplier:
                     own[index] = (value - offset) / multiplier
             return own
-        at = COORDINATES[part.type].quaternion
+        at = part.type.quaternion
         if at is None:
             return [value + zero for value, zero in zip(given, part.zero or (0.0,) * len(given), strict=True)]
         position, orientation = given[:at], given[at:]
@@ -295,7 +294,7 @@ class Coordinates:
     def _block(self, part: Part, q: Vector) -> Matrix:
         """T of one part: from the velocities of ``part.joint`` to those of the part."""
         if part.ratios:
-            n = 1 if part.mimics else COORDINATES[part.type].nv
+            n = 1 if part.mimics else part.type.nv
             block = np.zeros((len(part.ratios), n))
             for row, (index, multiplier, _) in enumerate(part.ratios):
                 block[row, index] = multiplier

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import Enum
 
-from eurdf.text_enum import TextEnum
 
-
-class Effect(TextEnum):
+class Effect(str, Enum):
     """How much of an element is left in what is written.
 
     ``exact``: all that has an effect on the robot, in other terms. ``approximate``: it behaves almost as it should.
     ``dropped``: nothing is left of it.
     """
+
+    __str__ = str.__str__
 
     EXACT = "exact"
     APPROXIMATE = "approximate"

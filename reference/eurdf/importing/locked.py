@@ -6,7 +6,7 @@ from dataclasses import fields, replace
 
 from eurdf.convert.losses import Effect, Losses, LossKind
 from eurdf.mechanism.joint import Joint, JointProperties, is_no_range
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 
 #: Of a joint that is locked.
 LOCKED = LossKind(

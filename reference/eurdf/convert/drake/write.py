@@ -24,7 +24,7 @@ from eurdf.convert.urdf.tree import AXES, URDF_LOSSES, Step, UrdfTree, plain_ste
 from eurdf.mechanism.body import Body, Inertia
 from eurdf.mechanism.constraint import Closure, Coupling, DistanceClosure, FrameClosure, HingeClosure, PointClosure
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.mechanism.mimic import drivers
 from eurdf.mechanism.pose import IDENTITY, Vector3, direction
@@ -233,7 +233,7 @@ def _moved_without_mass(mechanism: Mechanism) -> set[str]:
     for joint in reversed(mechanism.joints):  # from the leaves
         if joint.child in with_inertia:
             with_inertia.add(joint.parent)
-        if joint.mimic is not None or (joint.type is not JointType.FIXED and joint.child not in with_inertia):
+        if joint.mimic is not None or (not joint.type.is_fixed and joint.child not in with_inertia):
             found.add(joint.child)
     return found
 
@@ -312,7 +312,7 @@ class _Tree(UrdfTree):
 
     def add_properties(self, joint: Joint, step: Step, element: etree._Element) -> None:
         properties = joint.properties
-        if joint.type is JointType.FIXED:
+        if joint.type.is_fixed:
             return
         if any(properties.friction):
             self.losses.add("export-friction", joint.name)
@@ -372,7 +372,7 @@ class _Tree(UrdfTree):
         shown = motor.name
         if motor.control is not None:
             self.losses.add("export-control-range", shown)
-        efforts = properties.effort or (math.inf,) * joint.coordinates.nv
+        efforts = properties.effort or (math.inf,) * joint.type.nv
         if joint.type not in _ONE_FREEDOM or min(efforts) <= 0.0:
             self.losses.add("export-actuator", shown)
             if any(armature):

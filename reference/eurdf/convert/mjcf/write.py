@@ -35,9 +35,9 @@ from eurdf.mechanism.constraint import (
     PointClosure,
 )
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
-from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic, drivers
+from eurdf.mechanism.mimic import Mimic, drivers
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.writing.xml_text import file_content, numbers, representable
 
@@ -317,7 +317,7 @@ class _Writer:
             {
                 joint.name: joint.mimic
                 for joint in self.mechanism.joints
-                if joint.mimic is not None and joint.type in MIMIC_TYPES
+                if joint.mimic is not None and joint.type.is_axial
             }
         )
 
@@ -385,7 +385,7 @@ class _Writer:
     def _body(self, joint: Joint, body: Body) -> None:
         host, pose = self.hosts[joint.parent]
         pose = pose * joint.placement
-        if joint.type is JointType.FIXED:
+        if joint.type.is_fixed:
             self.losses.add("export-fixed-joint", joint.name)
             self._fixed(body, host, pose * joint.offset)
             return
@@ -423,7 +423,7 @@ class _Writer:
         base, number = {self.mechanism.bodies[0].name}, 0
         for joint, body in zip(self.mechanism.joints, self.mechanism.bodies[1:], strict=True):
             if joint.parent in base:
-                if joint.type is JointType.FIXED and not has_inertia(body):
+                if joint.type.is_fixed and not has_inertia(body):
                     base.add(body.name)
                 else:
                     number += 1
@@ -704,7 +704,7 @@ class _Writer:
             self.losses.add("export-gear-ratio", shown)
         if joint.type in (JointType.PLANAR, JointType.FLOATING):
             self.losses.add("export-force-axes", shown)
-        count = joint.coordinates.nv
+        count = joint.type.nv
         for piece in self.pieces[name]:
             for index in piece.velocities:
                 attributes = {"name": self.actuators.new(shown if count == 1 else f"{shown}_{index + 1}")}

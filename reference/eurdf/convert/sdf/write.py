@@ -27,8 +27,7 @@ from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.constraint import Closure, Coupling, HingeClosure, PointClosure
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_transform import joint_transform
-from eurdf.mechanism.joint_type import COORDINATES, JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.mimic import drivers
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
@@ -306,7 +305,7 @@ class _Writer:
     def _coordinates(self, joint: Joint) -> tuple[float, ...]:
         mimic = self.mimics.get(joint.name)
         if mimic is None:
-            return tuple(self.zero.get(joint.name, joint.coordinates.neutral))
+            return tuple(self.zero.get(joint.name, joint.type.neutral))
         (leader,) = self.zero.get(mimic.joint, (0.0,))
         return (mimic.multiplier * leader + mimic.offset,)
 
@@ -325,8 +324,7 @@ class _Writer:
         self.model.set("canonical_link", name)
         placed = IDENTITY
         if self.mechanism.root == "floating":
-            kind = COORDINATES[JointType.FLOATING]
-            x, y, z, *orientation = self.zero.get(ROOT_JOINT, kind.neutral)
+            x, y, z, *orientation = self.zero.get(ROOT_JOINT, JointType.FLOATING.neutral)
             qx, qy, qz, qw = orientation
             placed = Pose((x, y, z), (qx, qy, qz, qw))
             self.parts.append(Part((name,), ROOT_JOINT, JointType.FLOATING))
@@ -406,8 +404,8 @@ class _Writer:
             names.append(name)
             parent, placement = child, IDENTITY
         self.joints[joint.name] = names[0]
-        self.poses[body.name] = self.poses[joint.parent] * joint.placement * joint_transform(joint, at) * joint.offset
-        if joint.type is not JointType.FIXED:
+        self.poses[body.name] = self.poses[joint.parent] * joint.placement * joint.transform(at) * joint.offset
+        if not joint.type.is_fixed:
             self.parts.append(self._part(joint, names, at))
 
     def _axis(self, joint: Joint, element: etree._Element, axis: _Axis, at: float) -> None:
@@ -465,7 +463,7 @@ class _Writer:
             ratio = (0, mimic.multiplier, mimic.offset - at[0])
             return Part(tuple(names), mimic.joint, joint.type, (ratio,), mimics=True)
         if joint.type in (JointType.PLANAR, JointType.SPHERICAL, JointType.FLOATING):
-            zero = () if at == joint.coordinates.neutral else at
+            zero = () if at == joint.type.neutral else at
             return Part(tuple(names), joint.name, joint.type, zero=zero, turn=joint.offset.quaternion)
         ratios = tuple((index, 1.0, -value) for index, value in enumerate(at))
         return Part(tuple(names), joint.name, joint.type, ratios)
@@ -545,7 +543,7 @@ def _steps(joint: Joint, at: tuple[float, ...]) -> Sequence[_Step]:
         case JointType.PRISMATIC:
             return [slide("", joint.axes[0], 0)]
         case JointType.HELICAL:
-            return [_Step("", "screw", joint_transform(joint, at), (_Axis(joint.axes[0], 0),))]
+            return [_Step("", "screw", joint.transform(at), (_Axis(joint.axes[0], 0),))]
         case JointType.CYLINDRICAL:
             return [slide("_slide", joint.axes[0], 0), turn("_turn", joint.axes[0], 1)]
         case JointType.UNIVERSAL:
@@ -554,18 +552,18 @@ def _steps(joint: Joint, at: tuple[float, ...]) -> Sequence[_Step]:
                 return [turn("_1", first, 0), turn("_2", second, 1)]
             # The frame of the joint is fixed to the child: the second turn has moved the first axis there.
             seen = _moved(JointType.REVOLUTE, second, -at[1]).rotate(first)
-            return [_Step("", "universal", joint_transform(joint, at), (_Axis(seen, 0), _Axis(second, 1)))]
+            return [_Step("", "universal", joint.transform(at), (_Axis(seen, 0), _Axis(second, 1)))]
         case JointType.PLANAR:
             return [slide("_x", _X, 0), slide("_y", _Y, 1), turn("_angle", _Z, 2)]
         case JointType.SPHERICAL:
-            return [_Step("", "ball", joint_transform(joint, at))]
+            return [_Step("", "ball", joint.transform(at))]
     slides = [slide(suffix, axis, i) for i, (suffix, axis) in enumerate((("_x", _X), ("_y", _Y), ("_z", _Z)))]
-    ball = replace(joint_transform(joint, at), xyz=(0.0, 0.0, 0.0))
+    ball = replace(joint.transform(at), xyz=(0.0, 0.0, 0.0))
     return [*slides, _Step("_ball", "ball", ball)]
 
 
 def _moved(kind: JointType, axis: Vector3, value: float) -> Pose:
-    return joint_transform(Joint("", kind, "", "", axes=(axis,)), (value,))
+    return Joint("", kind, "", "", axes=(axis,)).transform((value,))
 
 
 def _inertial(link: etree._Element, inertia: Inertia) -> None:

@@ -16,7 +16,7 @@ from eurdf.convert.mesh_file import MeshFiles
 from eurdf.convert.names import UniqueNames
 from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Vector3
@@ -303,11 +303,11 @@ class UrdfTree:
             names.append(name)
             parent, placement = child, IDENTITY
         if joint.offset is not IDENTITY:
-            offset = joint.placement * joint.offset if joint.type is JointType.FIXED else joint.offset
-            name = joint.name if joint.type is JointType.FIXED else self.names.new(f"{joint.name}_offset")
+            offset = joint.placement * joint.offset if joint.type.is_fixed else joint.offset
+            name = joint.name if joint.type.is_fixed else self.names.new(f"{joint.name}_offset")
             add_joint(self.root, name, JointType.FIXED, parent, self.links[joint.child], offset, None)
         self.joints[joint.name] = tuple(names)
-        if joint.type is not JointType.FIXED:
+        if not joint.type.is_fixed:
             self.add_part(joint, names, steps)
 
     def add_part(self, joint: Joint, names: Sequence[str], steps: Sequence[Step]) -> None:

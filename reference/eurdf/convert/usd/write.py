@@ -37,10 +37,9 @@ from eurdf.mechanism.constraint import (
     PointClosure,
 )
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_transform import joint_transform
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
-from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic, drivers
+from eurdf.mechanism.mimic import Mimic, drivers
 from eurdf.mechanism.pose import IDENTITY, Pose, Quaternion, Vector3, direction
 from eurdf.mechanism.spanning_tree import rigid_roots
 
@@ -406,7 +405,7 @@ class _Writer:
             {
                 joint.name: joint.mimic
                 for joint in self.mechanism.joints
-                if joint.mimic is not None and joint.type in MIMIC_TYPES
+                if joint.mimic is not None and joint.type.is_axial
             }
         )
         self.mesh_names = mesh_names(given.meshes)
@@ -484,7 +483,7 @@ class _Writer:
 
     def _joint(self, joint: Joint, body: Body) -> None:
         steps = _steps(joint)
-        if joint.type is JointType.FIXED and not has_inertia(body):
+        if joint.type.is_fixed and not has_inertia(body):
             self._fixed_frame(body, joint.parent, joint.placement * joint.offset)
             return
         if len(steps) > 1:
@@ -499,7 +498,7 @@ class _Writer:
             last = number == len(steps) - 1
             offset = joint.offset if last else IDENTITY
             own = coordinates if len(steps) == 1 else (coordinates[number],)
-            moved = joint_transform(step.joint, own)
+            moved = step.joint.transform(own)
             pose = pose * placement * moved * offset
             name = self.joints.new(joint.name + step.suffix)
             if last:
@@ -524,10 +523,10 @@ class _Writer:
         if mimic is not None:
             (leader,) = self.start.get(mimic.joint, (0.0,))
             return (mimic.multiplier * leader + mimic.offset,)
-        return tuple(self.start.get(joint.name, joint.coordinates.neutral))
+        return tuple(self.start.get(joint.name, joint.type.neutral))
 
     def _part(self, joint: Joint, steps: Sequence[_Step], names: Sequence[str]) -> None:
-        if joint.type is JointType.FIXED:
+        if joint.type.is_fixed:
             return
         mimic = self.mimics.get(joint.name)
         if mimic is not None:

@@ -19,7 +19,7 @@ from eurdf.importing.robot_read import ImportFormat, RobotRead
 from eurdf.importing.urdf_tree import URDF_LOSSES, UrdfTree, loop_left_out, read_tree
 from eurdf.mechanism.constraint import Closure, Coupling, FrameClosure, HingeClosure, PointClosure
 from eurdf.mechanism.frame import Anchor
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.reading.resource import FileFinder
 
 LOSSES = (
