@@ -15,7 +15,7 @@ from eurdf.commands.main import main
 from eurdf.commands.output_schema import output_schemas
 from eurdf.convert.export_format import export_format
 from eurdf.convert.formats import EXPORTS
-from eurdf.convert.losses import CONCEPTS, Effect
+from eurdf.convert.losses import ELEMENTS, Effect
 from eurdf.convert.table import page_of, written
 from eurdf.writing.output_folder import write_files
 
@@ -28,10 +28,10 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.mark.parametrize("name", EXPORTS)
 def test_losses_are_registered_well(name: str) -> None:
-    codes = [kind.code for kind in export_format(name).losses]
+    codes = [kind.code for kind in export_format(name).rows]
     assert len(set(codes)) == len(codes)
-    for kind in export_format(name).losses:
-        assert kind.concept in CONCEPTS
+    for kind in export_format(name).rows:
+        assert kind.concept in ELEMENTS
         assert re.fullmatch("export(-[a-z0-9]+)+", kind.code)
         assert kind.title
         assert kind.hint
@@ -168,4 +168,4 @@ def test_tables_of_losses_are_current() -> None:
         assert page.read_text(encoding="utf-8") == text
     for name, each in ((name, export_format(name)) for name in EXPORTS):
         page = (docs / page_of(name)).read_text(encoding="utf-8")
-        assert [kind.code for kind in each.losses if f"`{kind.code}`" not in page] == []
+        assert [kind.code for kind in each.rows if f"`{kind.code}`" not in page] == []

@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 from types import MappingProxyType
 
+from eurdf.convert.common_losses import BEYOND_LIMITS, UNKNOWN
 from eurdf.convert.coordinates import Coordinates, OwnVectors, Place
 from eurdf.convert.exceptions import CannotExport
 from eurdf.convert.export_format import ExportInput, Triangles, export_format
@@ -22,7 +23,7 @@ from eurdf.convert.formats import (
     MeshFileChoice,
 )
 from eurdf.convert.hinges import with_hinges
-from eurdf.convert.losses import BEYOND_LIMITS, Effect, Loss, Losses
+from eurdf.convert.losses import Effect, Loss, Losses
 from eurdf.convert.verification.verify import Verification, verify
 from eurdf.diagnostics import did_you_mean
 from eurdf.exceptions import InvalidRobot
@@ -228,36 +229,36 @@ def _export(
         closed = robot.configuration(next(iter(configurations.values())))
         robot, replaced = with_hinges(robot, closed)
     format_ = export_format(to)
-    written = format_.write(
-        ExportInput(
-            robot.mechanism,
-            _own_vectors(robot),
-            configurations,
-            meshes,
-            refused,
-            MeshReader(folders),
-            choices.actuators,
-            choices.mesh_files,
-            partial(_triangles, folders),
-        )
+    mechanism = robot.mechanism
+    losses = Losses((*format_.rows, *UNKNOWN))
+    losses.find(mechanism, choices.actuators, format_.exact)
+    given = ExportInput(
+        mechanism,
+        _own_vectors(robot),
+        configurations,
+        meshes,
+        refused,
+        MeshReader(folders),
+        choices.actuators,
+        choices.mesh_files,
+        partial(_triangles, folders),
     )
-    kinds = format_.losses
-    shared = Losses(kinds)
-    for joint in robot.mechanism.joints:
-        if joint.lacks_range:
-            shared.add("export-no-range", joint.name)
-    for name, coordinates in list(configurations.items())[:1] if BEYOND_LIMITS in kinds else ():
+    written = format_.write(given, losses)
+    if mechanism.constraints and not configurations and losses.has_kind("export-no-configuration"):
+        losses.add("export-no-configuration", ASSEMBLED)
+    for name, coordinates in list(configurations.items())[:1] if losses.has_kind(BEYOND_LIMITS.code) else ():
         every = robot.joint_coordinates(robot.configuration(coordinates))
-        if beyond := beyond_limits(robot.mechanism.joints, every):
-            shared.add("export-beyond-limits", name, f"has joints beyond their limits: {', '.join(map(str, beyond))}")
+        if beyond := beyond_limits(mechanism.joints, every):
+            message = f"has joints beyond their limits: {', '.join(map(str, beyond))}"
+            losses.add(BEYOND_LIMITS.code, name, message)
     for path in folders.let_through:
-        shared.add("export-file-outside", path)
-    losses = replaced + written.losses + shared.found
-    if choices.strict and (inexact := tuple(loss for loss in losses if loss.effect is not Effect.EXACT)):
+        losses.add("export-file-outside", path)
+    found = replaced + losses.found
+    if choices.strict and (inexact := tuple(loss for loss in found if loss.effect is not Effect.EXACT)):
         more = f"; and {len(inexact) - 1} more" if len(inexact) > 1 else ""
-        raise CannotExport(f"'{robot.mechanism.name}' has losses in the format {to}: {inexact[0]}{more}", inexact)
+        raise CannotExport(f"'{mechanism.name}' has losses in the format {to}: {inexact[0]}{more}", inexact)
     start = robot.configuration(next(iter(configurations.values()), {}))
-    return Export(to, MappingProxyType(dict(written.files)), losses, written.coordinates, robot, start)
+    return Export(to, MappingProxyType(dict(written.files)), found, written.coordinates, robot, start)
 
 
 def _triangles(folders: Folders, path: Path) -> Triangles | None:

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from eurdf.convert.coordinates import Coordinates, OwnVectors
 from eurdf.convert.formats import Actuators, MeshFileChoice
-from eurdf.convert.losses import Loss, LossKind
+from eurdf.convert.losses import Losses, LossKind
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mesh_files.folders import Folders
 from eurdf.mesh_files.reader import MeshReader
@@ -66,12 +66,10 @@ class ExportOutput:
 
     Attributes:
         files: Content of each file, by its path relative to a folder, with ``/``; the main file is the first.
-        losses: What is not as in the robot.
         coordinates: From the vectors of the robot to those of the model.
     """
 
     files: Mapping[str, bytes]
-    losses: tuple[Loss, ...]
     coordinates: Coordinates
 
 
@@ -82,14 +80,16 @@ class Format:
     Attributes:
         name: As the user gives it.
         title: What it is.
-        write: Writes a robot.
-        losses: Every kind of loss that `write` can record.
+        write: Writes a robot, and adds the losses that `rows` leaves to it.
+        rows: Every kind of loss.
+        exact: The joints and closures without a row, as in `ELEMENTS`: they are as in the robot.
     """
 
     name: str
     title: str
-    write: Callable[[ExportInput], ExportOutput]
-    losses: tuple[LossKind, ...]
+    write: Callable[[ExportInput, Losses], ExportOutput]
+    rows: tuple[LossKind, ...]
+    exact: tuple[str, ...]
 
 
 def export_format(name: str) -> Format:

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from eurdf.convert.losses import COMMON, Loss, Losses
+from eurdf.convert.common_losses import COMMON
+from eurdf.convert.losses import Loss, Losses
 from eurdf.kinematics.analysis import analyze
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import assemble

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from eurdf.convert.export_format import export_format
 from eurdf.convert.formats import EXPORTS
-from eurdf.convert.losses import CONCEPTS, Effect, LossKind
+from eurdf.convert.losses import ELEMENTS, Effect, LossKind
 
 _PLACE = re.compile(r"(<!-- table: [^\n]*-->\n).*?(<!-- end of table -->)", re.DOTALL)
 
@@ -22,8 +22,8 @@ def overview() -> str:
     """A table in Markdown: a row for each concept, a column for each format; a cell says what is exact and what not."""
     names = [f"[{name}]({page_of(name)})" for name in EXPORTS]
     lines = [f"| concept | {' | '.join(names)} |", "| --- |" + " --- |" * len(EXPORTS)]
-    for concept in CONCEPTS:
-        cells = [_cell([kind for kind in export_format(name).losses if kind.concept == concept]) for name in EXPORTS]
+    for concept in ELEMENTS:
+        cells = [_cell([kind for kind in export_format(name).rows if kind.concept == concept]) for name in EXPORTS]
         lines.append(f"| {concept} | {' | '.join(cells)} |")
     return "\n".join(lines) + "\n"
 
@@ -37,7 +37,7 @@ def _cell(kinds: Sequence[LossKind]) -> str:
 def details(name: str) -> str:
     """A table in Markdown of the losses of a format, in the order of the concepts."""
     lines = ["| concept | effect | what happens | error | what you can do |", "| --- | --- | --- | --- | --- |"]
-    for kind in sorted(export_format(name).losses, key=lambda kind: CONCEPTS.index(kind.concept)):
+    for kind in sorted(export_format(name).rows, key=lambda kind: list(ELEMENTS).index(kind.concept)):
         about = f"{kind.concept} ({kind.only})" if kind.only else kind.concept
         happens = f"{kind.title} (`{kind.code}`)"
         lines.append(f"| {about} | {_effect(kind)} | {happens} | {kind.error or '-'} | {kind.hint} |")

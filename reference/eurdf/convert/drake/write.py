@@ -11,18 +11,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from pathlib import PurePosixPath
 
 from lxml import etree
 
 from eurdf.convert.coordinates import Coordinates, Part
+from eurdf.convert.drake.facts import EXACT, LEAST, ROWS, STIFFNESS, can_have_actuator, is_screw
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format
 from eurdf.convert.inertia import accepted_inertia, has_inertia
-from eurdf.convert.losses import ACCELERATION, CONVERSION, Effect, Losses, LossKind
-from eurdf.convert.urdf.tree import AXES, URDF_LOSSES, Step, UrdfTree, plain_steps
+from eurdf.convert.losses import Losses
+from eurdf.convert.urdf.tree import AXES, Step, UrdfTree, plain_steps
 from eurdf.mechanism.body import Body, Inertia
-from eurdf.mechanism.constraint import Closure, Coupling, DistanceClosure, FrameClosure, HingeClosure, PointClosure
+from eurdf.mechanism.constraint import Closure, Coupling, FrameClosure, HingeClosure, PointClosure
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
@@ -39,191 +39,17 @@ _WORLD = "world"
 #: Distance of the points that hold a frame or a hinge, m.
 WIDTH = 0.1
 
-#: Stiffness of a coupling, N/m or N·m/rad: Drake has no rigid ones of three joints, and softens what is stiffer than
-#: its time step allows.
-STIFFNESS = 1e12
 
-#: kg and kg·m² that links without mass get where Drake needs some: far below any of a robot.
-LEAST = 1e-13
-
-_ONE_FREEDOM = (
-    JointType.REVOLUTE,
-    JointType.CONTINUOUS,
-    JointType.PRISMATIC,
-    JointType.HELICAL,
-    JointType.UNIVERSAL,
-    JointType.CYLINDRICAL,
-)
-_SAP = "less than 1e-3 m or rad in 1 s under gravity, on the robots of the tests; continuous time ignores it"
-
-LOSSES = (
-    LossKind(
-        "export-spherical-joint",
-        "spherical joint",
-        Effect.APPROXIMATE,
-        "becomes a 'ball', whose coordinates are roll, pitch and yaw",
-        "keep the joint away from where its pitch is ±π/2, or choose its zero otherwise",
-        error="none in poses and dynamics; rates of coordinates are singular where the pitch is ±π/2",
-    ),
-    LossKind(
-        "export-floating-joint",
-        "floating joint",
-        Effect.APPROXIMATE,
-        "becomes three prismatic joints and a 'ball', whose coordinates are roll, pitch and yaw",
-        "keep the joint away from where its pitch is ±π/2, or choose its zero otherwise",
-        error="none in poses and dynamics; rates of coordinates are singular where the pitch is ±π/2",
-    ),
-    LossKind(
-        "export-mimic-joint",
-        "mimic joint",
-        Effect.APPROXIMATE,
-        "becomes a free joint that a constraint couples to its leader",
-        "simulate in discrete time, with the SAP solver",
-        error=_SAP,
-    ),
-    LossKind(
-        "export-soft-3d",
-        "3d closure",
-        Effect.APPROXIMATE,
-        "becomes a 'drake:ball_constraint'",
-        "simulate in discrete time, with the SAP solver",
-        error=_SAP,
-    ),
-    LossKind(
-        "export-soft-6d",
-        "6d closure",
-        Effect.APPROXIMATE,
-        "becomes three 'drake:ball_constraint': 9 rows of rank 6",
-        "replace them with MultibodyPlant.AddWeldConstraint, which a file cannot state",
-        error=_SAP,
-    ),
-    LossKind(
-        "export-hinge-closure",
-        "hinge closure",
-        Effect.APPROXIMATE,
-        "becomes two 'drake:ball_constraint' on the axis: 6 rows of rank 5",
-        "simulate in discrete time, with the SAP solver",
-        error=_SAP,
-    ),
-    LossKind(
-        "export-distance-closure",
-        "distance closure",
-        Effect.DROPPED,
-        "is left out: Drake has no element for it",
-        "call MultibodyPlant.AddDistanceConstraint with the points and the length of the message",
-    ),
-    LossKind(
-        "export-soft-coupling",
-        "coupling",
-        Effect.APPROXIMATE,
-        f"becomes a 'drake:tendon_constraint' of the stiffness {STIFFNESS:g}",
-        "simulate in discrete time, with the SAP solver",
-        error=_SAP,
-    ),
-    LossKind(
-        "export-limits",
-        "position limit",
-        Effect.DROPPED,
-        "limits of position and velocity are left out: Drake has none for this type of joint",
-        "limit the motion in the controller",
-        only="planar and helical joints",
-    ),
-    LossKind(
-        "export-velocity-limit",
-        "velocity limit",
-        Effect.DROPPED,
-        "is left out: Drake has none for this type of joint",
-        "limit velocities in the controller",
-        only="spherical, planar, floating and helical joints",
-    ),
-    replace(
-        ACCELERATION,
-        title="limits of acceleration, deceleration and jerk are left out: Drake has one for both directions of q̈",
-        only="all but equal limits of acceleration and deceleration of joints with one axis",
-    ),
-    LossKind(
-        "export-effort-limit",
-        "effort limit",
-        Effect.DROPPED,
-        "is left out: in Drake, it is one of the actuator, which acts on a joint with one freedom",
-        "limit efforts in the controller",
-        only="spherical, planar and floating joints",
-    ),
-    LossKind(
-        "export-unequal-damping",
-        "damping",
-        Effect.APPROXIMATE,
-        "the axes of the joint have different values: their mean is written",
-        "give the axes of the joint one value",
-        error="difference of the values to their mean",
-        only="spherical joints with different values",
-    ),
-    LossKind("export-friction", "friction", Effect.DROPPED, "is left out: Drake has none of joints", "model it apart"),
-    LossKind(
-        "export-armature",
-        "armature",
-        Effect.DROPPED,
-        "is left out: in Drake, it is one of an actuator, which acts on a joint with one freedom",
-        "make the joint an actuator, or add the inertia to its link",
-        only="joints without an actuator",
-    ),
-    LossKind(
-        "export-gear-ratio",
-        "gear ratio",
-        Effect.EXACT,
-        "is written as 1, with the armature as rotor inertia: the armature is not gear ratio² · rotor inertia",
-        "leave out the armature in the description",
-        only="armature stated apart",
-    ),
-    LossKind(
-        "export-actuator",
-        "actuator",
-        Effect.DROPPED,
-        "is left out: in Drake, one acts on a joint with one freedom and an effort limit above 0",
-        "apply the forces from a program",
-        only="spherical, planar and floating joints, and limits of 0",
-    ),
-    LossKind(
-        "export-control-range",
-        "control range",
-        Effect.DROPPED,
-        "is left out: an actuator of Drake has the effort limit of its joint alone",
-        "limit controls in the controller",
-    ),
-    LossKind(
-        "export-massless-link",
-        "link without mass",
-        Effect.APPROXIMATE,
-        f"gets {LEAST:g} kg and kg·m²: Drake replaces inertia without mass by 1 kg of water, and does not simulate a "
-        "joint that moves no inertia, nor a mimic joint, which is free there, whose link has none",
-        "give the link its mass",
-        error=f"{LEAST:g} kg and kg·m² in the mass matrix",
-        only="links with inertia, with a mimic joint, or with a joint that moves no inertia",
-    ),
-    LossKind(
-        "export-inertia",
-        "inertia",
-        Effect.APPROXIMATE,
-        "is not that of a body with volume, which Drake replaces by a ball of water: principal moments are raised",
-        "correct the inertia in the URDF; `eurdf check` reports those that no body has",
-        error="the message gives the change of a principal moment; none in mass and centre of mass",
-        only="what no body has",
-    ),
-    *CONVERSION,
-    *URDF_LOSSES,
-)
-
-
-def write(given: ExportInput) -> ExportOutput:
+def write(given: ExportInput, losses: Losses) -> ExportOutput:
     """Write the URDF of a robot for Drake: ``robot.urdf``, and its meshes in ``meshes/``.
 
     Raises:
         CannotExport: A link has a negative mass.
     """
-    tree = _Tree(given, Losses(LOSSES))
+    tree = _Tree(given, losses)
     tree.write()
     files = {"robot.urdf": file_content(tree.root), **tree.meshes.files}
-    return ExportOutput(files, tree.losses.found, Coordinates(tuple(tree.parts), given.own, "wxyz"))
+    return ExportOutput(files, Coordinates(tuple(tree.parts), given.own, "wxyz"))
 
 
 def _moved_without_mass(mechanism: Mechanism) -> set[str]:
@@ -287,7 +113,7 @@ class _Tree(UrdfTree):
                 return [Step("", joint.type, None, tag=_tag("joint"), type_name="ball")]
             case JointType.PLANAR:
                 return [Step("", joint.type, AXES[2][1], tag=_tag("joint"), type_name="planar")]
-            case JointType.HELICAL if joint.pitch:
+            case JointType.HELICAL if is_screw(joint):
                 return [Step("", joint.type, joint.axes[0], 0, tag=_tag("joint"), type_name="screw")]
             case JointType.HELICAL:
                 return [Step("", JointType.CONTINUOUS, joint.axes[0], 0)]
@@ -306,7 +132,6 @@ class _Tree(UrdfTree):
         if mimic is None:
             self.parts.append(self.part(joint, names, steps))
             return
-        self.losses.add("export-mimic-joint", joint.name)
         ratio = (0, mimic.multiplier, mimic.offset)
         self.parts.append(Part(tuple(names), mimic.joint, joint.type, (ratio,), mimics=True))
 
@@ -314,10 +139,6 @@ class _Tree(UrdfTree):
         properties = joint.properties
         if joint.type.is_fixed:
             return
-        if any(properties.friction):
-            self.losses.add("export-friction", joint.name)
-        if joint.type is JointType.SPHERICAL:
-            self.losses.add("export-spherical-joint", joint.name)
         if step.type_name == "screw":
             etree.SubElement(element, _tag("screw_thread_pitch"), value=numbers((joint.pitch,)))
         own = _velocities(joint, step)
@@ -334,20 +155,12 @@ class _Tree(UrdfTree):
             if step.index is not None and step.index < len(values) and math.isfinite(values[step.index])
         }
         if not limited:
-            if {"lower", "upper"} & finite.keys():
-                self.losses.add("export-limits", joint.name)
-            if any(math.isfinite(value) for value in properties.velocity):
-                self.losses.add("export-velocity-limit", joint.name)
             finite = {name: value for name, value in finite.items() if name == "effort"}
-        if not (limited or step.type_name == "screw") and any(math.isfinite(value) for value in properties.effort):
-            self.losses.add("export-effort-limit", joint.name)
         rates = dict(properties.rates)
         if limited and step.index is not None and rates.get("acceleration") == rates.get("deceleration"):
             rates.pop("deceleration", None)
             accelerations = rates.pop("acceleration", ())
             finite |= {_tag("acceleration"): value for value in accelerations[step.index : step.index + 1]}
-        if rates:
-            self.losses.add(ACCELERATION.code, joint.name)
         if finite:
             attributes = {name: numbers((value,)) for name, value in finite.items()}
             etree.SubElement(element, "limit", attributes)
@@ -370,11 +183,7 @@ class _Tree(UrdfTree):
             return
         motor = mechanism.motor(joint.name)
         shown = motor.name
-        if motor.control is not None:
-            self.losses.add("export-control-range", shown)
-        efforts = properties.effort or (math.inf,) * joint.type.nv
-        if joint.type not in _ONE_FREEDOM or min(efforts) <= 0.0:
-            self.losses.add("export-actuator", shown)
+        if not can_have_actuator(joint):
             if any(armature):
                 self.losses.add("export-armature", joint.name)
             return
@@ -402,21 +211,13 @@ class _Tree(UrdfTree):
         match closure:
             case PointClosure():
                 self._balls(closure, [(_ORIGIN, _ORIGIN)])
-                self.losses.add("export-soft-3d", closure.name)
             case FrameClosure():
                 points = [_ORIGIN, *(_scaled(WIDTH, axis) for _, axis in AXES[:2])]
                 self._balls(closure, [(point, point) for point in points])
-                self.losses.add("export-soft-6d", closure.name)
             case HingeClosure():
                 one, other = (_scaled(WIDTH, direction(axis)) for axis in closure.axes)
                 self._balls(closure, [(_ORIGIN, _ORIGIN), (one, other)])
-                self.losses.add("export-hinge-closure", closure.name)
-            case DistanceClosure():
-                p, r = closure.a.pose.xyz, closure.b.pose.xyz
-                bodies = f"body_A '{closure.a.body}', p_AP {list(p)}, body_B '{closure.b.body}', p_BQ {list(r)}"
-                self.losses.add(
-                    "export-distance-closure", closure.name, f"is left out: {bodies}, distance {closure.length}"
-                )
+            case _:
                 return
         a, b = (self.links[end.body] for end in closure.anchors)
         if a != b:
@@ -447,7 +248,6 @@ class _Tree(UrdfTree):
             ("damping", 0.0),
         ):
             etree.SubElement(tendon, _tag(f"tendon_constraint_{what}"), value=numbers((value,)))
-        self.losses.add("export-soft-coupling", coupling.name)
 
 
 def _velocities(joint: Joint, step: Step) -> Sequence[int]:
@@ -461,4 +261,4 @@ def _scaled(length: float, unit: Vector3) -> Vector3:
     return length * unit[0], length * unit[1], length * unit[2]
 
 
-FORMAT = Format("drake", "URDF with the joints and constraints of Drake", write, LOSSES)
+FORMAT = Format("drake", "URDF with the joints and constraints of Drake", write, ROWS, (*EXACT, "helical joint"))

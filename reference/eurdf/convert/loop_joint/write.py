@@ -12,49 +12,32 @@ import math
 from lxml import etree
 
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format
-from eurdf.convert.losses import Effect, Losses, LossKind
+from eurdf.convert.loop_joint.facts import CLOSURES, EXACT, ROWS
+from eurdf.convert.losses import Losses
 from eurdf.convert.names import UniqueNames
-from eurdf.convert.urdf.tree import PLAIN_LOSSES, PlainTree
+from eurdf.convert.urdf.tree import PlainTree
 from eurdf.mechanism.constraint import Closure, HingeClosure
 from eurdf.mechanism.pose import Pose, Quaternion, Vector3, direction
 from eurdf.writing.angles import rpy_of
 from eurdf.writing.xml_text import file_content, numbers
 
-#: The type of a loop joint, by that of the closure.
-_TYPES = {"3d": "spherical", "6d": "fixed", "hinge": "revolute"}
-
 _X: Vector3 = (1.0, 0.0, 0.0)
 
-LOSSES = (
-    LossKind(
-        "export-distance-dropped",
-        "distance closure",
-        Effect.DROPPED,
-        "is left out: there is no such loop joint",
-        "describe the rod as a link, with a joint at each end",
-    ),
-    *PLAIN_LOSSES,
-)
 
-
-def write(given: ExportInput) -> ExportOutput:
+def write(given: ExportInput, losses: Losses) -> ExportOutput:
     """Write the URDF of a robot with loop joints: ``robot.urdf``, and its meshes in ``meshes/``."""
-    mechanism, losses = given.mechanism, Losses(LOSSES)
+    mechanism = given.mechanism
     tree = PlainTree(given, losses)
     tree.write()
     names = UniqueNames(losses, *(name for names in tree.joints.values() for name in names))
     for closure in mechanism.closures:
-        if closure.type in _TYPES:
+        if closure.type in CLOSURES:
             _loop_joint(tree.root, closure, names.new(closure.name))
-        else:
-            losses.add("export-distance-dropped", closure.name)
-    for coupling in mechanism.couplings:
-        losses.add("export-coupling-dropped", coupling.name)
-    return ExportOutput({"robot.urdf": file_content(tree.root), **tree.meshes.files}, losses.found, tree.coordinates)
+    return ExportOutput({"robot.urdf": file_content(tree.root), **tree.meshes.files}, tree.coordinates)
 
 
 def _loop_joint(robot: etree._Element, closure: Closure, name: str) -> None:
-    element = etree.SubElement(robot, "loop_joint", name=name, type=_TYPES[closure.type])
+    element = etree.SubElement(robot, "loop_joint", name=name, type=CLOSURES[closure.type])
     axes = closure.axes if isinstance(closure, HingeClosure) else (_X, _X)
     for tag, end, axis in zip(("link1", "link2"), closure.anchors, axes, strict=True):
         pose = end.pose * Pose(quaternion=from_x(axis))
@@ -73,4 +56,4 @@ def from_x(axis: Vector3) -> Quaternion:
     return 0.0, -z / norm, y / norm, cosine / norm
 
 
-FORMAT = Format("loop-joint", "URDF with the loop joints of Isaac Sim", write, LOSSES)
+FORMAT = Format("loop-joint", "URDF with the loop joints of Isaac Sim", write, ROWS, EXACT)

@@ -18,11 +18,11 @@ from lxml import etree
 
 from eurdf.convert.contacts import neighbours
 from eurdf.convert.coordinates import Coordinates, Part
-from eurdf.convert.exceptions import CannotExport
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format
 from eurdf.convert.inertia import accepted_inertia, along_principal_axes, has_inertia
-from eurdf.convert.losses import ACCELERATION, BEYOND_LIMITS, COMMON, CONVERSION, NAMED_FILE, Effect, Losses, LossKind
+from eurdf.convert.losses import Losses
 from eurdf.convert.mesh_file import MeshFiles
+from eurdf.convert.mjcf.facts import EXACT, LEAST, ROWS, SOLIMP, SOLREF, TIMESTEP, TOLERANCE
 from eurdf.convert.names import UniqueNames
 from eurdf.convert.servo import position_gain
 from eurdf.mechanism.body import Body, Shape
@@ -41,227 +41,14 @@ from eurdf.mechanism.mimic import Mimic, drivers
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.writing.xml_text import file_content, numbers, representable
 
-#: kg and kg·m² that a moving body without inertia gets: ten times the larger of MuJoCo's bounds, and far below any of a
-#: robot.
-LEAST = 1e-13
-
-#: Time step, s. The equalities below are as stiff as it allows: MuJoCo keeps their time constant at two steps or more.
-TIMESTEP = 0.001
-
-#: Where MuJoCo's solver stops. At its default, 1e-8, it leaves equalities of joints with little inertia unsolved: mimic
-#: joints of links without mass open by 0.1 rad. It does as many iterations in other robots.
-TOLERANCE = 1e-15
-
-#: Time constant (s) and damping ratio, and impedances, of closures, couplings and mimic joints.
-SOLREF, SOLIMP = (2.0 * TIMESTEP, 1.0), (0.9999, 0.9999, 0.001, 0.5, 2.0)
-
 #: Distance of the two points that hold a hinge, m.
 HINGE_WIDTH = 0.1
 
 #: The bound of a side without limit, where the other side has one: rad or m.
 _UNLIMITED = 1e10
 
-# What the tests hold robots to that have these elements.
-_OPENING = "less than 1e-3 m or rad in 2 s under gravity, on the robots of the tests"
-
-# A shorter time step helps some robots alone: those whose loops pass singular poses open as much, or diverge.
-_MEASURE = "run `eurdf export --verify`: it shows how far the loops open in 2 s and, above 5 mm, what to do"
-
 _X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 _WORLD = "world"
-
-LOSSES = (
-    LossKind(
-        "export-fixed-joint",
-        "fixed joint",
-        Effect.EXACT,
-        "its name is left out: its link becomes a body without a joint, or a site if it has no mass",
-        "name the link in its place",
-    ),
-    LossKind(
-        "export-helical-joint",
-        "helical joint",
-        Effect.APPROXIMATE,
-        "becomes a slide and a hinge that a soft equality couples",
-        "let the simulation start at a keyframe, which meets the equality",
-        error=_OPENING,
-    ),
-    LossKind(
-        "export-mimic-joint",
-        "mimic joint",
-        Effect.APPROXIMATE,
-        "becomes a free joint that a soft equality couples to its leader",
-        "let the simulation start at a keyframe, which meets the equality",
-        error=_OPENING,
-    ),
-    LossKind(
-        "export-soft-3d",
-        "3d closure",
-        Effect.APPROXIMATE,
-        "becomes a 'connect', which is soft",
-        _MEASURE,
-        error=_OPENING,
-    ),
-    LossKind(
-        "export-soft-6d",
-        "6d closure",
-        Effect.APPROXIMATE,
-        "becomes a 'weld', which is soft",
-        _MEASURE,
-        error=_OPENING,
-    ),
-    LossKind(
-        "export-hinge-closure",
-        "hinge closure",
-        Effect.APPROXIMATE,
-        "becomes two 'connect' on the axis: 6 soft rows of rank 5",
-        _MEASURE,
-        error=_OPENING,
-    ),
-    LossKind(
-        "export-distance-closure",
-        "distance closure",
-        Effect.APPROXIMATE,
-        "becomes the soft equality of a spatial tendon",
-        _MEASURE,
-        error=_OPENING,
-    ),
-    LossKind(
-        "export-soft-coupling",
-        "coupling",
-        Effect.APPROXIMATE,
-        "becomes a soft equality of two joints, or of a fixed tendon of three or more",
-        "let the simulation start at a keyframe, which meets the equality",
-        error=_OPENING,
-    ),
-    LossKind(
-        "export-compliance",
-        "compliance",
-        Effect.DROPPED,
-        "is left out: MuJoCo relates the softness of an equality to the inertia that it holds",
-        f"set solref of the equality to '-s -2√s', s = {1.0 - SOLIMP[1]:.0e} · w / compliance, where w is the sum of "
-        "model.body_invweight0[:, 0] of the two bodies",
-    ),
-    LossKind(
-        "export-velocity-limit",
-        "velocity limit",
-        Effect.DROPPED,
-        "is left out: MuJoCo has no velocity limits of joints",
-        "limit velocities in the controller",
-    ),
-    LossKind(
-        "export-effort-limit",
-        "effort limit",
-        Effect.DROPPED,
-        "is left out: MuJoCo has none for a ball joint, and none of 0",
-        "limit efforts in the controller",
-        only="spherical joints, and limits of 0",
-    ),
-    LossKind(
-        "export-equal-limits",
-        "position limit",
-        Effect.APPROXIMATE,
-        "both limits are equal, which MuJoCo refuses: becomes a soft equality",
-        "make the joint 'fixed' in the description",
-        error=_OPENING,
-        only="equal limits that are not 0",
-    ),
-    *(
-        LossKind(
-            f"export-unequal-{concept}",
-            concept,
-            Effect.APPROXIMATE,
-            "the axes of the joint have different values: their mean is written",
-            "give the axes of the joint one value",
-            error="difference of the values to their mean",
-            only="axes with different values",
-        )
-        for concept in ("armature", "damping", "friction")
-    ),
-    LossKind(
-        "export-turning-armature",
-        "armature",
-        Effect.APPROXIMATE,
-        "acts along the axes of the joint at rest, not along those of the child: centrifugal terms differ",
-        "leave out the armature of planar and floating joints",
-        error="up to armature · (joint velocity)² in the force; none at rest",
-        only="planar and floating joints",
-    ),
-    LossKind(
-        "export-gear-ratio",
-        "gear ratio",
-        Effect.EXACT,
-        "controls are on the side of the joint; the rotor is in the armature, gear ratio² · rotor inertia",
-        "to control the motor side, multiply 'gear' and divide 'ctrlrange' by the gear ratio",
-    ),
-    LossKind(
-        "export-force-axes",
-        "actuator",
-        Effect.APPROXIMATE,
-        "acts along the axes of the joint at rest, not along those of the child",
-        "turn the forces with Export.coordinates.rates",
-        error="none at the joint's zero; elsewhere the force is turned by the joint's angle",
-        only="planar and floating joints",
-    ),
-    LossKind(
-        "export-position-gain",
-        "actuator",
-        Effect.APPROXIMATE,
-        "the description has no gain",
-        "set 'kp' and 'dampratio' of the actuator",
-        error="gain and damping are this export's choice",
-        only="--actuators position",
-    ),
-    LossKind(
-        "export-no-actuator",
-        "actuator",
-        Effect.DROPPED,
-        "is left out, as asked for",
-        "export with actuators 'motor' or 'position'",
-        sayable=True,
-        only="--actuators none",
-    ),
-    LossKind(
-        "export-massless-link",
-        "link without mass",
-        Effect.APPROXIMATE,
-        f"moves without inertia, which MuJoCo refuses: gets {LEAST:g} kg and kg·m²",
-        "give the link its mass or its joint an armature, or merge its joints into one of a type with several axes",
-        error=f"{LEAST:g} kg and kg·m² in the mass matrix; the simulation diverges where three joints with such links "
-        "between them have their axes in a plane",
-        only="links that move",
-    ),
-    LossKind(
-        "export-inertia",
-        "inertia",
-        Effect.APPROXIMATE,
-        "is not that of a body with volume, which MuJoCo asks for: principal moments are raised",
-        "correct the inertia in the URDF; `eurdf check` reports those that no body has",
-        error="the message gives the change of a principal moment; none in mass and centre of mass",
-        only="what no body has",
-    ),
-    LossKind(
-        "export-texture",
-        "texture",
-        Effect.DROPPED,
-        "is left out; the color is kept",
-        "add a texture and a material to the file",
-    ),
-    BEYOND_LIMITS,
-    LossKind(
-        "export-no-configuration",
-        "configuration",
-        Effect.DROPPED,
-        "no closed configuration was found, so there is no keyframe",
-        "find one with `eurdf assemble`, and write it to the description as 'assembled'",
-        sayable=True,
-        only="none is closed",
-    ),
-    *CONVERSION,
-    NAMED_FILE,
-    ACCELERATION,
-    *COMMON,
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -283,21 +70,21 @@ class _Piece:
     coordinate: int | None = None
 
 
-def write(given: ExportInput) -> ExportOutput:
+def write(given: ExportInput, losses: Losses) -> ExportOutput:
     """Write the MJCF of a robot: ``robot.xml``, and its meshes in ``meshes/``.
 
     Raises:
         CannotExport: A link has a negative mass.
     """
-    return _Writer(given).write()
+    return _Writer(given, losses).write()
 
 
 class _Writer:
     """A file while it is written."""
 
-    def __init__(self, given: ExportInput) -> None:
+    def __init__(self, given: ExportInput, losses: Losses) -> None:
         self.given, self.mechanism = given, given.mechanism
-        self.losses = Losses(LOSSES)
+        self.losses = losses
         self.bodies = UniqueNames(self.losses, _WORLD)
         self.joints, self.sites, self.equalities, self.tendons, self.actuators = (
             UniqueNames(self.losses) for _ in range(5)
@@ -347,13 +134,9 @@ class _Writer:
             etree.SubElement(
                 keyframe, "key", name=keys.new(name), qpos=numbers(coordinates.from_files(configuration).tolist())
             )
-        if mechanism.constraints and not self.given.configurations:
-            self.losses.add("export-no-configuration", "assembled")
-        if mechanism.metadata or mechanism.own_data:
-            self.losses.add("export-metadata", mechanism.name)
         for section in [each for each in self.root if len(each) == 0 and each.tag not in ("compiler", "option")]:
             self.root.remove(section)
-        return ExportOutput({"robot.xml": file_content(self.root), **self.meshes.files}, self.losses.found, coordinates)
+        return ExportOutput({"robot.xml": file_content(self.root), **self.meshes.files}, coordinates)
 
     def _head(self) -> None:
         etree.SubElement(
@@ -386,7 +169,6 @@ class _Writer:
         host, pose = self.hosts[joint.parent]
         pose = pose * joint.placement
         if joint.type.is_fixed:
-            self.losses.add("export-fixed-joint", joint.name)
             self._fixed(body, host, pose * joint.offset)
             return
         element = etree.SubElement(host, "body", {"name": self.bodies.new(body.name), **_placed(pose * joint.offset)})
@@ -489,8 +271,6 @@ class _Writer:
 
     def _properties(self, joint: Joint, piece: _Piece) -> dict[str, str]:
         properties, found = joint.properties, {}
-        if properties.rates:
-            self.losses.add(ACCELERATION.code, joint.name)
         for attribute, values in (
             ("armature", properties.armature),
             ("damping", properties.damping),
@@ -511,8 +291,6 @@ class _Writer:
                     (math.fsum(mine) / len(mine),)
                 )
         for index in piece.velocities:
-            if properties.velocity and math.isfinite(properties.velocity[index]):
-                self.losses.add("export-velocity-limit", joint.name, f"{properties.velocity[index]:g} is left out")
             effort = properties.effort[index] if properties.effort else math.inf
             if math.isfinite(effort):
                 if piece.kind == "ball" or effort == 0.0:
@@ -549,8 +327,6 @@ class _Writer:
                 attributes["mesh"] = name
         if shape.color is not None:
             attributes["rgba"] = numbers(shape.color)
-        if shape.texture:
-            self.losses.add("export-texture", shape.texture)
         etree.SubElement(element, "geom", attributes | _placed(pose * shape.pose))
 
     def _mesh(self, shape: Shape) -> str | None:
@@ -587,10 +363,6 @@ class _Writer:
     # -- constraints ------------------------------------------------------------------------------------------------
 
     def _closure(self, closure: Closure, tendon: etree._Element, equality: etree._Element) -> None:
-        linear, angular = closure.compliance.linear, closure.compliance.angular
-        if linear or angular:
-            values = f"{linear:g} m/N" + (f", {angular:g} rad/(N·m)" if angular else "")
-            self.losses.add("export-compliance", closure.name, f"{values} is left out")
         name = self.equalities.new(closure.name)
         ends = closure.a, closure.b
 
@@ -605,11 +377,9 @@ class _Writer:
             case PointClosure():
                 a, b = sites()
                 etree.SubElement(equality, "connect", name=name, site1=a, site2=b)
-                self.losses.add("export-soft-3d", closure.name)
             case FrameClosure():
                 a, b = sites()
                 etree.SubElement(equality, "weld", name=name, site1=a, site2=b)
-                self.losses.add("export-soft-6d", closure.name)
             case HingeClosure():
                 a, b = sites()
                 etree.SubElement(equality, "connect", name=name, site1=a, site2=b)
@@ -617,7 +387,6 @@ class _Writer:
                 a, b = sites("_axis", (one, other))
                 second = self.equalities.new(f"{closure.name}/axis")
                 etree.SubElement(equality, "connect", name=second, site1=a, site2=b)
-                self.losses.add("export-hinge-closure", closure.name)
             case DistanceClosure():
                 a, b = sites()
                 path = self.tendons.new(closure.name)
@@ -627,9 +396,6 @@ class _Writer:
                 # The equality is relative to the length at the reference configuration.
                 excess = closure.length - self._distance_at_rest(closure)
                 etree.SubElement(equality, "tendon", name=name, tendon1=path, polycoef=numbers((excess, 0, 0, 0, 0)))
-                self.losses.add("export-distance-closure", closure.name)
-            case _:
-                raise CannotExport(f"closure '{closure.name}' has the type {closure.type}, which MJCF does not have")
 
     def _distance_at_rest(self, closure: DistanceClosure) -> float:
         carried = {joint.child: joint for joint in self.mechanism.joints}
@@ -644,7 +410,6 @@ class _Writer:
 
     def _coupling(self, coupling: Coupling, tendon: etree._Element, equality: etree._Element) -> None:
         name = self.equalities.new(coupling.name)
-        self.losses.add("export-soft-coupling", coupling.name)
         terms = [(self._scalar(joint), coefficient) for joint, coefficient in coupling.coefficients]
         (first, c), *others = terms
         if len(others) <= 1:
@@ -665,12 +430,10 @@ class _Writer:
         if joint.type is JointType.HELICAL:
             slide, hinge = (piece.name for piece in pieces)
             self._equal(equality, slide, Mimic(hinge, _advance(joint)))
-            self.losses.add("export-helical-joint", joint.name)
         mimic = self.mimics.get(joint.name)
         if mimic is not None:
             leader = self._scalar(mimic.joint)
             self._equal(equality, pieces[0].name, Mimic(leader, mimic.multiplier, mimic.offset))
-            self.losses.add("export-mimic-joint", joint.name)
         for piece in pieces:
             if piece.coordinate is None:
                 continue
@@ -679,7 +442,6 @@ class _Writer:
                 polycoef = numbers((lower, 0, 0, 0, 0))
                 name = self.equalities.new(f"{piece.name}/locked")
                 etree.SubElement(equality, "joint", name=name, joint1=piece.name, polycoef=polycoef)
-                self.losses.add("export-equal-limits", joint.name)
 
     def _equal(self, equality: etree._Element, follower: str, mimic: Mimic) -> None:
         polycoef = numbers((mimic.offset, mimic.multiplier, 0, 0, 0))
@@ -697,13 +459,8 @@ class _Writer:
         motor = mechanism.motor(name)
         shown, control = motor.name, motor.control
         if self.given.actuators == "none":
-            self.losses.add("export-no-actuator", shown)
             return
         (joint,) = (joint for joint in mechanism.joints if joint.name == name)
-        if any(ratio != 1.0 for ratio in joint.properties.gear_ratio) or any(joint.properties.rotor_inertia):
-            self.losses.add("export-gear-ratio", shown)
-        if joint.type in (JointType.PLANAR, JointType.FLOATING):
-            self.losses.add("export-force-axes", shown)
         count = joint.type.nv
         for piece in self.pieces[name]:
             for index in piece.velocities:
@@ -766,4 +523,4 @@ def _is_readable(file: str, content: bytes) -> bool:
     return suffix in (".obj", ".msh")
 
 
-FORMAT = Format("mjcf", "MJCF, for MuJoCo and what reads its format", write, LOSSES)
+FORMAT = Format("mjcf", "MJCF, for MuJoCo and what reads its format", write, ROWS, EXACT)

@@ -12,7 +12,6 @@ import math
 import sys
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from operator import mul
 
 from lxml import etree
 
@@ -20,9 +19,11 @@ from eurdf.convert.coordinates import Coordinates, Part
 from eurdf.convert.exceptions import CannotExport
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format
 from eurdf.convert.inertia import accepted_inertia
-from eurdf.convert.losses import ACCELERATION, BEYOND_LIMITS, COMMON, NAMED_FILE, Effect, Losses, LossKind
+from eurdf.convert.losses import Losses
 from eurdf.convert.mesh_file import MeshFiles
 from eurdf.convert.names import UniqueNames
+from eurdf.convert.sdf.facts import CLOSURES, EXACT, LEAST, ROWS, VERSION
+from eurdf.convert.steps import is_skew
 from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.constraint import Closure, Coupling, HingeClosure, PointClosure
 from eurdf.mechanism.frame import Anchor
@@ -34,166 +35,11 @@ from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.writing.angles import rpy_of
 from eurdf.writing.xml_text import file_content
 
-VERSION = "1.11"
-
-#: kg and kg·m² that a link without inertia gets: physics engines refuse 0.
-LEAST = 1e-9
-
 #: Largest opening, m or rad, of a loop that counts as closed (EU-CLO-005).
 CLOSED = 1e-6
 
-#: Largest cosine of the axes of a universal joint that are perpendicular but for rounding.
-_SKEW = 1e-9
-
 _X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 _WORLD = "world"
-_BETWEEN = f"{LEAST:g} kg and kg·m² for each link between them in the mass matrix"
-
-LOSSES = (
-    LossKind(
-        "export-planar-joint",
-        "planar joint",
-        Effect.APPROXIMATE,
-        "becomes two prismatic joints and one that turns",
-        "use Export.coordinates",
-        error=_BETWEEN,
-    ),
-    LossKind(
-        "export-floating-joint",
-        "floating joint",
-        Effect.APPROXIMATE,
-        "becomes three prismatic joints and a ball joint",
-        "use Export.coordinates",
-        error=_BETWEEN,
-    ),
-    LossKind(
-        "export-cylindrical-joint",
-        "cylindrical joint",
-        Effect.APPROXIMATE,
-        "becomes a prismatic joint and one that turns",
-        "use Export.coordinates",
-        error=_BETWEEN,
-    ),
-    LossKind(
-        "export-universal-joint",
-        "universal joint",
-        Effect.APPROXIMATE,
-        "its axes are not perpendicular: becomes two joints",
-        "use Export.coordinates",
-        error=_BETWEEN,
-        only="axes not perpendicular",
-    ),
-    LossKind(
-        "export-zero",
-        "configuration",
-        Effect.EXACT,
-        "is where the links are: coordinates of joints are zero there",
-        "use Export.coordinates",
-        only="the one where the links are",
-    ),
-    LossKind(
-        "export-configurations",
-        "configuration",
-        Effect.DROPPED,
-        "is left out: a file has one configuration, where its links are",
-        "export with another --configuration, or keep the description beside the file",
-        only="all but one",
-    ),
-    LossKind(
-        "export-distance-dropped",
-        "distance closure",
-        Effect.DROPPED,
-        "is left out: SDFormat has no such joint",
-        "describe the rod as a link, with a joint at each end",
-    ),
-    LossKind(
-        "export-coupling",
-        "coupling",
-        Effect.EXACT,
-        "becomes the mimic of one joint by the other",
-        "simulate with a physics engine that has mimic joints",
-        only="two joints",
-    ),
-    LossKind(
-        "export-coupling-dropped",
-        "coupling",
-        Effect.DROPPED,
-        "is left out: SDFormat relates two joints, of which one has no other relation",
-        "add a plugin that couples the joints",
-        only="three joints or more, or joints that mimic",
-    ),
-    LossKind(
-        "export-compliance", "compliance", Effect.DROPPED, "is left out", "set 'cfm' and 'erp' of the joint by hand"
-    ),
-    LossKind(
-        "export-velocity-limit",
-        "velocity limit",
-        Effect.DROPPED,
-        "is left out: a ball joint has none",
-        "limit velocities in the controller",
-        only="spherical and floating joints",
-    ),
-    LossKind(
-        "export-effort-limit",
-        "effort limit",
-        Effect.DROPPED,
-        "is left out: a ball joint has none",
-        "limit efforts in the controller",
-        only="spherical and floating joints",
-    ),
-    LossKind(
-        "export-damping",
-        "damping",
-        Effect.DROPPED,
-        "is left out: a ball joint has none",
-        "add a plugin",
-        only="spherical and floating joints",
-    ),
-    LossKind(
-        "export-friction",
-        "friction",
-        Effect.DROPPED,
-        "is left out: a ball joint has none",
-        "add a plugin",
-        only="spherical and floating joints",
-    ),
-    LossKind(
-        "export-armature", "armature", Effect.DROPPED, "is left out", "add the inertia of the rotor to a link by hand"
-    ),
-    LossKind("export-gear-ratio", "gear ratio", Effect.DROPPED, "is left out", "multiply in the controller"),
-    LossKind(
-        "export-actuators",
-        "actuator",
-        Effect.DROPPED,
-        "is left out: SDFormat has plugins",
-        "add the plugin of a controller for the joint",
-    ),
-    LossKind(
-        "export-control-range", "control range", Effect.DROPPED, "is left out", "limit controls in the controller"
-    ),
-    LossKind(
-        "export-massless-link",
-        "link without mass",
-        Effect.APPROXIMATE,
-        f"gets {LEAST:g} kg and kg·m²: physics engines refuse 0",
-        "give the link its mass",
-        error=f"{LEAST:g} kg and kg·m² in the mass matrix",
-    ),
-    LossKind(
-        "export-inertia",
-        "inertia",
-        Effect.APPROXIMATE,
-        "is not that of a body with volume, which SDFormat asks for: principal moments are raised",
-        "correct the inertia in the URDF; `eurdf check` reports those that no body has",
-        error="the message gives the change of a principal moment; none in mass and centre of mass",
-        only="what no body has",
-    ),
-    LossKind("export-texture", "texture", Effect.DROPPED, "is left out; the color is kept", "add a material"),
-    BEYOND_LIMITS,
-    NAMED_FILE,
-    ACCELERATION,
-    *COMMON,
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,21 +72,21 @@ class _Step:
     axes: tuple[_Axis, ...] = ()
 
 
-def write(given: ExportInput) -> ExportOutput:
+def write(given: ExportInput, losses: Losses) -> ExportOutput:
     """Write the SDFormat file of a robot: ``robot.sdf``, and its meshes in ``meshes/``.
 
     Raises:
         CannotExport: A link has a negative mass; or no closed configuration is known, at which the file has its links.
     """
-    return _Writer(given).write()
+    return _Writer(given, losses).write()
 
 
 class _Writer:
     """A file while it is written."""
 
-    def __init__(self, given: ExportInput) -> None:
+    def __init__(self, given: ExportInput, losses: Losses) -> None:
         self.given, self.mechanism = given, given.mechanism
-        self.losses = Losses(LOSSES)
+        self.losses = losses
         self.names = UniqueNames(self.losses, _WORLD)
         self.meshes = MeshFiles(given, self.losses)
         self.sdf = etree.Element("sdf", version=VERSION)
@@ -271,15 +117,8 @@ class _Writer:
             self._closure(closure)
         for coupling in mechanism.couplings:
             self._coupling(coupling)
-        for name in mechanism.actuators:
-            motor = mechanism.motor(name)
-            self.losses.add("export-actuators", motor.name)
-            if motor.control is not None:
-                self.losses.add("export-control-range", motor.name)
-        if mechanism.metadata or mechanism.own_data:
-            self.losses.add("export-metadata", mechanism.name)
         files = {"robot.sdf": file_content(self.sdf), **self.meshes.files}
-        return ExportOutput(files, self.losses.found, Coordinates(tuple(self.parts), self.given.own, "wxyz"))
+        return ExportOutput(files, Coordinates(tuple(self.parts), self.given.own, "wxyz"))
 
     def _zero(self) -> Mapping[str, tuple[float, ...]]:
         """The configuration at which the links are placed.
@@ -363,8 +202,6 @@ class _Writer:
             case "mesh":
                 _add(geometry, "uri").text = f"file://{uri}" if str(uri).startswith("/") else uri
                 _add(geometry, "scale").text = _text(size)
-        if shape.texture:
-            self.losses.add("export-texture", shape.texture)
         if shape.color is not None and use == "visual":
             material = _add(element, "material")
             for light in ("ambient", "diffuse"):
@@ -375,9 +212,6 @@ class _Writer:
     def _joint(self, joint: Joint, body: Body) -> None:
         at = self._coordinates(joint)
         steps = _steps(joint, at)
-        if len(steps) > 1:
-            self.losses.add(f"export-{joint.type}-joint", joint.name)
-        self._report(joint)
         parent, placement, names = self.links[joint.parent], joint.placement, []
         for number, step in enumerate(steps):
             name = self._new(joint.name + step.suffix)
@@ -438,25 +272,6 @@ class _Writer:
             for name, value in dynamics.items():
                 _add(losses, name).text = _text((value,))
 
-    def _report(self, joint: Joint) -> None:
-        """Record what the joints of the file do not have."""
-        properties = joint.properties
-        if properties.rates:
-            self.losses.add(ACCELERATION.code, joint.name)
-        if any(properties.armature):
-            self.losses.add("export-armature", joint.name)
-        if any(ratio != 1.0 for ratio in properties.gear_ratio) or any(properties.rotor_inertia):
-            self.losses.add("export-gear-ratio", self.mechanism.motor(joint.name).name)
-        if joint.type not in (JointType.SPHERICAL, JointType.FLOATING):
-            return
-        turning = slice(0, 3) if joint.type is JointType.SPHERICAL else slice(3, 6)
-        for code, values in (("velocity-limit", properties.velocity), ("effort-limit", properties.effort)):
-            if any(map(math.isfinite, values[turning])):
-                self.losses.add(f"export-{code}", joint.name)
-        for code, values in (("damping", properties.damping), ("friction", properties.friction)):
-            if any(values[turning]):
-                self.losses.add(f"export-{code}", joint.name)
-
     def _part(self, joint: Joint, names: Sequence[str], at: tuple[float, ...]) -> Part:
         mimic = self.mimics.get(joint.name)
         if mimic is not None:
@@ -489,13 +304,10 @@ class _Writer:
         self.losses.add("export-coupling-dropped", coupling.name)
 
     def _closure(self, closure: Closure) -> None:
-        if closure.compliance.linear or closure.compliance.angular:
-            self.losses.add("export-compliance", closure.name)
-        if closure.type not in _CLOSURES:
-            self.losses.add("export-distance-dropped", closure.name)
+        if closure.type not in CLOSURES:
             return
         self._must_be_closed(closure)
-        joint = _add(self.model, "joint", name=self._new(closure.name), type=_CLOSURES[closure.type])
+        joint = _add(self.model, "joint", name=self._new(closure.name), type=CLOSURES[closure.type])
         _pose(joint, closure.b.pose)
         for tag, end in (("parent", closure.a), ("child", closure.b)):
             _add(joint, tag).text = self.links[end.body]
@@ -522,9 +334,6 @@ class _Writer:
         return self.poses[anchor.body] * anchor.pose
 
 
-_CLOSURES = {"3d": "ball", "6d": "fixed", "hinge": "continuous"}
-
-
 def _steps(joint: Joint, at: tuple[float, ...]) -> Sequence[_Step]:
     """The joints of the file, from the parent outwards, that a joint at some coordinates is."""
 
@@ -548,7 +357,7 @@ def _steps(joint: Joint, at: tuple[float, ...]) -> Sequence[_Step]:
             return [slide("_slide", joint.axes[0], 0), turn("_turn", joint.axes[0], 1)]
         case JointType.UNIVERSAL:
             first, second = map(direction, joint.axes)
-            if abs(sum(map(mul, first, second))) > _SKEW:
+            if is_skew(joint):
                 return [turn("_1", first, 0), turn("_2", second, 1)]
             # The frame of the joint is fixed to the child: the second turn has moved the first axis there.
             seen = _moved(JointType.REVOLUTE, second, -at[1]).rotate(first)
@@ -606,4 +415,4 @@ def _allowed(name: str) -> str:
     return f"_{allowed}_" if allowed.startswith("__") and allowed.endswith("__") else allowed
 
 
-FORMAT = Format("sdf", f"SDFormat {VERSION}, for Gazebo", write, LOSSES)
+FORMAT = Format("sdf", f"SDFormat {VERSION}, for Gazebo", write, ROWS, EXACT)

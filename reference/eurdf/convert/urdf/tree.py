@@ -11,7 +11,7 @@ from lxml import etree
 
 from eurdf.convert.coordinates import Coordinates, Part
 from eurdf.convert.export_format import ExportInput
-from eurdf.convert.losses import ACCELERATION, COMMON, NAMED_FILE, Effect, Losses, LossKind
+from eurdf.convert.losses import Losses
 from eurdf.convert.mesh_file import MeshFiles
 from eurdf.convert.names import UniqueNames
 from eurdf.mechanism.body import Body, Inertia, Shape
@@ -32,150 +32,6 @@ from eurdf.writing.urdf_elements import (
 from eurdf.writing.xml_text import representable
 
 AXES: tuple[tuple[str, Vector3], ...] = (("_x", (1.0, 0.0, 0.0)), ("_y", (0.0, 1.0, 0.0)), ("_z", (0.0, 0.0, 1.0)))
-
-#: Losses of every URDF.
-URDF_LOSSES = (
-    LossKind(
-        "export-universal-joint",
-        "universal joint",
-        Effect.EXACT,
-        "becomes two joints with a link without mass between them",
-        "use Export.coordinates",
-    ),
-    LossKind(
-        "export-cylindrical-joint",
-        "cylindrical joint",
-        Effect.EXACT,
-        "becomes a prismatic joint and one that turns, with a link without mass between them",
-        "use Export.coordinates",
-    ),
-    LossKind("export-spring", "spring", Effect.DROPPED, "is left out", "add the spring in the simulator"),
-    LossKind(
-        "export-configurations",
-        "configuration",
-        Effect.DROPPED,
-        "is left out",
-        "keep the description beside the URDF",
-    ),
-    LossKind(
-        "export-compliance",
-        "compliance",
-        Effect.DROPPED,
-        "is left out",
-        "set the compliance of the loop in the simulator",
-    ),
-    LossKind("export-texture", "texture", Effect.DROPPED, "is left out; the color is kept", "add it to the URDF"),
-    NAMED_FILE,
-    *COMMON,
-)
-
-_ON_AXES = tuple(
-    kind
-    for concept, word in (
-        ("velocity limit", "velocity"),
-        ("effort limit", "effort"),
-        ("damping", "damping"),
-        ("friction", "friction"),
-    )
-    for kind in (
-        LossKind(
-            f"export-ball-{word}",
-            concept,
-            Effect.DROPPED,
-            "is left out: the three joints that the joint becomes have none",
-            "choose values for the three joints",
-            only="spherical joints",
-        ),
-        LossKind(
-            f"export-unequal-{word}",
-            concept,
-            Effect.APPROXIMATE,
-            "the axes of the joint have different values: that of the first is written",
-            "give the axes of the joint one value",
-            error="difference of the values to that of the first axis",
-            only="planar and floating joints with different values",
-        ),
-    )
-)
-
-#: Losses of a tree that has only the joint types of URDF.
-PLAIN_LOSSES = (
-    LossKind(
-        "export-coupling-dropped",
-        "coupling",
-        Effect.DROPPED,
-        "is left out: URDF has mimic joints alone",
-        "where it relates two joints, let one of them mimic the other in the URDF",
-    ),
-    LossKind(
-        "export-floating-root",
-        "floating root",
-        Effect.DROPPED,
-        "is left out: in URDF, who reads the file decides",
-        "load the URDF with a floating root",
-    ),
-    LossKind(
-        "export-spherical-joint",
-        "spherical joint",
-        Effect.APPROXIMATE,
-        "becomes three continuous joints about x, y and z",
-        "keep the joint away from where its second angle is ±π/2, or export to a format with spherical joints",
-        error="none in poses; angular velocities are singular where the second angle is ±π/2",
-    ),
-    LossKind(
-        "export-helical-joint",
-        "helical joint",
-        Effect.EXACT,
-        "becomes a joint that turns and a prismatic one that mimics it",
-        "read the URDF with its mimic joints",
-    ),
-    LossKind(
-        "export-armature",
-        "armature",
-        Effect.DROPPED,
-        "is left out",
-        "set the armature in the simulator",
-    ),
-    *_ON_AXES,
-    replace(
-        ACCELERATION,
-        title="limits of acceleration, deceleration and jerk are left out: the three joints that it becomes have none",
-        only="spherical joints",
-    ),
-    LossKind(
-        "export-position-limit",
-        "position limit",
-        Effect.DROPPED,
-        "is left out: planar and floating joints have none",
-        "use prismatic and revolute joints",
-        only="planar and floating joints",
-    ),
-    LossKind(
-        "export-frame",
-        "frame",
-        Effect.EXACT,
-        "becomes a link without mass on a fixed joint",
-        "read the pose of the link",
-    ),
-    LossKind(
-        "export-gear-ratio",
-        "gear ratio",
-        Effect.DROPPED,
-        "is left out",
-        "set the gear in the simulator",
-    ),
-    LossKind(
-        "export-actuators", "actuator", Effect.DROPPED, "is left out", "name the actuated joints in the simulator"
-    ),
-    LossKind(
-        "export-control-range",
-        "control range",
-        Effect.DROPPED,
-        "is left out",
-        "limit controls in the controller",
-    ),
-    *URDF_LOSSES,
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -227,18 +83,11 @@ class UrdfTree:
 
     def write(self) -> None:
         """Write all links and joints, and record what every URDF loses."""
-        mechanism, losses = self.mechanism, self.losses
+        mechanism = self.mechanism
         for body in mechanism.bodies:
             self._link(body)
         for joint in mechanism.joints:
             self._joint(joint)
-        for closure in mechanism.closures:
-            if closure.compliance.linear or closure.compliance.angular:
-                losses.add("export-compliance", closure.name)
-        for name in mechanism.configurations:
-            losses.add("export-configurations", name)
-        if mechanism.metadata or mechanism.own_data:
-            losses.add("export-metadata", mechanism.name)
 
     # -- links ------------------------------------------------------------------------------------------------------
 
@@ -259,8 +108,6 @@ class UrdfTree:
         name = shape.filename
         if shape.kind == "mesh":
             name = self.meshes.path(name) or name
-        if shape.texture:
-            self.losses.add("export-texture", shape.texture)
         add_shape(link, use, shape, name)
 
     # -- joints -----------------------------------------------------------------------------------------------------
@@ -281,10 +128,6 @@ class UrdfTree:
 
     def _joint(self, joint: Joint) -> None:
         steps = self.steps(joint)
-        if len(steps) > 1:
-            self.losses.add(f"export-{joint.type}-joint", joint.name)
-        if any(joint.properties.stiffness):
-            self.losses.add("export-spring", joint.name)
         parent, placement = self.links[joint.parent], joint.placement
         names = []
         for number, step in enumerate(steps):
@@ -345,26 +188,13 @@ class PlainTree(UrdfTree):
         """Write links, joints and frames, and record what plain URDF loses."""
         super().write()
         state_version(self.root)
-        mechanism, losses = self.mechanism, self.losses
+        mechanism = self.mechanism
         for frame in mechanism.frames:
             name = self.names.new(frame.name)
             etree.SubElement(self.root, "link", name=name)
             fixed = self.names.new(f"{name}_fixed")
             add_joint(self.root, fixed, JointType.FIXED, self.links[frame.body], name, frame.pose, None)
-            losses.add("export-frame", frame.name)
-        for joint in mechanism.joints:
-            self._report_axes(joint)
-            if any(joint.properties.armature):
-                losses.add("export-armature", joint.name)
-            if any(ratio != 1.0 for ratio in joint.properties.gear_ratio) or any(joint.properties.rotor_inertia):
-                losses.add("export-gear-ratio", mechanism.motor(joint.name).name)
-        for name in mechanism.actuators:
-            motor = mechanism.motor(name)
-            losses.add("export-actuators", motor.name)
-            if motor.control is not None:
-                losses.add("export-control-range", motor.name)
         if mechanism.root == "floating":
-            losses.add("export-floating-root", mechanism.bodies[0].name)
             # The coordinates are those of the URDF once it is loaded as the hint says.
             self.parts.insert(0, Part((ROOT_JOINT,), ROOT_JOINT, JointType.FLOATING))
 
@@ -382,27 +212,6 @@ class PlainTree(UrdfTree):
             return super().steps(joint)
         kind = joint.type if joint.mimic is not None or joint.name in self._leaders else JointType.CONTINUOUS
         return [Step("", kind, joint.axes[0], 0)]
-
-    def _report_axes(self, joint: Joint) -> None:
-        """Record what the axes of a joint with several of them lose."""
-        properties = joint.properties
-        if joint.type not in (JointType.SPHERICAL, JointType.PLANAR, JointType.FLOATING):
-            return
-        if any(math.isfinite(limit) for limits in joint.ranges for limit in limits):
-            self.losses.add("export-position-limit", joint.name)
-        if properties.rates:
-            self.losses.add(ACCELERATION.code, joint.name)
-        for word, values, none in (
-            ("velocity", properties.velocity, math.inf),
-            ("effort", properties.effort, math.inf),
-            ("damping", properties.damping, 0.0),
-            ("friction", properties.friction, 0.0),
-        ):
-            if joint.type is JointType.SPHERICAL:
-                if any(value != none for value in values):
-                    self.losses.add(f"export-ball-{word}", joint.name)
-            elif len(set(values)) > 1:
-                self.losses.add(f"export-unequal-{word}", joint.name)
 
     def part(self, joint: Joint, names: Sequence[str], steps: Sequence[Step]) -> Part:
         """The joint in the vectors of Pinocchio's model: q has cosine and sine of the angle of a continuous joint."""

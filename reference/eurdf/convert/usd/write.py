@@ -18,13 +18,14 @@ import numpy.typing as npt
 
 from eurdf.convert.contacts import neighbours
 from eurdf.convert.coordinates import Coordinates, Part
-from eurdf.convert.exceptions import CannotExport
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format
 from eurdf.convert.inertia import about_centre, accepted_inertia, has_inertia
-from eurdf.convert.losses import ACCELERATION, BEYOND_LIMITS, COMMON, NOT_REFERENCED, Effect, Losses, LossKind
+from eurdf.convert.losses import Losses
 from eurdf.convert.mesh_file import mesh_names, report_unread
 from eurdf.convert.names import UniqueNames
 from eurdf.convert.servo import position_gain
+from eurdf.convert.steps import is_skew
+from eurdf.convert.usd.facts import CLOSURES, DAMPING_TIME, EXACT, LEAST, LEAST_MOMENT, ROWS
 from eurdf.diagnostics.extras import install_command
 from eurdf.exceptions import MissingExtra
 from eurdf.mechanism.body import Body, Shape
@@ -32,9 +33,7 @@ from eurdf.mechanism.constraint import (
     Closure,
     Coupling,
     DistanceClosure,
-    FrameClosure,
     HingeClosure,
-    PointClosure,
 )
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
@@ -43,285 +42,11 @@ from eurdf.mechanism.mimic import Mimic, drivers
 from eurdf.mechanism.pose import IDENTITY, Pose, Quaternion, Vector3, direction
 from eurdf.mechanism.spanning_tree import rigid_roots
 
-#: kg and kg·m² that a moving body without inertia gets: far below any of a robot, far above 0 in single precision.
-LEAST = 1e-9
-
-#: kg·m² that a principal moment of any body has at least.
-LEAST_MOMENT = 1e-12
-
-#: Damping of a position drive, as a time: damping = this · stiffness, in s.
-DAMPING_TIME = 0.1
-
 _DEGREES = 180.0 / math.pi
 _UPRIGHT: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
 #: Axis tokens of directions that need no turn of the frame.
 _TOKENS: dict[Vector3, str] = {(1.0, 0.0, 0.0): "X", (0.0, 1.0, 0.0): "Y", (0.0, 0.0, 1.0): "Z"}
-
-#: Largest cosine of the axes of a universal joint that are perpendicular but for rounding.
-_SKEW = 1e-9
-
-LOSSES = (
-    LossKind(
-        "export-single-precision",
-        "number",
-        Effect.APPROXIMATE,
-        "frames of joints, masses, limits and gains are in single precision, angles in degrees: relative error 6e-8",
-        "this is far below what a simulator in single precision computes; for more, export to MJCF",
-        error="6e-8 of each number",
-    ),
-    LossKind(
-        "export-universal-joint",
-        "universal joint",
-        Effect.APPROXIMATE,
-        "becomes a D6 joint: USD does not state the order of its rotations; the first is about x, as Newton has it",
-        "check the joint away from its zero in a simulator other than Newton",
-        error="none in Newton, and none at the joint's zero",
-    ),
-    LossKind(
-        "export-skew-universal-joint",
-        "universal joint",
-        Effect.APPROXIMATE,
-        f"becomes two joints with a body of {LEAST:g} kg and kg·m² between them, as its axes are not perpendicular",
-        "use a simulator with reduced coordinates, to which light bodies do no harm",
-        error=f"{LEAST:g} kg and kg·m² in the mass matrix",
-        only="axes not perpendicular",
-    ),
-    LossKind(
-        "export-helical-joint",
-        "helical joint",
-        Effect.DROPPED,
-        "becomes a D6 joint that turns and advances independently: nothing in USD couples a rotation to a translation",
-        "couple the two axes in the simulator, or export to MJCF",
-    ),
-    LossKind(
-        "export-mimic-joint",
-        "mimic joint",
-        Effect.APPROXIMATE,
-        "NewtonMimicAPI states its leader, as USD has no mimic joints: other simulators leave it free",
-        "in simulators other than Newton, couple the two joints by hand",
-        error="none in Newton; elsewhere the joint is free",
-    ),
-    LossKind(
-        "export-mimic-joint-dropped",
-        "mimic joint",
-        Effect.DROPPED,
-        "is free: NewtonMimicAPI does not relate a rotation to a translation",
-        "couple the two joints in the simulator, or export to MJCF",
-        only="a rotation and a translation",
-    ),
-    LossKind(
-        "export-velocity-limit",
-        "velocity limit",
-        Effect.APPROXIMATE,
-        "is in the schemas of Newton and PhysX, as USD has none; of several axes, the smallest",
-        "in other simulators, limit velocities in the controller",
-        error="none in Newton and PhysX; elsewhere there is no limit",
-    ),
-    LossKind(
-        "export-effort-limit",
-        "effort limit",
-        Effect.DROPPED,
-        "is left out: in USD, a drive has it, and the joint has none",
-        "limit efforts in the controller",
-        only="joints without a drive",
-    ),
-    LossKind(
-        "export-ball-damping",
-        "damping",
-        Effect.APPROXIMATE,
-        "is in the schema of Newton, as USD has no drive of spherical joints; of several axes, the mean",
-        "in other simulators, damp the joint in the controller",
-        error="none in Newton; elsewhere there is no damping",
-        only="spherical joints",
-    ),
-    LossKind(
-        "export-friction",
-        "friction",
-        Effect.APPROXIMATE,
-        "is in the schema of Newton, as USD has none; of several axes, the mean",
-        "set the friction of the joint in other simulators",
-        error="none in Newton; elsewhere there is no friction",
-    ),
-    LossKind(
-        "export-armature",
-        "armature",
-        Effect.APPROXIMATE,
-        "is in the schemas of Newton and PhysX, as USD has none; of several axes, the mean",
-        "set the armature of the joint in other simulators",
-        error="none in Newton and PhysX; elsewhere there is no armature",
-    ),
-    LossKind(
-        "export-mixed-axes",
-        "armature",
-        Effect.DROPPED,
-        "armature, friction and velocity limit are left out: simulators have one number for rotations and translations",
-        "set them in the simulator",
-        only="planar, cylindrical and floating joints",
-    ),
-    LossKind(
-        "export-gear-ratio",
-        "gear ratio",
-        Effect.EXACT,
-        "drives are on the side of the joint; the rotor is in the armature, gear ratio² · rotor inertia",
-        "divide commands of the motor side by the gear ratio",
-    ),
-    LossKind(
-        "export-spring",
-        "spring",
-        Effect.DROPPED,
-        "is left out: the joint has a position drive, and USD has one drive for an axis",
-        "export with actuators 'motor'",
-        sayable=True,
-        only="--actuators position",
-    ),
-    LossKind(
-        "export-coupling",
-        "coupling",
-        Effect.APPROXIMATE,
-        "NewtonMimicAPI states it, as USD has no couplings: other simulators leave the joints free",
-        "in simulators other than Newton, couple the two joints by hand",
-        error="none in Newton; elsewhere the joints are free",
-    ),
-    LossKind(
-        "export-coupling-dropped",
-        "coupling",
-        Effect.DROPPED,
-        "is left out: NewtonMimicAPI relates two rotations or two translations, and gives a joint one leader",
-        "couple the joints in the simulator",
-        only="a rotation and a translation, or several leaders",
-    ),
-    LossKind(
-        "export-compliance",
-        "compliance",
-        Effect.DROPPED,
-        "is left out: USD has rigid joints alone",
-        "set the compliance of the joint in the simulator",
-    ),
-    LossKind(
-        "export-no-drive",
-        "actuator",
-        Effect.DROPPED,
-        "is left out: USD has no drive of spherical joints",
-        "apply torques to the two bodies",
-        only="spherical joints",
-    ),
-    LossKind(
-        "export-position-gain",
-        "actuator",
-        Effect.APPROXIMATE,
-        "the description has no gain",
-        "set stiffness and damping of the drive",
-        error="gain and damping are this export's choice",
-        only="--actuators position",
-    ),
-    LossKind(
-        "export-no-actuator",
-        "actuator",
-        Effect.DROPPED,
-        "is left out, as asked for",
-        "export with actuators 'motor' or 'position'",
-        sayable=True,
-        only="--actuators none",
-    ),
-    LossKind(
-        "export-actuator-name",
-        "actuator",
-        Effect.DROPPED,
-        "its name is left out: a drive has that of its joint",
-        "use the name of the joint",
-        only="its name",
-    ),
-    LossKind(
-        "export-control-range",
-        "control range",
-        Effect.APPROXIMATE,
-        "is not symmetric: a drive has the larger of its two magnitudes as its largest force",
-        "limit commands in the controller",
-        error="the smaller magnitude may be exceeded, up to the larger one",
-        only="not symmetric",
-    ),
-    LossKind(
-        "export-massless-link",
-        "link without mass",
-        Effect.APPROXIMATE,
-        f"moves without inertia, and USD takes 0 for unknown: gets {LEAST:g} kg and kg·m²",
-        "give the link its mass, or merge its joints into one of a type with several axes",
-        error=f"{LEAST:g} kg and kg·m² in the mass matrix",
-        only="links that move",
-    ),
-    LossKind(
-        "export-massless-base",
-        "link without mass",
-        Effect.EXACT,
-        "is fixed to the world, and USD takes 0 for unknown: gets 1 kg and 1 kg·m², without effect",
-        "give the link its mass",
-        only="the fixed base",
-    ),
-    LossKind(
-        "export-inertia",
-        "inertia",
-        Effect.APPROXIMATE,
-        "is not that of a body with volume, which simulators ask for: principal moments are raised",
-        "correct the inertia in the URDF; `eurdf check` reports those that no body has",
-        error="the message gives the change of a principal moment; none in mass and centre of mass",
-        only="what no body has",
-    ),
-    LossKind(
-        "export-convex-hull",
-        "collision shape",
-        Effect.APPROXIMATE,
-        "the mesh collides as its convex hull",
-        "set physics:approximation of the shape",
-        error="the distance of the mesh to its convex hull",
-        only="meshes",
-    ),
-    LossKind(
-        "export-mesh-converted",
-        "mesh",
-        Effect.APPROXIMATE,
-        "becomes a USD mesh",
-        "add materials and normals to the mesh",
-        error="6e-8 of the coordinates of vertices; materials, textures and normals in the file are left out",
-    ),
-    LossKind(
-        "export-mesh-format",
-        "mesh",
-        Effect.DROPPED,
-        "it cannot be read",
-        "convert the mesh, and name the new file in the URDF",
-        sayable=True,
-    ),
-    LossKind(
-        "export-texture",
-        "texture",
-        Effect.DROPPED,
-        "is left out; the color is kept",
-        "add the texture to the material",
-    ),
-    LossKind(
-        "export-configurations",
-        "configuration",
-        Effect.DROPPED,
-        "is left out: a stage has one, where the bodies are",
-        "export again with --configuration, or set the joints in the simulator",
-        sayable=True,
-        only="all but one",
-    ),
-    BEYOND_LIMITS,
-    LossKind(
-        "export-no-configuration",
-        "configuration",
-        Effect.DROPPED,
-        "no closed configuration was found: the bodies are where all coordinates are 0, and the loops may be open",
-        "find one with `eurdf assemble`, and write it to the description as 'assembled'",
-        sayable=True,
-        only="none is closed",
-    ),
-    NOT_REFERENCED,
-    ACCELERATION,
-    *COMMON,
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -365,7 +90,7 @@ class _Step:
     freedoms: tuple[_Freedom, ...] = ()
 
 
-def write(given: ExportInput) -> ExportOutput:
+def write(given: ExportInput, losses: Losses) -> ExportOutput:
     """Write the USD of a robot: ``robot.usda``, and its meshes in ``meshes/``.
 
     Raises:
@@ -375,17 +100,17 @@ def write(given: ExportInput) -> ExportOutput:
     if find_spec("pxr") is None:
         message = "the package that writes USD is not installed; install it with: "
         raise MissingExtra(message + install_command("usd"), "usd")
-    return _Writer(given).write()
+    return _Writer(given, losses).write()
 
 
 class _Writer:
     """A stage while it is written."""
 
-    def __init__(self, given: ExportInput) -> None:
+    def __init__(self, given: ExportInput, losses: Losses) -> None:
         from eurdf.convert.usd.stage import UsdStage  # loads the libraries of USD
 
         self.given, self.mechanism = given, given.mechanism
-        self.losses = Losses(LOSSES)
+        self.losses = losses
         self.bodies, self.joints, self.closures, self.shapes = (
             UniqueNames(self.losses, representable=_identifier) for _ in range(4)
         )
@@ -414,7 +139,6 @@ class _Writer:
 
     def write(self) -> ExportOutput:
         mechanism, losses = self.mechanism, self.losses
-        losses.add("export-single-precision", mechanism.name)
         self._root_body(mechanism.bodies[0])
         for joint, body in zip(mechanism.joints, mechanism.bodies[1:], strict=True):
             self._joint(joint, body)
@@ -433,12 +157,8 @@ class _Writer:
         others = list(self.given.configurations)[1:]
         for name in others:
             losses.add("export-configurations", name)
-        if mechanism.constraints and not self.given.configurations:
-            losses.add("export-no-configuration", "assembled")
-        if mechanism.metadata or mechanism.own_data:
-            losses.add("export-metadata", mechanism.name)
         coordinates = Coordinates(tuple(self.parts), self.given.own, "xyzw", at_rest=False)
-        return ExportOutput({"robot.usda": self.stage.content(), **self.files}, losses.found, coordinates)
+        return ExportOutput({"robot.usda": self.stage.content(), **self.files}, coordinates)
 
     # -- bodies -----------------------------------------------------------------------------------------------------
 
@@ -486,10 +206,6 @@ class _Writer:
         if joint.type.is_fixed and not has_inertia(body):
             self._fixed_frame(body, joint.parent, joint.placement * joint.offset)
             return
-        if len(steps) > 1:
-            self.losses.add("export-skew-universal-joint", joint.name)
-        elif joint.type in (JointType.UNIVERSAL, JointType.HELICAL):
-            self.losses.add(f"export-{joint.type}-joint", joint.name)
         coordinates = self._coordinates(joint)
         host, at = self.hosts[joint.parent]
         pose, placement = self.poses[joint.parent], joint.placement
@@ -578,8 +294,6 @@ class _Writer:
         most = effort if effort > 0.0 else math.inf
         if motor.control is not None:
             lower, upper = motor.control
-            if lower != -upper:
-                self.losses.add("export-control-range", shown)
             most = min(most, max(-lower, upper))
         if self.given.actuators == "position":
             if stiffness:
@@ -596,26 +310,16 @@ class _Writer:
             return None
         shown = self.mechanism.motor(joint.name).name
         if self.given.actuators == "none":
-            self.losses.add("export-no-actuator", shown)
             return None
-        if shown != joint.name:
-            self.losses.add("export-actuator-name", shown)
-        if any(ratio != 1.0 for ratio in joint.properties.gear_ratio) or any(joint.properties.rotor_inertia):
-            self.losses.add("export-gear-ratio", shown)
         return shown
 
     def _undriven(self, joint: Joint) -> None:
         """What a spherical joint loses, which has no drive."""
-        shown = self._actuator(joint)
-        if shown is not None:
-            self.losses.add("export-no-drive", shown)
         if any(math.isfinite(effort) for effort in joint.properties.effort):
             self.losses.add("export-effort-limit", joint.name)
 
     def _numbers_of_simulators(self, joint: Joint, step: _Step, path: str) -> None:
         properties = joint.properties
-        if properties.rates:
-            self.losses.add(ACCELERATION.code, joint.name)
         ball = step.kind == "spherical"
         mine = [freedom.index for freedom in step.freedoms] or range(3)
 
@@ -641,7 +345,6 @@ class _Writer:
             self.losses.add("export-friction", joint.name)
         if ball and mean(properties.damping):
             newton["newton:damping"] = mean(properties.damping) / _DEGREES
-            self.losses.add("export-ball-damping", joint.name)
         if math.isfinite(velocity):
             velocity *= _DEGREES if True in turning else 1.0
             newton["newton:velocityLimit"] = physx["physxJoint:maxJointVelocity"] = velocity
@@ -670,22 +373,12 @@ class _Writer:
     # -- constraints ------------------------------------------------------------------------------------------------
 
     def _closure(self, closure: Closure) -> None:
-        if closure.compliance.linear or closure.compliance.angular:
-            self.losses.add("export-compliance", closure.name)
-        turns: tuple[Quaternion, Quaternion] = (_UPRIGHT, _UPRIGHT)
-        axis = ""
-        match closure:
-            case PointClosure():
-                kind = "spherical"
-            case FrameClosure():
-                kind = "fixed"
-            case HingeClosure():
-                kind, axis = "revolute", "X"
-                turns = _to_x(closure.axes[0]), _to_x(closure.axes[1])
-            case DistanceClosure():
-                kind = "distance"
-            case _:
-                raise CannotExport(f"closure '{closure.name}' has the type {closure.type}, which USD does not have")
+        kind = CLOSURES.get(closure.type)
+        if kind is None:
+            return
+        axis, turns = "", (_UPRIGHT, _UPRIGHT)
+        if isinstance(closure, HingeClosure):
+            axis, turns = "X", (_to_x(closure.axes[0]), _to_x(closure.axes[1]))
         ends = []
         for anchor, turn in zip((closure.a, closure.b), turns, strict=True):
             host, pose = self.hosts[anchor.body]
@@ -752,8 +445,6 @@ class _Writer:
                 self._shape(host, pose, f"{body.name}_{use}_{number}", shape, use)
 
     def _shape(self, host: str, pose: Pose, name: str, shape: Shape, use: str) -> None:
-        if shape.texture:
-            self.losses.add("export-texture", shape.texture)
         if shape.kind == "mesh":
             file = self._mesh(shape.filename)
             if file is None:
@@ -795,7 +486,7 @@ def _steps(joint: Joint) -> tuple[_Step, ...]:
             advance = _Freedom("transX", 0, joint.pitch / (2.0 * math.pi))
             return (_Step("", "d6", joint, _to_x(joint.axes[0]), "", (advance, _Freedom("rotX", 0))),)
     first, second = (np.array(direction(axis)) for axis in joint.axes)
-    if abs(first @ second) <= _SKEW:
+    if not is_skew(joint):
         turn = _columns(np.stack((first, second, np.cross(first, second)), axis=1))
         return (_Step("", "d6", joint, turn, "", _freedoms("rotX", "rotY")),)
     halves = (replace(joint, type=JointType.REVOLUTE, axes=(axis,)) for axis in joint.axes)
@@ -837,4 +528,4 @@ def _identifier(name: str) -> str:
     return found if re.match(r"[A-Za-z_]", found) else f"_{found}"
 
 
-FORMAT = Format("usd", "USD with UsdPhysics, for Isaac Sim, Newton and others", write, LOSSES)
+FORMAT = Format("usd", "USD with UsdPhysics, for Isaac Sim, Newton and others", write, ROWS, EXACT)

@@ -9,9 +9,10 @@ from importlib.util import find_spec
 
 import numpy as np
 
+from eurdf.convert.common_losses import BEYOND_LIMITS
 from eurdf.convert.coordinates import Coordinates, Matrix, Vector
 from eurdf.convert.inertia import physical
-from eurdf.convert.losses import BEYOND_LIMITS, Effect, Loss
+from eurdf.convert.losses import Effect, Loss
 from eurdf.convert.verification.fall import Fall, Motion, joint_of_velocity, listed, simulate, size
 from eurdf.convert.verification.finding import Finding
 from eurdf.convert.verification.read_model import CannotRead, Exported, Range, ReadModel, without_armature
