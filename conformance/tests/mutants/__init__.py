@@ -1,6 +1,6 @@
 """Mutants: parsers with one thing wrong, to test that the suite notices. `MUTANTS` has them by name.
 
-Each is a decorated function. Its docstring says what is wrong, the decorator which clause that violates, and how: the
+Each is a sentence that says what is wrong, and a deviation, registered for the clause that it violates, and how: the
 parser reads other files than it is given (`reads_…`), gives them another meaning (`means`), or gives another answer
 (`answers`, `describes`, `evaluates`, `reports`, `refuses`). Those of `missing_rules` are made of the list of codes.
 `PROTOCOL_MUTANTS` are parsers that violate the protocol.

@@ -30,10 +30,11 @@ def _joints(robot: CanonicalRobot, change: Callable[[CanonicalJoint], Members]) 
     return {"joints": [joint.model_copy(update=change(joint)) for joint in robot.joints]}
 
 
-@answers("EU-CAN-001")
-def robots_are_not_described(right: Answer, description: Path, urdf: Path) -> Answer:
-    """The robot that was read is not described."""
-    return accepted(None, right.issues) if isinstance(right, Accepted) else right
+wrong = answers("EU-CAN-001")
+wrong(
+    "The robot that was read is not described.",
+    lambda right, description, urdf: accepted(None, right.issues) if isinstance(right, Accepted) else right,
+)
 
 
 @describes("EU-CAN-001")
@@ -56,22 +57,18 @@ def no_limit_is_a_large_number(robot: CanonicalRobot) -> Members:
     return _joints(robot, lambda joint: {"velocity": large(joint.velocity), "effort": large(joint.effort)})
 
 
-@describes("EU-CAN-001")
-def parents_and_children_are_swapped(robot: CanonicalRobot) -> Members:
-    """The child of a joint is said to be its parent."""
-    return _joints(robot, lambda joint: {"parent": joint.child, "child": joint.parent})
+wrong = describes("EU-CAN-001")
+wrong(
+    "The child of a joint is said to be its parent.",
+    lambda robot: _joints(robot, lambda joint: {"parent": joint.child, "child": joint.parent}),
+)
 
+wrong = describes("EU-CAN-001", versions=("2",))
+# in version 1 no joint mimics
+wrong("That a joint mimics is not described.", lambda robot: _joints(robot, lambda joint: {"mimic": None}))
 
-@describes("EU-CAN-001", versions=("2",))  # in version 1 no joint mimics
-def mimics_are_not_described(robot: CanonicalRobot) -> Members:
-    """That a joint mimics is not described."""
-    return _joints(robot, lambda joint: {"mimic": None})
-
-
-@describes("EU-CAN-001")
-def damping_is_0(robot: CanonicalRobot) -> Members:
-    """Damping is not read."""
-    return _joints(robot, lambda joint: {"damping": [0.0] * len(joint.damping)})
+wrong = describes("EU-CAN-001")
+wrong("Damping is not read.", lambda robot: _joints(robot, lambda joint: {"damping": [0.0] * len(joint.damping)}))
 
 
 @describes("EU-CAN-001")
@@ -81,34 +78,20 @@ def links_behind_fixed_joints_are_not_described(robot: CanonicalRobot) -> Member
     return {"links": [link for link in robot.links if link in moved]}
 
 
-@describes("EU-CAN-001")
-def closures_are_not_described(robot: CanonicalRobot) -> Members:
-    """Closures are not described."""
-    return {"closures": []}
+wrong = describes("EU-CAN-001")
+wrong("Closures are not described.", lambda robot: {"closures": []})
 
+wrong = describes("EU-CAN-001", versions=("2",))
+# version 1 adds no frames
+wrong("Frames that the description adds are not described.", lambda robot: {"frames": []})
 
-@describes("EU-CAN-001", versions=("2",))  # version 1 adds no frames
-def frames_are_not_described(robot: CanonicalRobot) -> Members:
-    """Frames that the description adds are not described."""
-    return {"frames": []}
+wrong = describes("EU-CAN-001")
+wrong("Actuators are not described.", lambda robot: {"actuators": []})
+wrong("The robot's name is that of its file.", lambda robot: {"name": "robot"})
 
-
-@describes("EU-CAN-001")
-def actuators_are_not_described(robot: CanonicalRobot) -> Members:
-    """Actuators are not described."""
-    return {"actuators": []}
-
-
-@describes("EU-CAN-001")
-def robots_have_the_name_of_their_file(robot: CanonicalRobot) -> Members:
-    """The robot's name is that of its file."""
-    return {"name": "robot"}
-
-
-@describes("EU-CAN-001", versions=("2",))  # version 1 has none
-def configurations_are_not_described(robot: CanonicalRobot) -> Members:
-    """Configurations are not described."""
-    return {"configurations": {}}
+wrong = describes("EU-CAN-001", versions=("2",))
+# version 1 has none
+wrong("Configurations are not described.", lambda robot: {"configurations": {}})
 
 
 def _left_out(robot: CanonicalRobot, value: Callable[[CanonicalJoint], list[float]]) -> Members:
@@ -117,10 +100,11 @@ def _left_out(robot: CanonicalRobot, value: Callable[[CanonicalJoint], list[floa
     return {"configurations": {name: filled | stated for name, stated in robot.configurations.items()}}
 
 
-@describes("EU-CAN-004")
-def left_out_coordinates_are_0(robot: CanonicalRobot) -> Members:
-    """All coordinates of a joint that a configuration leaves out are 0, those of a quaternion too."""
-    return _left_out(robot, lambda joint: [0.0] * len(KINDS[joint.type].neutral))
+wrong = describes("EU-CAN-004")
+wrong(
+    "All coordinates of a joint that a configuration leaves out are 0, those of a quaternion too.",
+    lambda robot: _left_out(robot, lambda joint: [0.0] * len(KINDS[joint.type].neutral)),
+)
 
 
 @describes("EU-ACT-007")
@@ -206,10 +190,11 @@ def upper_triangle_of_m(values: Values) -> Members:
 # -- Conformance and the protocol -----------------------------------------------------------------------------------
 
 
-@answers("EU-CNF-001")
-def everything_is_accepted(right: Answer, description: Path, urdf: Path) -> Answer:
-    """Whatever is wrong, the answer is `accepted`, with the errors beside it."""
-    return accepted(None, right.issues) if isinstance(right, Rejected) else right
+wrong = answers("EU-CNF-001")
+wrong(
+    "Whatever is wrong, the answer is `accepted`, with the errors beside it.",
+    lambda right, description, urdf: accepted(None, right.issues) if isinstance(right, Rejected) else right,
+)
 
 
 @answers("EU-CFG-004")
@@ -219,10 +204,11 @@ def only_stated_coordinates_are_checked(right: Answer, description: Path, urdf: 
     return accepted() if isinstance(right, Rejected) and all(left_out) else right
 
 
-@answers("EU-CNF-002")
-def warnings_reject(right: Answer, description: Path, urdf: Path) -> Answer:
-    """A description that deserves a warning is rejected."""
-    return rejected(*right.issues) if right.issues else right
+wrong = answers("EU-CNF-002")
+wrong(
+    "A description that deserves a warning is rejected.",
+    lambda right, description, urdf: rejected(*right.issues) if right.issues else right,
+)
 
 
 def _types(right: Answer) -> set[str]:

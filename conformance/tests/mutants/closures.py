@@ -23,22 +23,16 @@ def _residual(kind: str, change: Callable[[Any], Any]) -> Deviation:
     return instead(robot, "residual", changed)
 
 
-@means("EU-CLO-008")
-def residual_6d_angular_first() -> Deviation:
-    """The rows of a 6d closure are angular, then linear."""
-    return _residual("6d", lambda aMb: np.roll(log6(aMb), 3))
-
-
-@means("EU-CLO-008")
-def residual_6d_seen_from_b() -> Deviation:
-    """The residual of a 6d closure is that of the pose of A in B."""
-    return _residual("6d", lambda aMb: log6(inverse(aMb)))
-
-
-@means("EU-CLO-008")
-def residual_6d_of_position_and_log3() -> Deviation:
-    """The linear rows of a 6d closure are the position of B in A, not those of log6."""
-    return _residual("6d", lambda aMb: np.concatenate([aMb[:3, 3], log6(aMb)[3:]]))
+wrong = means("EU-CLO-008")
+wrong("The rows of a 6d closure are angular, then linear.", lambda: _residual("6d", lambda aMb: np.roll(log6(aMb), 3)))
+wrong(
+    "The residual of a 6d closure is that of the pose of A in B.",
+    lambda: _residual("6d", lambda aMb: log6(inverse(aMb))),
+)
+wrong(
+    "The linear rows of a 6d closure are the position of B in A, not those of log6.",
+    lambda: _residual("6d", lambda aMb: np.concatenate([aMb[:3, 3], log6(aMb)[3:]])),
+)
 
 
 @means("EU-CLO-008")
@@ -52,28 +46,13 @@ def residual_6d_of_sines() -> Deviation:
     return _residual("6d", sines)
 
 
-@means("EU-CLO-008")
-def closures_6d_are_3d() -> Deviation:
-    """A 6d closure holds the positions of its frames alone."""
-    return _residual("6d", lambda aMb: aMb[:3, 3])
+wrong = means("EU-CLO-008")
+wrong("A 6d closure holds the positions of its frames alone.", lambda: _residual("6d", lambda aMb: aMb[:3, 3]))
 
-
-@means("EU-CLO-009")
-def closures_3d_are_6d() -> Deviation:
-    """A 3d closure holds orientations too."""
-    return _residual("3d", log6)
-
-
-@means("EU-CLO-009")
-def residual_3d_seen_from_b() -> Deviation:
-    """The residual of a 3d closure is the origin of A in B."""
-    return _residual("3d", lambda aMb: inverse(aMb)[:3, 3])
-
-
-@means("EU-CLO-009")
-def residual_3d_from_b_to_a() -> Deviation:
-    """The residual of a 3d closure has the opposite sign."""
-    return _residual("3d", lambda aMb: -aMb[:3, 3])
+wrong = means("EU-CLO-009")
+wrong("A 3d closure holds orientations too.", lambda: _residual("3d", log6))
+wrong("The residual of a 3d closure is the origin of A in B.", lambda: _residual("3d", lambda aMb: inverse(aMb)[:3, 3]))
+wrong("The residual of a 3d closure has the opposite sign.", lambda: _residual("3d", lambda aMb: -aMb[:3, 3]))
 
 
 @means("EU-CLO-009")
@@ -100,10 +79,11 @@ def _rows_of_hinge(aMb: Any, angular: Any) -> Any:
     return np.concatenate([aMb[:3, 3], angular])
 
 
-@means("EU-CLO-014")
-def hinges_have_sines() -> Deviation:
-    """The angular rows of a hinge are components of a cross product, zero at opposite axes too."""
-    return _hinge(lambda M, axes: _rows_of_hinge(M, hinge.plane(axes[0]).T @ np.cross(axes[0], M[:3, :3] @ axes[1])))
+wrong = means("EU-CLO-014")
+wrong(
+    "The angular rows of a hinge are components of a cross product, zero at opposite axes too.",
+    lambda: _hinge(lambda M, axes: _rows_of_hinge(M, hinge.plane(axes[0]).T @ np.cross(axes[0], M[:3, :3] @ axes[1]))),
+)
 
 
 @means("EU-CLO-014")
@@ -127,30 +107,25 @@ def hinges_turn_the_other_way() -> Deviation:
     return instead(hinge, "residual", changed)
 
 
-@means("EU-CLO-014")
-def hinges_measure_along_x_and_y() -> Deviation:
-    """The angular rows of a hinge are along x and y of A, whatever its axis."""
-    return instead(hinge, "plane", lambda right, a: np.eye(3)[:, :2])
-
-
-@means("EU-CLO-014")
-def hinges_near_minus_z_are_no_exception() -> Deviation:
-    """The angular rows of a hinge whose axis is nearly -z are not along those of the half turn about x."""
-    return instead(
+wrong = means("EU-CLO-014")
+wrong(
+    "The angular rows of a hinge are along x and y of A, whatever its axis.",
+    lambda: instead(hinge, "plane", lambda right, a: np.eye(3)[:, :2]),
+)
+wrong(
+    "The angular rows of a hinge whose axis is nearly -z are not along those of the half turn about x.",
+    lambda: instead(
         hinge, "plane", lambda right, a: right(a) * [-1, -1] if np.hypot(a[0], a[1]) < 1e-9 > a[2] else right(a)
-    )
-
-
-@means("EU-CLO-014")
-def hinges_swap_their_axes() -> Deviation:
-    """The first axis of a hinge is in B, the second one in A."""
-    return instead(version2, "hinge_axes", lambda right, members: right(members)[::-1])
-
-
-@means("EU-CLO-014")
-def hinges_turn_about_x() -> Deviation:
-    """A hinge that states no axis turns about x."""
-    return instead(version2, "hinge_axes", lambda right, members: right({"axis": [1, 0, 0]} | members))
+    ),
+)
+wrong(
+    "The first axis of a hinge is in B, the second one in A.",
+    lambda: instead(version2, "hinge_axes", lambda right, members: right(members)[::-1]),
+)
+wrong(
+    "A hinge that states no axis turns about x.",
+    lambda: instead(version2, "hinge_axes", lambda right, members: right({"axis": [1, 0, 0]} | members)),
+)
 
 
 def _distance(change: Callable[[float, float], float]) -> Deviation:
@@ -162,58 +137,44 @@ def _distance(change: Callable[[float, float], float]) -> Deviation:
     return instead(distance, "residual", changed)
 
 
-@means("EU-CLO-015")
-def distances_are_squared() -> Deviation:
-    """The residual of a distance is a difference of squares."""
-    return _distance(lambda apart, length: apart**2 - length**2)
+wrong = means("EU-CLO-015")
+wrong(
+    "The residual of a distance is a difference of squares.",
+    lambda: _distance(lambda apart, length: apart**2 - length**2),
+)
+wrong(
+    "The residual of a distance is positive where the origins are too near, too.",
+    lambda: _distance(lambda apart, length: abs(apart - length)),
+)
+wrong(
+    "The residual of a distance is the length minus the distance of the origins.",
+    lambda: _distance(lambda apart, length: length - apart),
+)
+wrong(
+    "The residual of a distance is relative to its length.",
+    lambda: _distance(lambda apart, length: apart / length - 1.0),
+)
+wrong("Every distance is 1 m.", lambda: instead(version2, "distance_length", lambda right, members: 1.0))
 
+wrong = means("EU-CLO-010", versions=("2.1",))
+wrong(
+    "K of a distance is the derivative of half the square of the distance of the origins.",
+    lambda: instead(distance, "derivative", lambda right, aMb: right(aMb) * np.linalg.norm(aMb[:3, 3])),
+)
 
-@means("EU-CLO-015")
-def distances_have_no_sign() -> Deviation:
-    """The residual of a distance is positive where the origins are too near, too."""
-    return _distance(lambda apart, length: abs(apart - length))
-
-
-@means("EU-CLO-015")
-def distances_have_the_opposite_sign() -> Deviation:
-    """The residual of a distance is the length minus the distance of the origins."""
-    return _distance(lambda apart, length: length - apart)
-
-
-@means("EU-CLO-015")
-def distances_are_relative() -> Deviation:
-    """The residual of a distance is relative to its length."""
-    return _distance(lambda apart, length: apart / length - 1.0)
-
-
-@means("EU-CLO-015")
-def distances_have_length_1() -> Deviation:
-    """Every distance is 1 m."""
-    return instead(version2, "distance_length", lambda right, members: 1.0)
-
-
-@means("EU-CLO-010", versions=("2.1",))
-def k_of_distances_is_of_their_squares() -> Deviation:
-    """K of a distance is the derivative of half the square of the distance of the origins."""
-    return instead(distance, "derivative", lambda right, aMb: right(aMb) * np.linalg.norm(aMb[:3, 3]))
-
-
-@means("EU-CLO-010")
-def k_is_the_twist() -> Deviation:
-    """K of a 6d closure is the twist of B relative to A, as if the closure were closed."""
-    return instead(jacobian, "log6_derivative", lambda right, r: np.eye(6))
-
-
-@means("EU-CLO-010")
-def k_has_the_inverse_derivative() -> Deviation:
-    """K of a 6d closure has the derivative of the exponential for that of the logarithm."""
-    return instead(jacobian, "log6_derivative", lambda right, r: np.linalg.inv(right(r)))
-
-
-@means("EU-CLO-010")
-def k_forgets_that_a_turns() -> Deviation:
-    """K of a 3d closure leaves out that A turns, as if the closure were closed."""
-    return instead(jacobian, "skew", lambda right, p: 0 * skew(p))
+wrong = means("EU-CLO-010")
+wrong(
+    "K of a 6d closure is the twist of B relative to A, as if the closure were closed.",
+    lambda: instead(jacobian, "log6_derivative", lambda right, r: np.eye(6)),
+)
+wrong(
+    "K of a 6d closure has the derivative of the exponential for that of the logarithm.",
+    lambda: instead(jacobian, "log6_derivative", lambda right, r: np.linalg.inv(right(r))),
+)
+wrong(
+    "K of a 3d closure leaves out that A turns, as if the closure were closed.",
+    lambda: instead(jacobian, "skew", lambda right, p: 0 * skew(p)),
+)
 
 
 def _k(change: Callable[[Any, Any, Any, Any], Any]) -> Deviation:
@@ -225,28 +186,20 @@ def _k(change: Callable[[Any, Any, Any, Any], Any]) -> Deviation:
     return instead(robot, "jacobian", changed)
 
 
-@means("EU-CLO-010")
-def k_along_the_world() -> Deviation:
-    """The rows of K are along the axes of the world, Pinocchio's LOCAL_WORLD_ALIGNED."""
-    return _k(lambda K, at, a, b: np.kron(np.eye(len(K) // 3), (at.root @ at.pose(a))[:3, :3]) @ K)
-
-
-@means("EU-CLO-010")
-def k_seen_from_b() -> Deviation:
-    """The rows of K are along the axes of B."""
-    return _k(lambda K, at, a, b: np.kron(np.eye(len(K) // 3), (inverse(at.pose(b)) @ at.pose(a))[:3, :3]) @ K)
-
-
-@means("EU-CLO-010")
-def k_has_the_other_sign() -> Deviation:
-    """K is the derivative of the negative residual."""
-    return _k(lambda K, at, a, b: -K)
-
-
-@means("EU-CLO-010")
-def k_leaves_out_rows_of_zeros() -> Deviation:
-    """K lacks its rows of zeros, as those by which a planar loop closed in 6d is redundant."""
-    return _k(lambda K, at, a, b: K[np.any(np.abs(K) > 1e-12, axis=1)])
+wrong = means("EU-CLO-010")
+wrong(
+    "The rows of K are along the axes of the world, Pinocchio's LOCAL_WORLD_ALIGNED.",
+    lambda: _k(lambda K, at, a, b: np.kron(np.eye(len(K) // 3), (at.root @ at.pose(a))[:3, :3]) @ K),
+)
+wrong(
+    "The rows of K are along the axes of B.",
+    lambda: _k(lambda K, at, a, b: np.kron(np.eye(len(K) // 3), (inverse(at.pose(b)) @ at.pose(a))[:3, :3]) @ K),
+)
+wrong("K is the derivative of the negative residual.", lambda: _k(lambda K, at, a, b: -K))
+wrong(
+    "K lacks its rows of zeros, as those by which a planar loop closed in 6d is redundant.",
+    lambda: _k(lambda K, at, a, b: K[np.any(np.abs(K) > 1e-12, axis=1)]),
+)
 
 
 @means("EU-CLO-010")

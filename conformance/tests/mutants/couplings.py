@@ -18,28 +18,17 @@ def _reads(change: Callable[[Coupling], Coupling]) -> Deviation:
     return instead(version2, "coupling", lambda right, value: change(right(value)))
 
 
-@means("EU-CPL-005")
-def couplings_add_their_offset() -> Deviation:
-    """The offset of a coupling is added to the sum."""
-    return _reads(lambda read: replace(read, offset=-read.offset))
-
-
-@means("EU-CPL-005")
-def couplings_have_no_offset() -> Deviation:
-    """The offset of a coupling is left out."""
-    return _reads(lambda read: replace(read, offset=0.0))
-
-
-@means("EU-CPL-005")
-def couplings_are_of_two_joints() -> Deviation:
-    """A coupling ends with its second joint."""
-    return _reads(lambda read: replace(read, coefficients=dict(list(read.coefficients.items())[:2])))
-
-
-@means("EU-CPL-005")
-def couplings_are_mimics() -> Deviation:
-    """The coefficient of the first joint of a coupling is taken as 1."""
-    return _reads(lambda read: replace(read, coefficients=read.coefficients | {next(iter(read.coefficients)): 1.0}))
+wrong = means("EU-CPL-005")
+wrong("The offset of a coupling is added to the sum.", lambda: _reads(lambda read: replace(read, offset=-read.offset)))
+wrong("The offset of a coupling is left out.", lambda: _reads(lambda read: replace(read, offset=0.0)))
+wrong(
+    "A coupling ends with its second joint.",
+    lambda: _reads(lambda read: replace(read, coefficients=dict(list(read.coefficients.items())[:2]))),
+)
+wrong(
+    "The coefficient of the first joint of a coupling is taken as 1.",
+    lambda: _reads(lambda read: replace(read, coefficients=read.coefficients | {next(iter(read.coefficients)): 1.0})),
+)
 
 
 @means("EU-CPL-005")
@@ -64,7 +53,8 @@ def couplings_forget_turns() -> Deviation:
     return instead(coupling, "residual", residual)
 
 
-@means("EU-CLO-010", versions=("2.1",))
-def k_of_couplings_is_of_signs() -> Deviation:
-    """K of a coupling has 1 and -1 for its coefficients."""
-    return instead(coupling, "jacobian", lambda right, velocities, of: np.sign(right(velocities, of)))
+wrong = means("EU-CLO-010", versions=("2.1",))
+wrong(
+    "K of a coupling has 1 and -1 for its coefficients.",
+    lambda: instead(coupling, "jacobian", lambda right, velocities, of: np.sign(right(velocities, of))),
+)

@@ -12,39 +12,28 @@ from eurdf_conformance.oracle import tree, urdf
 from eurdf_conformance.oracle.transform import transform
 from mutants.mutant import Deviation, Members, instead, means, refuses
 
-
-@means("EU-FRM-006")
-def rpy_about_moving_axes() -> Deviation:
-    """Roll, pitch and yaw are about x, y, z as each has been turned by those before."""
-    return _rpy(lambda from_rpy, rpy: from_rpy([rpy[0], 0, 0]) @ from_rpy([0, rpy[1], 0]) @ from_rpy([0, 0, rpy[2]]))
-
-
-@means("EU-FRM-006")
-def rpy_in_degrees() -> Deviation:
-    """Roll, pitch and yaw are in degrees."""
-    return _rpy(lambda from_rpy, rpy: from_rpy([math.radians(angle) for angle in rpy]))
-
-
-@means("EU-FRM-006")
-def rpy_is_yaw_pitch_roll() -> Deviation:
-    """The three angles are yaw, pitch and roll."""
-    return _rpy(lambda from_rpy, rpy: from_rpy(rpy[::-1]))
-
-
-@means("EU-FRM-006")
-def rpy_is_ignored() -> Deviation:
-    """The orientation of a pose is ignored."""
-    return _rpy(lambda from_rpy, rpy: np.eye(3))
+wrong = means("EU-FRM-006")
+wrong(
+    "Roll, pitch and yaw are about x, y, z as each has been turned by those before.",
+    lambda: _rpy(lambda from_rpy, rpy: from_rpy([rpy[0], 0, 0]) @ from_rpy([0, rpy[1], 0]) @ from_rpy([0, 0, rpy[2]])),
+)
+wrong(
+    "Roll, pitch and yaw are in degrees.",
+    lambda: _rpy(lambda from_rpy, rpy: from_rpy([math.radians(angle) for angle in rpy])),
+)
+wrong("The three angles are yaw, pitch and roll.", lambda: _rpy(lambda from_rpy, rpy: from_rpy(rpy[::-1])))
+wrong("The orientation of a pose is ignored.", lambda: _rpy(lambda from_rpy, rpy: np.eye(3)))
 
 
 def _rpy(other: Callable[..., Any]) -> Deviation:
     return instead(urdf, "from_rpy", other)
 
 
-@means("EU-FRM-006")
-def xyz_is_along_the_turned_axes() -> Deviation:
-    """The position of a pose is along the axes that its orientation has turned."""
-    return instead(urdf, "pose", lambda right, R, p: right(R) @ right(None, p))
+wrong = means("EU-FRM-006")
+wrong(
+    "The position of a pose is along the axes that its orientation has turned.",
+    lambda: instead(urdf, "pose", lambda right, R, p: right(R) @ right(None, p)),
+)
 
 
 @means("EU-FRM-004")

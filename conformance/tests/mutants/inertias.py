@@ -28,10 +28,11 @@ def _axes(link: Any) -> Any:
     return urdf.origin(link.one("inertial"))[:3, :3]
 
 
-@means("EU-INR-006")
-def inertia_along_the_link() -> Deviation:
-    """The moments of a link are along its own axes, whatever the orientation of `inertial`."""
-    return _inertia(lambda found, link: replace(found, moments=_axes(link).T @ found.moments @ _axes(link)))
+wrong = means("EU-INR-006")
+wrong(
+    "The moments of a link are along its own axes, whatever the orientation of `inertial`.",
+    lambda: _inertia(lambda found, link: replace(found, moments=_axes(link).T @ found.moments @ _axes(link))),
+)
 
 
 @means("EU-INR-006")
@@ -45,36 +46,30 @@ def inertia_about_the_link() -> Deviation:
     return _inertia(about_origin)
 
 
-@means("EU-INR-006")
-def centre_of_mass_at_the_link() -> Deviation:
-    """The centre of mass of a link is at its origin."""
-    return _inertia(lambda found, link: replace(found, center=np.zeros(3)))
+wrong = means("EU-INR-006")
+wrong(
+    "The centre of mass of a link is at its origin.",
+    lambda: _inertia(lambda found, link: replace(found, center=np.zeros(3))),
+)
+wrong(
+    "Products of inertia have the other sign, as in some CAD programs.",
+    lambda: _inertia(lambda found, link: replace(found, moments=found.moments * (2 * np.eye(3) - 1))),
+)
 
-
-@means("EU-INR-006")
-def products_of_inertia_with_the_other_sign() -> Deviation:
-    """Products of inertia have the other sign, as in some CAD programs."""
-    return _inertia(lambda found, link: replace(found, moments=found.moments * (2 * np.eye(3) - 1)))
-
-
-@means("EU-INR-006", versions=("2",))  # version 1 has no armature
-def armature_is_forgotten() -> Deviation:
-    """M lacks the armatures."""
-    return instead(
+wrong = means("EU-INR-006", versions=("2",))
+# version 1 has no armature
+wrong(
+    "M lacks the armatures.",
+    lambda: instead(
         mass_matrix, "mass_matrix", lambda right, at, sharing, armature, m: right(at, sharing, 0 * armature, m)
-    )
+    ),
+)
 
-
-@means("EU-INR-005")
-def links_behind_fixed_joints_weigh_nothing() -> Deviation:
-    """A link behind a fixed joint weighs nothing."""
-    return _masses(lambda link, at: np.array_equal(at.pose, np.eye(4)))
-
-
-@means("EU-INR-005")
-def root_weighs_nothing() -> Deviation:
-    """The mass does not count the root."""
-    return _masses(lambda link, at: at.body > 0)
+wrong = means("EU-INR-005")
+wrong(
+    "A link behind a fixed joint weighs nothing.", lambda: _masses(lambda link, at: np.array_equal(at.pose, np.eye(4)))
+)
+wrong("The mass does not count the root.", lambda: _masses(lambda link, at: at.body > 0))
 
 
 def _masses(counts: Callable[[Any, Any], bool]) -> Deviation:
@@ -98,7 +93,8 @@ def _all(*deviations: Deviation) -> Deviation:
     return entered()
 
 
-@means("EU-INR-005")
-def links_behind_fixed_joints_are_not_moved() -> Deviation:
-    """The inertia of a link behind a fixed joint counts as if it were at the link before."""
-    return instead(kinematics.Kinematics, "pose", lambda right, at, frame: at.bodies[frame.body])
+wrong = means("EU-INR-005")
+wrong(
+    "The inertia of a link behind a fixed joint counts as if it were at the link before.",
+    lambda: instead(kinematics.Kinematics, "pose", lambda right, at, frame: at.bodies[frame.body]),
+)

@@ -31,22 +31,19 @@ def _zeros(joint: Any) -> list[float]:
     return [0.0] * joint.kind.nv
 
 
-@means("EU-JNT-020")
-def replaced_joints_lose_their_limits() -> Deviation:
-    """A joint that is replaced has no velocity and effort limits, as in the published loader."""
-    return _properties(_replaced, lambda found, joint: dict.fromkeys(("velocity", "effort"), [None] * joint.kind.nv))
-
-
-@means("EU-JNT-020")
-def replaced_joints_lose_their_damping() -> Deviation:
-    """A joint that is replaced has neither damping nor friction, as in the published loader."""
-    return _properties(_replaced, lambda found, joint: dict.fromkeys(("damping", "friction"), _zeros(joint)))
-
-
-@means("EU-JNT-020")
-def damping_and_friction_are_swapped() -> Deviation:
-    """Damping and friction of a joint that is replaced are swapped."""
-    return _properties(_replaced, lambda found, joint: {"damping": found.friction, "friction": found.damping})
+wrong = means("EU-JNT-020")
+wrong(
+    "A joint that is replaced has no velocity and effort limits, as in the published loader.",
+    lambda: _properties(_replaced, lambda found, joint: dict.fromkeys(("velocity", "effort"), [None] * joint.kind.nv)),
+)
+wrong(
+    "A joint that is replaced has neither damping nor friction, as in the published loader.",
+    lambda: _properties(_replaced, lambda found, joint: dict.fromkeys(("damping", "friction"), _zeros(joint))),
+)
+wrong(
+    "Damping and friction of a joint that is replaced are swapped.",
+    lambda: _properties(_replaced, lambda found, joint: {"damping": found.friction, "friction": found.damping}),
+)
 
 
 @means("EU-JNT-021")
@@ -59,22 +56,19 @@ def angle_limits_bound_quaternions() -> Deviation:
     return _properties(lambda joint: joint.type == "spherical" and joint.source[0].lower is not None, limits)
 
 
-@means("EU-JNT-024")
-def merged_properties_in_the_order_of_the_chain() -> Deviation:
-    """The properties of merged joints are those of the first for x, the second for y, the third for z."""
-    return instead(joint_property, "nearest", lambda right, axes: [0, 1, 2])
-
-
-@means("EU-JNT-024")
-def merged_properties_of_the_last() -> Deviation:
-    """The properties of merged joints are those of the last one, for each axis."""
-    return instead(joint_property, "nearest", lambda right, axes: [2, 2, 2])
-
-
-@means("EU-JNT-024")
-def merged_properties_of_the_nearest() -> Deviation:
-    """Each axis of merged joints takes the properties of the nearest joint, though one may serve twice."""
-    return instead(joint_property, "nearest", lambda right, axes: list(np.argmax(np.abs(axes), axis=0)))
+wrong = means("EU-JNT-024")
+wrong(
+    "The properties of merged joints are those of the first for x, the second for y, the third for z.",
+    lambda: instead(joint_property, "nearest", lambda right, axes: [0, 1, 2]),
+)
+wrong(
+    "The properties of merged joints are those of the last one, for each axis.",
+    lambda: instead(joint_property, "nearest", lambda right, axes: [2, 2, 2]),
+)
+wrong(
+    "Each axis of merged joints takes the properties of the nearest joint, though one may serve twice.",
+    lambda: instead(joint_property, "nearest", lambda right, axes: list(np.argmax(np.abs(axes), axis=0))),
+)
 
 
 @means("EU-JNT-028")
@@ -107,10 +101,11 @@ def limits_bound_both_coordinates() -> Deviation:
     return _properties(lambda joint: joint.type == "cylindrical" and joint.source[0].lower is not None, limits)
 
 
-@means("EU-JNT-029")
-def screws_keep_the_numbers_of_a_slide() -> Deviation:
-    """A prismatic joint that becomes helical keeps its numbers for velocity, effort, damping and friction."""
-    return instead(joint_property, "length_of_a_radian", lambda right, joint: 1.0)
+wrong = means("EU-JNT-029")
+wrong(
+    "A prismatic joint that becomes helical keeps its numbers for velocity, effort, damping and friction.",
+    lambda: instead(joint_property, "length_of_a_radian", lambda right, joint: 1.0),
+)
 
 
 @means("EU-JNT-029")
@@ -136,42 +131,32 @@ def screws_reverse_their_limits() -> Deviation:
     return instead(joint_property, "position_limits", limits)
 
 
-@means("EU-ACT-006")
-def gear_ratio_is_not_squared() -> Deviation:
-    """The armature of an actuated joint is gear_ratio · rotor_inertia."""
-    return _armature(lambda motor: replace(motor, gear_ratio=abs(motor.gear_ratio) ** 0.5))
+wrong = means("EU-ACT-006")
+wrong(
+    "The armature of an actuated joint is gear_ratio · rotor_inertia.",
+    lambda: _armature(lambda motor: replace(motor, gear_ratio=abs(motor.gear_ratio) ** 0.5)),
+)
+wrong(
+    "The armature of an actuated joint is the inertia of its rotor.",
+    lambda: _armature(lambda motor: replace(motor, gear_ratio=1.0)),
+)
+wrong("A motor adds no armature.", lambda: _armature(lambda motor: None))
 
-
-@means("EU-ACT-006")
-def rotor_is_not_geared() -> Deviation:
-    """The armature of an actuated joint is the inertia of its rotor."""
-    return _armature(lambda motor: replace(motor, gear_ratio=1.0))
-
-
-@means("EU-ACT-006")
-def motors_have_no_armature() -> Deviation:
-    """A motor adds no armature."""
-    return _armature(lambda motor: None)
-
-
-@means("EU-JNT-031")
-def springs_rest_at_zero() -> Deviation:
-    """The rest position of a spring is 0, whatever the description states."""
-    return _properties(lambda joint: joint.change.stated, _spring(lambda k, rest: (k, [0.0] * len(rest))))
-
-
-@means("EU-JNT-031")
-def springs_act_on_the_first_coordinate() -> Deviation:
-    """A joint with several coordinates has a spring on the first one only."""
-    return _properties(
+wrong = means("EU-JNT-031")
+wrong(
+    "The rest position of a spring is 0, whatever the description states.",
+    lambda: _properties(lambda joint: joint.change.stated, _spring(lambda k, rest: (k, [0.0] * len(rest)))),
+)
+wrong(
+    "A joint with several coordinates has a spring on the first one only.",
+    lambda: _properties(
         lambda joint: joint.change.stated, _spring(lambda k, rest: ([k[0], *[0.0] * (len(k) - 1)], rest))
-    )
-
-
-@means("EU-JNT-031")
-def springs_are_left_out() -> Deviation:
-    """A joint has no spring."""
-    return _properties(lambda joint: joint.change.stated, lambda found, joint: {"stiffness": None, "rest": None})
+    ),
+)
+wrong(
+    "A joint has no spring.",
+    lambda: _properties(lambda joint: joint.change.stated, lambda found, joint: {"stiffness": None, "rest": None}),
+)
 
 
 def _spring(change: Callable[[Any, Any], Any]) -> Callable[[Any, Any], dict[str, Any]]:
@@ -183,22 +168,16 @@ def _spring(change: Callable[[Any, Any], Any]) -> Callable[[Any, Any], dict[str,
     return changed
 
 
-@means("EU-JNT-032")
-def armature_of_mimic_joints_is_left_out() -> Deviation:
-    """The mass matrix contains the armatures of joints that mimic no other only."""
-    return _at_leader(lambda multiplier: 0.0)
-
-
-@means("EU-JNT-032")
-def armature_of_mimic_joints_is_not_squared() -> Deviation:
-    """The armature of a mimic joint counts at its leader multiplied by the multiplier, not by its square."""
-    return _at_leader(abs)
-
-
-@means("EU-JNT-032")
-def armature_of_mimic_joints_counts_once() -> Deviation:
-    """The armature of a mimic joint counts at its leader as it is."""
-    return _at_leader(lambda multiplier: 1.0)
+wrong = means("EU-JNT-032")
+wrong(
+    "The mass matrix contains the armatures of joints that mimic no other only.",
+    lambda: _at_leader(lambda multiplier: 0.0),
+)
+wrong(
+    "The armature of a mimic joint counts at its leader multiplied by the multiplier, not by its square.",
+    lambda: _at_leader(abs),
+)
+wrong("The armature of a mimic joint counts at its leader as it is.", lambda: _at_leader(lambda multiplier: 1.0))
 
 
 def _at_leader(factor: Callable[[float], float]) -> Deviation:
@@ -214,11 +193,12 @@ def _at_leader(factor: Callable[[float], float]) -> Deviation:
     return instead(robot, "armature_at_leaders", armature)
 
 
-@means("EU-JNT-034")
-def freed_joints_mimic() -> Deviation:
-    """A joint that the description frees mimics its leader all the same."""
-    # The package has a function of the name of the module.
-    return instead(import_module("eurdf_conformance.oracle.read"), "freed", lambda right, urdf, description: urdf)
+wrong = means("EU-JNT-034")
+# The package has a function of the name of the module.
+wrong(
+    "A joint that the description frees mimics its leader all the same.",
+    lambda: instead(import_module("eurdf_conformance.oracle.read"), "freed", lambda right, urdf, description: urdf),
+)
 
 
 @refuses("EU-JNT-030")
@@ -229,22 +209,21 @@ def mimic_joints_have_no_properties(data: Any, urdf: Any) -> bool:
     return any(name in mimics and "mimic" not in entry for name, entry in joints.items() if isinstance(entry, dict))
 
 
-@describes("EU-CLO-021")
-def closures_are_rigid(robot: Any) -> dict[str, Any]:
-    """A closure has no compliance."""
-    return {"closures": [each.model_copy(update={"compliance": None}) for each in robot.closures]}
+wrong = describes("EU-CLO-021")
+wrong(
+    "A closure has no compliance.",
+    lambda robot: {"closures": [each.model_copy(update={"compliance": None}) for each in robot.closures]},
+)
 
-
-@describes("EU-ACT-010")
-def actuators_have_no_names(robot: Any) -> dict[str, Any]:
-    """An actuator has the name of its joint, whatever the description states."""
-    return {"actuators": [each.model_copy(update={"name": None}) for each in robot.actuators]}
-
-
-@describes("EU-ACT-010")
-def control_ranges_are_left_out(robot: Any) -> dict[str, Any]:
-    """An actuator has no control range."""
-    return {"actuators": [each.model_copy(update={"control": None}) for each in robot.actuators]}
+wrong = describes("EU-ACT-010")
+wrong(
+    "An actuator has the name of its joint, whatever the description states.",
+    lambda robot: {"actuators": [each.model_copy(update={"name": None}) for each in robot.actuators]},
+)
+wrong(
+    "An actuator has no control range.",
+    lambda robot: {"actuators": [each.model_copy(update={"control": None}) for each in robot.actuators]},
+)
 
 
 def _armature(change: Callable[[Any], Any]) -> Deviation:

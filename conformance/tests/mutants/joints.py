@@ -31,16 +31,12 @@ def _w_first(q: Any) -> Any:
     return [*q[1:], q[0]]
 
 
-@means("EU-JNT-015")
-def quaternions_w_first() -> Deviation:
-    """The quaternion of a spherical joint is w, x, y, z, as in MuJoCo."""
-    return _coordinates("spherical", _w_first)
-
-
-@means("EU-JNT-015")
-def quaternions_of_the_parent() -> Deviation:
-    """The quaternion of a spherical joint is the orientation of the parent in the child."""
-    return _coordinates("spherical", lambda q: [*-q[:3], q[3]])
+wrong = means("EU-JNT-015")
+wrong("The quaternion of a spherical joint is w, x, y, z, as in MuJoCo.", lambda: _coordinates("spherical", _w_first))
+wrong(
+    "The quaternion of a spherical joint is the orientation of the parent in the child.",
+    lambda: _coordinates("spherical", lambda q: [*-q[:3], q[3]]),
+)
 
 
 @means("EU-JNT-016")
@@ -65,59 +61,32 @@ def second_axis_of_universal_joints_is_fixed() -> Deviation:
     return instead(kinematics, "transform", changed)
 
 
-@means("EU-JNT-017")
-def cylindrical_angle_first() -> Deviation:
-    """The coordinates of a cylindrical joint are an angle, then a length."""
-    return _coordinates("cylindrical", lambda q: q[::-1])
+wrong = means("EU-JNT-017")
+wrong(
+    "The coordinates of a cylindrical joint are an angle, then a length.",
+    lambda: _coordinates("cylindrical", lambda q: q[::-1]),
+)
 
+wrong = means("EU-JNT-018")
+wrong("The pitch of a helical joint is metres per radian.", lambda: _pitch(lambda pitch: pitch * 2 * math.pi))
+wrong("A helical joint of positive pitch is left-handed.", lambda: _pitch(lambda pitch: -pitch))
 
-@means("EU-JNT-018")
-def pitch_per_radian() -> Deviation:
-    """The pitch of a helical joint is metres per radian."""
-    return _pitch(lambda pitch: pitch * 2 * math.pi)
-
-
-@means("EU-JNT-018")
-def left_handed_screws() -> Deviation:
-    """A helical joint of positive pitch is left-handed."""
-    return _pitch(lambda pitch: -pitch)
-
-
-@means("EU-JNT-025")
-def revolute_joints_turn_clockwise() -> Deviation:
-    """A revolute joint turns clockwise about its axis."""
-    return _coordinates("revolute", lambda q: -q)
-
-
-@means("EU-JNT-025")
-def continuous_joints_in_degrees() -> Deviation:
-    """The angle of a continuous joint is in degrees."""
-    return _coordinates("continuous", np.radians)
-
-
-@means("EU-JNT-025")
-def prismatic_joints_in_millimetres() -> Deviation:
-    """The length of a prismatic joint is in millimetres."""
-    return _coordinates("prismatic", lambda q: q / 1000)
-
-
-@means("EU-JNT-025")
-def planar_angle_first() -> Deviation:
-    """The coordinates of a planar joint are its angle, then x and y."""
-    return _coordinates("planar", lambda q: [q[1], q[2], q[0]])
-
-
-@means("EU-JNT-025")
-def floating_quaternion_first() -> Deviation:
-    """The coordinates of a floating joint are its quaternion, then its position."""
-
-    return _coordinates("floating", lambda q: [*q[4:], *q[:4]])
-
-
-@means("EU-JNT-025")
-def floating_quaternion_w_first() -> Deviation:
-    """The quaternion of a floating joint is w, x, y, z, as in MuJoCo."""
-    return _coordinates("floating", lambda q: [*q[:3], *_w_first(q[3:])])
+wrong = means("EU-JNT-025")
+wrong("A revolute joint turns clockwise about its axis.", lambda: _coordinates("revolute", lambda q: -q))
+wrong("The angle of a continuous joint is in degrees.", lambda: _coordinates("continuous", np.radians))
+wrong("The length of a prismatic joint is in millimetres.", lambda: _coordinates("prismatic", lambda q: q / 1000))
+wrong(
+    "The coordinates of a planar joint are its angle, then x and y.",
+    lambda: _coordinates("planar", lambda q: [q[1], q[2], q[0]]),
+)
+wrong(
+    "The coordinates of a floating joint are its quaternion, then its position.",
+    lambda: _coordinates("floating", lambda q: [*q[4:], *q[:4]]),
+)
+wrong(
+    "The quaternion of a floating joint is w, x, y, z, as in MuJoCo.",
+    lambda: _coordinates("floating", lambda q: [*q[:3], *_w_first(q[3:])]),
+)
 
 
 def _motion(kind: str, change: Callable[[Any, Any, Any], Any]) -> Deviation:
@@ -136,28 +105,23 @@ def _both(R: Any) -> Any:
     return np.kron(np.eye(2), R)
 
 
-@means("EU-JNT-026")
-def ball_velocities_along_the_parent() -> Deviation:
-    """The angular velocity of a spherical joint is along the axes of its parent's side."""
-    return _motion("spherical", lambda columns, R, q: columns @ R.T)
-
-
-@means("EU-JNT-026")
-def floating_velocities_along_the_world() -> Deviation:
-    """The velocities of a floating joint are along the axes of its parent's side, the world for a root."""
-    return _motion("floating", lambda columns, R, q: columns @ _both(R.T))
-
-
-@means("EU-JNT-026")
-def floating_linear_velocity_along_the_world() -> Deviation:
-    """The linear velocity of a floating joint is along the world, the angular one along its child, as in MuJoCo."""
-    return _motion("floating", lambda columns, R, q: np.hstack([columns[:, :3] @ R.T, columns[:, 3:]]))
-
-
-@means("EU-JNT-026")
-def floating_angular_velocity_first() -> Deviation:
-    """The velocities of a floating joint are angular, then linear, as in Featherstone and Drake."""
-    return _motion("floating", lambda columns, R, q: np.roll(columns, 3, axis=1))
+wrong = means("EU-JNT-026")
+wrong(
+    "The angular velocity of a spherical joint is along the axes of its parent's side.",
+    lambda: _motion("spherical", lambda columns, R, q: columns @ R.T),
+)
+wrong(
+    "The velocities of a floating joint are along the axes of its parent's side, the world for a root.",
+    lambda: _motion("floating", lambda columns, R, q: columns @ _both(R.T)),
+)
+wrong(
+    "The linear velocity of a floating joint is along the world, the angular one along its child, as in MuJoCo.",
+    lambda: _motion("floating", lambda columns, R, q: np.hstack([columns[:, :3] @ R.T, columns[:, 3:]])),
+)
+wrong(
+    "The velocities of a floating joint are angular, then linear, as in Featherstone and Drake.",
+    lambda: _motion("floating", lambda columns, R, q: np.roll(columns, 3, axis=1)),
+)
 
 
 @means("EU-JNT-026")
@@ -170,16 +134,18 @@ def planar_velocities_are_derivatives() -> Deviation:
     return _motion("planar", derivatives)
 
 
-@means("EU-JNT-026", versions=("2",))  # version 1 has none
-def cylindrical_angular_velocity_first() -> Deviation:
-    """The velocities of a cylindrical joint are angular, then linear."""
-    return _motion("cylindrical", lambda columns, R, q: columns[:, ::-1])
+wrong = means("EU-JNT-026", versions=("2",))
+# version 1 has none
+wrong(
+    "The velocities of a cylindrical joint are angular, then linear.",
+    lambda: _motion("cylindrical", lambda columns, R, q: columns[:, ::-1]),
+)
 
-
-@means("EU-ONE-009")
-def mimics_of_version_1_are_followed() -> Deviation:
-    """In version 1 a mimic joint depends on its leader, as in version 2."""
-    return instead(urdf.Urdf, "without_mimics", lambda right, of: of)
+wrong = means("EU-ONE-009")
+wrong(
+    "In version 1 a mimic joint depends on its leader, as in version 2.",
+    lambda: instead(urdf.Urdf, "without_mimics", lambda right, of: of),
+)
 
 
 @means("EU-URD-035")
@@ -194,10 +160,11 @@ def axis_left_out_is_z() -> Deviation:
     return instead(urdf, "joint", joint)
 
 
-@means("EU-URD-035")
-def axes_keep_their_length() -> Deviation:
-    """A joint moves by the vector of its axis, whatever its length."""
-    return instead(urdf, "unit", lambda unit, axis: axis)
+wrong = means("EU-URD-035")
+wrong(
+    "A joint moves by the vector of its axis, whatever its length.",
+    lambda: instead(urdf, "unit", lambda unit, axis: axis),
+)
 
 
 @means("EU-URD-035")
@@ -227,22 +194,15 @@ def _mimic(change: Callable[[Any], Any]) -> Deviation:
     return instead(urdf, "mimic", lambda mimic, element: change(mimic(element)))
 
 
-@means("EU-URD-032")
-def mimic_offset_is_dropped() -> Deviation:
-    """A mimic joint is at multiplier · q."""
-    return _mimic(lambda found: urdf.Mimic(found.joint, found.multiplier, 0.0))
-
-
-@means("EU-URD-032")
-def mimic_multiplier_is_dropped() -> Deviation:
-    """A mimic joint is at q + offset."""
-    return _mimic(lambda found: urdf.Mimic(found.joint, 1.0, found.offset))
-
-
-@means("EU-URD-032")
-def mimic_offset_is_multiplied() -> Deviation:
-    """A mimic joint is at multiplier · (q + offset)."""
-    return _mimic(lambda found: urdf.Mimic(found.joint, found.multiplier, found.multiplier * found.offset))
+wrong = means("EU-URD-032")
+wrong(
+    "A mimic joint is at multiplier · q.", lambda: _mimic(lambda found: urdf.Mimic(found.joint, found.multiplier, 0.0))
+)
+wrong("A mimic joint is at q + offset.", lambda: _mimic(lambda found: urdf.Mimic(found.joint, 1.0, found.offset)))
+wrong(
+    "A mimic joint is at multiplier · (q + offset).",
+    lambda: _mimic(lambda found: urdf.Mimic(found.joint, found.multiplier, found.multiplier * found.offset)),
+)
 
 
 @means("EU-URD-032")

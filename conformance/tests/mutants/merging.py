@@ -25,16 +25,15 @@ def _ball(placement: Callable[[Any, Any], Any]) -> Deviation:
     return instead(tree, "ball", changed)
 
 
-@means("EU-JNT-022")
-def balls_at_the_last_origin() -> Deviation:
-    """Merged joints turn about the origin of the last one, wherever their axes meet."""
-    return _ball(lambda ball, joints: ball.placement @ ball.link)
-
-
-@means("EU-JNT-022")
-def balls_turned_as_the_first() -> Deviation:
-    """The frame of merged joints has the orientation of the first one."""
-    return _ball(lambda ball, joints: pose(joints[0].origin[:3, :3], ball.placement[:3, 3]))
+wrong = means("EU-JNT-022")
+wrong(
+    "Merged joints turn about the origin of the last one, wherever their axes meet.",
+    lambda: _ball(lambda ball, joints: ball.placement @ ball.link),
+)
+wrong(
+    "The frame of merged joints has the orientation of the first one.",
+    lambda: _ball(lambda ball, joints: pose(joints[0].origin[:3, :3], ball.placement[:3, 3])),
+)
 
 
 @means("EU-JNT-023")
@@ -56,22 +55,15 @@ def nothing_is_merged() -> Deviation:
     return instead(read, "with_merges_found", lambda right, description, urdf: description)
 
 
-@means("EU-ONE-007")
-def heavy_links_are_merged() -> Deviation:
-    """Three joints are merged even if a link between them has a mass."""
-    return patch.object(merging, "LIGHT", math.inf)
-
-
-@means("EU-ONE-007")
-def axes_that_do_not_meet_are_merged() -> Deviation:
-    """Three joints are merged even if their axes do not meet."""
-    return patch.object(merging, "NEAR", math.inf)
-
-
-@means("EU-ONE-007")
-def axes_within_a_millimetre_are_merged() -> Deviation:
-    """Three joints are merged if their axes pass a point within a millimetre."""
-    return patch.object(merging, "NEAR", 1e-3)
+wrong = means("EU-ONE-007")
+wrong(
+    "Three joints are merged even if a link between them has a mass.", lambda: patch.object(merging, "LIGHT", math.inf)
+)
+wrong("Three joints are merged even if their axes do not meet.", lambda: patch.object(merging, "NEAR", math.inf))
+wrong(
+    "Three joints are merged if their axes pass a point within a millimetre.",
+    lambda: patch.object(merging, "NEAR", 1e-3),
+)
 
 
 @means("EU-JNT-022")

@@ -28,11 +28,10 @@ def _silent(code: str) -> Callable[[], _Answering]:
 
 
 def _add(clause: Clause, code: str) -> None:
-    name = code.replace("-", "_")
     if clause.level == Level.ACCEPT:
-        add(f"accepts_{name}", clause.id, f"Accepts what must be rejected with `{code}`.", _accepting(code))
+        add(clause.id, f"Accepts what must be rejected with `{code}`.", _accepting(code))
     else:
-        add(f"silent_of_{name}", clause.id, f"Does not report `{code}`.", _silent(code))
+        add(clause.id, f"Does not report `{code}`.", _silent(code))
 
 
 for _clause in read_clauses().values():

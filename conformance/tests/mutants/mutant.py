@@ -33,16 +33,14 @@ class Mutant:
     """A parser with one thing wrong.
 
     Attributes:
-        name: The function that says what is wrong.
         clause: The clause that it violates.
-        breaks: What is wrong, as a sentence.
+        breaks: What is wrong, as a sentence; no other mutant has the same.
         parser: Makes the parser, with nothing loaded.
         level: The level at which it must be caught.
         versions: The versions of the format in which it must be caught.
         verdicts: What counts as caught.
     """
 
-    name: str
     clause: str
     breaks: str
     parser: Callable[[], Any]
@@ -51,12 +49,11 @@ class Mutant:
     verdicts: frozenset[Verdict]
 
 
-#: All mutants by name. Each module of this package adds its own.
+#: All mutants, by what is wrong. Each module of this package adds its own.
 MUTANTS: dict[str, Mutant] = {}
 
 
 def add(
-    name: str,
     clause: str,
     breaks: str,
     parser: Callable[[], Any],
@@ -66,26 +63,28 @@ def add(
     verdict: Verdict = Verdict.FAILED,
 ) -> None:
     """Add a mutant. Level and versions are those of its clause, unless stated."""
-    assert name not in MUTANTS, f"two mutants are named {name}"
+    breaks = " ".join(breaks.split())
+    assert breaks not in MUTANTS, f"two mutants are wrong alike: {breaks}"
     stated = read_clauses()[clause]
-    found = Mutant(
-        name,
+    MUTANTS[breaks] = Mutant(
         clause,
-        " ".join(breaks.split()),
+        breaks,
         parser,
         level or Level(stated.level),
         versions or said_in(stated),
         frozenset({verdict}),
     )
-    MUTANTS[name] = found
 
 
-Register = Callable[[Callable[..., Any]], Callable[..., Any]]
+Register = Callable[..., Any]
 
 
 def _mutant(clause: str, make: Callable[[Callable[..., Any]], Any], **stated: Any) -> Register:
-    def register(deviate: Callable[..., Any]) -> Callable[..., Any]:
-        add(deviate.__name__, clause, deviate.__doc__ or "", lambda: make(deviate), **stated)
+    """Adds mutants of a clause: ``wrong(sentence, deviation)``, or as a decorator of a deviation with a docstring."""
+
+    def register(*row: Any) -> Any:
+        breaks, deviate = row if len(row) == 2 else (row[0].__doc__ or "", row[0])
+        add(clause, breaks, lambda: make(deviate), **stated)
         return deviate
 
     return register

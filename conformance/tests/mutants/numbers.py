@@ -27,34 +27,35 @@ def _accepting(is_accepted: Callable[[str], Any]) -> Callable[..., Answer]:
     return answer
 
 
-@answers("EU-FIL-005", versions=("2", "2.1"))
-def divisors_may_be_small(right: Answer, *files: Path) -> Answer:
-    """A gear ratio, a pitch or a coefficient may be as near to 0 as it likes."""
-    return _accepting(lambda text: re.match(r"-?[0-9.]+e-", text))(right, *files)
+wrong = answers("EU-FIL-005", versions=("2", "2.1"))
+wrong(
+    "A gear ratio, a pitch or a coefficient may be as near to 0 as it likes.",
+    lambda right, *files: _accepting(lambda text: re.match(r"-?[0-9.]+e-", text))(right, *files),
+)
 
+wrong = answers("EU-FIL-005")
+wrong(
+    "Numbers are compared with the bound, and not their sizes.",
+    lambda right, *files: _accepting(lambda text: text.startswith("-"))(right, *files),
+)
 
-@answers("EU-FIL-005")
-def negative_numbers_may_have_any_size(right: Answer, *files: Path) -> Answer:
-    """Numbers are compared with the bound, and not their sizes."""
-    return _accepting(lambda text: text.startswith("-"))(right, *files)
+wrong = answers("EU-FIL-005", versions=("2",))
+wrong(
+    "Multipliers of mimic joints are checked, and not those at the end of a chain.",
+    lambda right, *files: _accepting(lambda text: re.match(r"2\"|0\.5\"|<mimic", text))(right, *files),
+)
 
+wrong = answers("EU-FIL-005")
+wrong(
+    "Limits have no bound at all, also where they exclude all numbers within bounds.",
+    lambda right, *files: _accepting(lambda text: re.match(r"-?[0-9]e1[67]", text))(right, *files),
+)
 
-@answers("EU-FIL-005", versions=("2",))
-def chains_of_mimics_may_leave_bounds(right: Answer, *files: Path) -> Answer:
-    """Multipliers of mimic joints are checked, and not those at the end of a chain."""
-    return _accepting(lambda text: re.match(r"2\"|0\.5\"|<mimic", text))(right, *files)
-
-
-@answers("EU-FIL-005")
-def limits_may_be_any_number(right: Answer, *files: Path) -> Answer:
-    """Limits have no bound at all, also where they exclude all numbers within bounds."""
-    return _accepting(lambda text: re.match(r"-?[0-9]e1[67]", text))(right, *files)
-
-
-@refuses("EU-FIL-005")
-def bounds_themselves_are_beyond(data: Any, robot: Any) -> bool:
-    """A number must be less than the bound."""
-    return any(abs(float(value)) == 1e15 for value in robot.xpath("//limit/@*|//dynamics/@*"))
+wrong = refuses("EU-FIL-005")
+wrong(
+    "A number must be less than the bound.",
+    lambda data, robot: any(abs(float(value)) == 1e15 for value in robot.xpath("//limit/@*|//dynamics/@*")),
+)
 
 
 def _limits(limit: Callable[..., float | None]) -> Deviation:
@@ -70,19 +71,13 @@ def _limits(limit: Callable[..., float | None]) -> Deviation:
     return entered()
 
 
-@means("EU-FIL-006")
-def limits_beyond_bounds_are_kept() -> Deviation:
-    """A limit is the number that the file states."""
-    return _limits(lambda name, value: value)
-
-
-@means("EU-FIL-006")
-def limits_at_the_bound_are_none() -> Deviation:
-    """A limit of 1e15 is none."""
-    return _limits(lambda name, value: None if value * plain_value.NO_LIMIT[name] >= plain_value.LARGEST else value)
-
-
-@means("EU-FIL-006")
-def limits_beyond_bounds_are_the_bound() -> Deviation:
-    """A limit beyond the bound is the bound."""
-    return _limits(lambda name, value: max(-plain_value.LARGEST, min(value, plain_value.LARGEST)))
+wrong = means("EU-FIL-006")
+wrong("A limit is the number that the file states.", lambda: _limits(lambda name, value: value))
+wrong(
+    "A limit of 1e15 is none.",
+    lambda: _limits(lambda name, value: None if value * plain_value.NO_LIMIT[name] >= plain_value.LARGEST else value),
+)
+wrong(
+    "A limit beyond the bound is the bound.",
+    lambda: _limits(lambda name, value: max(-plain_value.LARGEST, min(value, plain_value.LARGEST))),
+)

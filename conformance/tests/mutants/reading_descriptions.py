@@ -122,10 +122,8 @@ def root_floats_by_default(data: Members) -> None:
         data.setdefault("root", "floating")
 
 
-@describes("EU-VER-002")
-def version_1_is_called_2(robot: CanonicalRobot) -> Members:
-    """A description of version 1 is said to have version 2."""
-    return {"version": "2"}
+wrong = describes("EU-VER-002")
+wrong("A description of version 1 is said to have version 2.", lambda robot: {"version": "2"})
 
 
 @answers("EU-FRM-001", versions=("2",))  # in version 1 no root floats
@@ -142,22 +140,21 @@ def version_may_be_left_out(right: Answer, description: Path, urdf: Path) -> Ans
     return accepted() if missing and f"{VERSION}:" not in description.read_text("utf-8-sig") else right
 
 
-@refuses("EU-EXT-001")
-def own_keys_are_refused(data: Members, robot: Any) -> bool:
-    """A key that begins with x- is refused."""
-    return VERSION in data and any(str(key).startswith("x-") for _, key in _values(data))
+wrong = refuses("EU-EXT-001")
+wrong(
+    "A key that begins with x- is refused.",
+    lambda data, robot: VERSION in data and any(str(key).startswith("x-") for _, key in _values(data)),
+)
 
+wrong = refuses("EU-FIL-004", versions=("2",))
+# version 1 names no URDF
+wrong("The URDF must be in the folder of the description.", lambda data, robot: "/" in data.get("urdf", ""))
 
-@refuses("EU-FIL-004", versions=("2",))  # version 1 names no URDF
-def urdf_in_another_folder_is_refused(data: Members, robot: Any) -> bool:
-    """The URDF must be in the folder of the description."""
-    return "/" in data.get("urdf", "")
-
-
-@refuses("EU-SCH-002", versions=("2",))
-def integers_are_no_numbers(data: Members, robot: Any) -> bool:
-    """Where a number is expected, an integer is refused."""
-    return any(type(holder[key]) is int for holder, key in _values(data.get("configurations", {})))
+wrong = refuses("EU-SCH-002", versions=("2",))
+wrong(
+    "Where a number is expected, an integer is refused.",
+    lambda data, robot: any(type(holder[key]) is int for holder, key in _values(data.get("configurations", {}))),
+)
 
 
 @refuses("EU-JNT-008")
@@ -167,10 +164,11 @@ def left_handed_screws_are_refused(data: Members, robot: Any) -> bool:
     return any(isinstance(joint, dict) and joint.get("pitch", 0) < 0 for joint in joints)
 
 
-@refuses("EU-CNF-002")
-def empty_lists_are_refused(data: Members, robot: Any) -> bool:
-    """A key whose list or mapping is empty is refused."""
-    return any(value in ([], {}) for value in data.values())
+wrong = refuses("EU-CNF-002")
+wrong(
+    "A key whose list or mapping is empty is refused.",
+    lambda data, robot: any(value in ([], {}) for value in data.values()),
+)
 
 
 @reads_description("EU-CLO-012")
@@ -219,10 +217,11 @@ def null_is_an_empty_list(data: Members) -> None:
         data.update({key: [] for key in version1.KEYS if key in data and data[key] is None})
 
 
-@refuses("EU-ONE-001")
-def upper_case_types_are_refused(data: Members, robot: Any) -> bool:
-    """A closure's type must be in lower case."""
-    return _is_version_1(data) and any(kind != kind.lower() for kind in data.get("type", []))
+wrong = refuses("EU-ONE-001")
+wrong(
+    "A closure's type must be in lower case.",
+    lambda data, robot: _is_version_1(data) and any(kind != kind.lower() for kind in data.get("type", [])),
+)
 
 
 @reads_description("EU-ONE-003")
@@ -241,10 +240,13 @@ def types_left_out_are_3d(data: Members) -> None:
         data.setdefault("type", ["3d"] * len(data["closed_loop"]))
 
 
-@describes("EU-ONE-005")
-def closures_are_numbered_from_0(robot: CanonicalRobot) -> Members:
-    """The first closure is `closure_0`."""
-    return {"closures": [each.model_copy(update={"name": f"closure_{i}"}) for i, each in enumerate(robot.closures)]}
+wrong = describes("EU-ONE-005")
+wrong(
+    "The first closure is `closure_0`.",
+    lambda robot: {
+        "closures": [each.model_copy(update={"name": f"closure_{i}"}) for i, each in enumerate(robot.closures)]
+    },
+)
 
 
 @reads_description("EU-ONE-006")
@@ -287,58 +289,52 @@ def own_keys_of_version_1_are_dropped(data: Members) -> None:
             del data[key]
 
 
-@describes("EU-CAN-003")
-def own_data_of_version_1_without_a_pointer(robot: CanonicalRobot) -> Members:
-    """Own data is kept under the key itself, which is not a JSON pointer."""
-    return {"own": {pointer.removeprefix("/"): value for pointer, value in robot.own.items()}}
+wrong = describes("EU-CAN-003")
+wrong(
+    "Own data is kept under the key itself, which is not a JSON pointer.",
+    lambda robot: {"own": {pointer.removeprefix("/"): value for pointer, value in robot.own.items()}},
+)
 
 
 # -- Own data of version 2 ------------------------------------------------------------------------------------------
 
 
-@describes("EU-EXT-002")
-def own_data_is_dropped(robot: CanonicalRobot) -> Members:
-    """What is under a key x- is dropped."""
-    return {"own": {}} if robot.version == "2" else {}
+wrong = describes("EU-EXT-002")
+wrong("What is under a key x- is dropped.", lambda robot: {"own": {}} if robot.version == "2" else {})
+wrong(
+    "What is under a key x- is kept at the top of the description only.",
+    lambda robot: {"own": {pointer: value for pointer, value in robot.own.items() if pointer.count("/") == 1}},
+)
+wrong(
+    "What is under a key x- is kept as text.",
+    lambda robot: (
+        {"own": {pointer: str(value) for pointer, value in robot.own.items()}} if robot.version == "2" else {}
+    ),
+)
 
-
-@describes("EU-EXT-002")
-def own_data_inside_is_dropped(robot: CanonicalRobot) -> Members:
-    """What is under a key x- is kept at the top of the description only."""
-    return {"own": {pointer: value for pointer, value in robot.own.items() if pointer.count("/") == 1}}
-
-
-@describes("EU-EXT-002")
-def own_data_is_text(robot: CanonicalRobot) -> Members:
-    """What is under a key x- is kept as text."""
-    return {"own": {pointer: str(value) for pointer, value in robot.own.items()}} if robot.version == "2" else {}
-
-
-@describes("EU-CAN-002")
-def pointers_are_not_escaped(robot: CanonicalRobot) -> Members:
-    """A slash in a key is not escaped in its JSON pointer."""
-    return {"own": {pointer.replace("~1", "/"): value for pointer, value in robot.own.items()}}
-
-
-@describes("EU-CAN-002")
-def pointers_of_a_uri(robot: CanonicalRobot) -> Members:
-    """JSON pointers are those of a URI, with percent signs."""
-    return {"own": {quote(pointer, safe="/~"): value for pointer, value in robot.own.items()}}
-
-
-@describes("EU-CAN-002")
-def pointers_without_x(robot: CanonicalRobot) -> Members:
-    """Own data is kept under its key without the x-."""
-    return {"own": {pointer.replace("/x-", "/"): value for pointer, value in robot.own.items()}}
+wrong = describes("EU-CAN-002")
+wrong(
+    "A slash in a key is not escaped in its JSON pointer.",
+    lambda robot: {"own": {pointer.replace("~1", "/"): value for pointer, value in robot.own.items()}},
+)
+wrong(
+    "JSON pointers are those of a URI, with percent signs.",
+    lambda robot: {"own": {quote(pointer, safe="/~"): value for pointer, value in robot.own.items()}},
+)
+wrong(
+    "Own data is kept under its key without the x-.",
+    lambda robot: {"own": {pointer.replace("/x-", "/"): value for pointer, value in robot.own.items()}},
+)
 
 
 # -- Configurations ---------------------------------------------------------------------------------------------------
 
 
-@means("EU-CFG-006")
-def quaternions_as_written() -> Deviation:
-    """A quaternion is kept as it is written."""
-    return instead(configuration, "normalised", lambda right, joint, q: np.array(q, dtype=float))
+wrong = means("EU-CFG-006")
+wrong(
+    "A quaternion is kept as it is written.",
+    lambda: instead(configuration, "normalised", lambda right, joint, q: np.array(q, dtype=float)),
+)
 
 
 @means("EU-CFG-005")

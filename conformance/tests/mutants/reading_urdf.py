@@ -15,10 +15,11 @@ from mutants.mutant import reads_urdf, reads_xml, refuses
 # -- XML --------------------------------------------------------------------------------------------------------------
 
 
-@reads_xml("EU-URD-001")
-def lone_ampersands_are_text(text: str) -> str:
-    """An ampersand that begins no reference is text, as in tinyxml2 and in browsers."""
-    return re.sub(r"&(?![A-Za-z#])", "&amp;", text)
+wrong = reads_xml("EU-URD-001")
+wrong(
+    "An ampersand that begins no reference is text, as in tinyxml2 and in browsers.",
+    lambda text: re.sub(r"&(?![A-Za-z#])", "&amp;", text),
+)
 
 
 @reads_xml("EU-URD-001")
@@ -28,22 +29,19 @@ def text_after_the_root_is_ignored(text: str) -> str:
     return head + end
 
 
-@reads_xml("EU-URD-001")
-def values_without_quotes(text: str) -> str:
-    """An attribute may have its value without quotes, as in HTML."""
-    return re.sub(r"(<[^<>]*\s\w+=)([^\s\"'<>/]+)", r'\1"\2"', text)
-
-
-@reads_xml("EU-URD-001")
-def any_version_of_xml_is_read(text: str) -> str:
-    """The version in the XML declaration has no effect, as in expat."""
-    return re.sub(r"(<\?xml\s+version=)(['\"]).*?\2", r'\1"1.0"', text, count=1)
-
-
-@reads_xml("EU-URD-001")
-def references_of_surrogates_are_dropped(text: str) -> str:
-    """A character reference of a surrogate is dropped."""
-    return re.sub(r"&#x[Dd][89A-Fa-f][0-9A-Fa-f]{2};", "", text)
+wrong = reads_xml("EU-URD-001")
+wrong(
+    "An attribute may have its value without quotes, as in HTML.",
+    lambda text: re.sub(r"(<[^<>]*\s\w+=)([^\s\"'<>/]+)", r'\1"\2"', text),
+)
+wrong(
+    "The version in the XML declaration has no effect, as in expat.",
+    lambda text: re.sub(r"(<\?xml\s+version=)(['\"]).*?\2", r'\1"1.0"', text, count=1),
+)
+wrong(
+    "A character reference of a surrogate is dropped.",
+    lambda text: re.sub(r"&#x[Dd][89A-Fa-f][0-9A-Fa-f]{2};", "", text),
+)
 
 
 @reads_xml("EU-URD-001")
@@ -53,34 +51,28 @@ def prefixes_need_no_declaration(text: str) -> str:
     return text.replace("<robot", "<robot" + "".join(f' xmlns:{each}="urn:of-{each}"' for each in prefixes), 1)
 
 
-@reads_xml("EU-URD-001")
-def attributes_are_compared_with_prefixes(text: str) -> str:
-    """Two attributes of one name in one namespace may have two prefixes."""
-    return re.sub(r'xmlns:b="[^"]*"', 'xmlns:b="urn:only-b"', text)
+wrong = reads_xml("EU-URD-001")
+wrong(
+    "Two attributes of one name in one namespace may have two prefixes.",
+    lambda text: re.sub(r'xmlns:b="[^"]*"', 'xmlns:b="urn:only-b"', text),
+)
+wrong(
+    "A name may have any number of colons, as in XML without namespaces.",
+    lambda text: re.sub(r"(?<=[<\s?])([a-z]*):([a-z0-9]*)(?:(:)[a-z]+)?(?=[\s=/>])", r"\1\2", text),
+)
 
+wrong = reads_xml("EU-URD-001", versions=("2",))
+wrong("A namespace may be empty, as in XML 1.1.", lambda text: re.sub(r'xmlns:([a-z]+)=""', r'xmlns:\1="urn:\1"', text))
+wrong(
+    "The name of a namespace must be a URI, which has no spaces.",
+    lambda text: re.sub(r'(xmlns:[a-z]+=)"[^"]* [^"]*"', r'\1""', text),
+)
 
-@reads_xml("EU-URD-001")
-def colons_are_letters(text: str) -> str:
-    """A name may have any number of colons, as in XML without namespaces."""
-    return re.sub(r"(?<=[<\s?])([a-z]*):([a-z0-9]*)(?:(:)[a-z]+)?(?=[\s=/>])", r"\1\2", text)
-
-
-@reads_xml("EU-URD-001", versions=("2",))
-def prefixes_may_lose_their_namespace(text: str) -> str:
-    """A namespace may be empty, as in XML 1.1."""
-    return re.sub(r'xmlns:([a-z]+)=""', r'xmlns:\1="urn:\1"', text)
-
-
-@reads_xml("EU-URD-001", versions=("2",))
-def namespaces_are_uris(text: str) -> str:
-    """The name of a namespace must be a URI, which has no spaces."""
-    return re.sub(r'(xmlns:[a-z]+=)"[^"]* [^"]*"', r'\1""', text)
-
-
-@reads_xml("EU-FIL-003")
-def ascii_may_be_declared(text: str) -> str:
-    """A file of ASCII may declare US-ASCII, of which UTF-8 is a superset."""
-    return re.sub(r"(?i)^(<\?xml[^>]*encoding=['\"])us-ascii", r"\1UTF-8", text) if text.isascii() else text
+wrong = reads_xml("EU-FIL-003")
+wrong(
+    "A file of ASCII may declare US-ASCII, of which UTF-8 is a superset.",
+    lambda text: re.sub(r"(?i)^(<\?xml[^>]*encoding=['\"])us-ascii", r"\1UTF-8", text) if text.isascii() else text,
+)
 
 
 @reads_xml("EU-URD-002")
@@ -89,22 +81,20 @@ def document_types_are_ignored(text: str) -> str:
     return re.sub(r"<!DOCTYPE[^\[>]*(\[[^\]]*\])?\s*>", "", text)
 
 
-@reads_xml("EU-SEC-002")
-def document_types_are_ignored_with_their_entities(text: str) -> str:
-    """A document type declaration has no effect, and its entities are text."""
-    return re.sub(r"&(?!amp|lt|gt|quot|apos|#)", "&amp;", document_types_are_ignored(text))
+wrong = reads_xml("EU-SEC-002")
+wrong(
+    "A document type declaration has no effect, and its entities are text.",
+    lambda text: re.sub(r"&(?!amp|lt|gt|quot|apos|#)", "&amp;", document_types_are_ignored(text)),
+)
 
+wrong = reads_xml("EU-URD-001")
+wrong("A value in single quotes is a syntax error.", lambda text: re.sub(r"=\s*'", "='<", text))
 
-@reads_xml("EU-URD-001")
-def single_quotes_are_refused(text: str) -> str:
-    """A value in single quotes is a syntax error."""
-    return re.sub(r"=\s*'", "='<", text)
-
-
-@reads_xml("EU-URD-007")
-def decimal_commas(text: str) -> str:
-    """A number may have a comma for its point, as C programs read it in some locales."""
-    return re.sub(r"(?<=[0-9]),(?=[0-9])", ".", text)
+wrong = reads_xml("EU-URD-007")
+wrong(
+    "A number may have a comma for its point, as C programs read it in some locales.",
+    lambda text: re.sub(r"(?<=[0-9]),(?=[0-9])", ".", text),
+)
 
 
 # -- Elements and attributes ------------------------------------------------------------------------------------------
@@ -217,16 +207,17 @@ def safety_controllers_limit(robot: Any) -> None:
 # -- Rules too many ---------------------------------------------------------------------------------------------------
 
 
-@refuses("EU-URD-004")
-def continuous_joints_need_limits(data: Any, robot: Any) -> bool:
-    """A continuous joint must have a limit."""
-    return any(joint.get("type") == "continuous" and joint.find("limit") is None for joint in robot.findall("joint"))
-
-
-@refuses("EU-URD-004")
-def links_need_inertia(data: Any, robot: Any) -> bool:
-    """A link must have an inertial element."""
-    return any(link.find("inertial") is None for link in robot.findall("link"))
+wrong = refuses("EU-URD-004")
+wrong(
+    "A continuous joint must have a limit.",
+    lambda data, robot: any(
+        joint.get("type") == "continuous" and joint.find("limit") is None for joint in robot.findall("joint")
+    ),
+)
+wrong(
+    "A link must have an inertial element.",
+    lambda data, robot: any(link.find("inertial") is None for link in robot.findall("link")),
+)
 
 
 @refuses("EU-URD-014")
@@ -241,16 +232,14 @@ def links_must_come_first(data: Any, robot: Any) -> bool:
     return False
 
 
-@refuses("EU-URD-018")
-def first_link_must_be_the_root(data: Any, robot: Any) -> bool:
-    """The first link of the file must be the root."""
-    return robot.find("link").get("name") in {child.get("link") for child in robot.findall("joint/child")}
+wrong = refuses("EU-URD-018")
+wrong(
+    "The first link of the file must be the root.",
+    lambda data, robot: robot.find("link").get("name") in {child.get("link") for child in robot.findall("joint/child")},
+)
 
-
-@refuses("EU-URD-015")
-def one_link_is_too_few(data: Any, robot: Any) -> bool:
-    """A robot must have a joint."""
-    return robot.find("joint") is None
+wrong = refuses("EU-URD-015")
+wrong("A robot must have a joint.", lambda data, robot: robot.find("joint") is None)
 
 
 @refuses("EU-URD-019")
@@ -260,12 +249,13 @@ def equal_limits_are_refused(data: Any, robot: Any) -> bool:
     return any(limit.get("lower") and limit.get("lower") == limit.get("upper") for limit in limits)
 
 
-@refuses("EU-URD-020")
-def limits_of_zero_are_refused(data: Any, robot: Any) -> bool:
-    """Limits of effort and velocity must be greater than 0."""
-    return any(
+wrong = refuses("EU-URD-020")
+wrong(
+    "Limits of effort and velocity must be greater than 0.",
+    lambda data, robot: any(
         float(limit.get(of, "1")) == 0 for limit in robot.findall("joint/limit") for of in ("effort", "velocity")
-    )
+    ),
+)
 
 
 @refuses("EU-URD-022", versions=("2",))
@@ -275,16 +265,12 @@ def chains_of_mimics_are_refused(data: Any, robot: Any) -> bool:
     return any(leader in leaders for leader in leaders.values())
 
 
-@refuses("EU-URD-024")
-def capsules_are_refused(data: Any, robot: Any) -> bool:
-    """A capsule is not a shape, as in urdfdom."""
-    return next(robot.iter("capsule"), None) is not None
-
-
-@refuses("EU-URD-024")
-def mirrored_meshes_are_refused(data: Any, robot: Any) -> bool:
-    """The scale of a mesh must be positive."""
-    return any("-" in mesh.get("scale", "") for mesh in robot.iter("mesh"))
+wrong = refuses("EU-URD-024")
+wrong("A capsule is not a shape, as in urdfdom.", lambda data, robot: next(robot.iter("capsule"), None) is not None)
+wrong(
+    "The scale of a mesh must be positive.",
+    lambda data, robot: any("-" in mesh.get("scale", "") for mesh in robot.iter("mesh")),
+)
 
 
 @refuses("EU-URD-013")
@@ -294,34 +280,30 @@ def short_axes_are_refused(data: Any, robot: Any) -> bool:
     return any(abs(math.hypot(*map(float, axis)) - 1) > 1e-3 for axis in axes)
 
 
-@refuses("EU-URD-013")
-def zero_axes_of_fixed_joints_are_refused(data: Any, robot: Any) -> bool:
-    """The axis of a fixed joint may not be zero, which exporters write."""
-    return any(not any(map(float, axis.get("xyz").split())) for axis in robot.findall("joint[@type='fixed']/axis"))
+wrong = refuses("EU-URD-013")
+wrong(
+    "The axis of a fixed joint may not be zero, which exporters write.",
+    lambda data, robot: any(
+        not any(map(float, axis.get("xyz").split())) for axis in robot.findall("joint[@type='fixed']/axis")
+    ),
+)
 
+wrong = refuses("EU-CNF-002")
+wrong(
+    "An element that URDF does not have is refused, and those of other programs with it.",
+    lambda data, robot: any(element.tag not in ("link", "joint", "material") for element in robot.iterchildren("*")),
+)
+wrong(
+    "A name must be ASCII.",
+    lambda data, robot: any(not element.get("name", "").isascii() for element in robot.iter("link", "joint")),
+)
+wrong(
+    "A name may not have slashes, which are for namespaces of ROS.",
+    lambda data, robot: any("/" in element.get("name", "") for element in robot.iter("link", "joint")),
+)
 
-@refuses("EU-CNF-002")
-def unknown_elements_are_refused(data: Any, robot: Any) -> bool:
-    """An element that URDF does not have is refused, and those of other programs with it."""
-    return any(element.tag not in ("link", "joint", "material") for element in robot.iterchildren("*"))
-
-
-@refuses("EU-CNF-002")
-def names_beyond_ascii_are_refused(data: Any, robot: Any) -> bool:
-    """A name must be ASCII."""
-    return any(not element.get("name", "").isascii() for element in robot.iter("link", "joint"))
-
-
-@refuses("EU-CNF-002")
-def slashes_in_names_are_refused(data: Any, robot: Any) -> bool:
-    """A name may not have slashes, which are for namespaces of ROS."""
-    return any("/" in element.get("name", "") for element in robot.iter("link", "joint"))
-
-
-@refuses("EU-FIL-002")
-def thousand_links_at_most(data: Any, robot: Any) -> bool:
-    """A robot of more than 1000 links is refused."""
-    return len(robot.findall("link")) > 1000
+wrong = refuses("EU-FIL-002")
+wrong("A robot of more than 1000 links is refused.", lambda data, robot: len(robot.findall("link")) > 1000)
 
 
 @reads_urdf("EU-URD-020")
@@ -361,22 +343,17 @@ def only_shapes_in_geometry(robot: Any) -> None:
 # -- One form of several ----------------------------------------------------------------------------------------------
 
 
-@reads_xml("EU-FIL-003")
-def encodings_in_mixed_case_are_refused(text: str) -> str:
-    """The declared encoding is `UTF-8` or `utf-8`, not `Utf-8`."""
-    return re.sub(r"(<\?xml[^>]*encoding=.)(?!UTF-8|utf-8)[Uu][Tt][Ff]-8", r"\1UTF-7", text)
+wrong = reads_xml("EU-FIL-003")
+wrong(
+    "The declared encoding is `UTF-8` or `utf-8`, not `Utf-8`.",
+    lambda text: re.sub(r"(<\?xml[^>]*encoding=.)(?!UTF-8|utf-8)[Uu][Tt][Ff]-8", r"\1UTF-7", text),
+)
+wrong("The declared encoding may be `UTF8`.", lambda text: re.sub(r"(<\?xml[^>]*encoding=.)UTF8", r"\1UTF-8", text))
 
-
-@reads_xml("EU-FIL-003")
-def encodings_without_hyphen(text: str) -> str:
-    """The declared encoding may be `UTF8`."""
-    return re.sub(r"(<\?xml[^>]*encoding=.)UTF8", r"\1UTF-8", text)
-
-
-@reads_xml("EU-URD-001")
-def only_xml_1_0_is_read(text: str) -> str:
-    """A file that declares XML 1.1 is refused."""
-    return re.sub(r"(<\?xml\s+version=.)1\.[1-9]", r"\g<1>2.0", text)
+wrong = reads_xml("EU-URD-001")
+wrong(
+    "A file that declares XML 1.1 is refused.", lambda text: re.sub(r"(<\?xml\s+version=.)1\.[1-9]", r"\g<1>2.0", text)
+)
 
 
 @reads_urdf("EU-URD-004")
@@ -402,10 +379,13 @@ def names_of_materials_are_unique(data: Any, robot: Any) -> bool:
     return len(names) > len(set(names))
 
 
-@refuses("EU-URD-007")
-def points_need_digits_after_them(data: Any, robot: Any) -> bool:
-    """A number does not end with its point."""
-    return any(re.search(r"[0-9]\.( |$)", text) for axis in robot.iter("axis", "origin") for text in axis.values())
+wrong = refuses("EU-URD-007")
+wrong(
+    "A number does not end with its point.",
+    lambda data, robot: any(
+        re.search(r"[0-9]\.( |$)", text) for axis in robot.iter("axis", "origin") for text in axis.values()
+    ),
+)
 
 
 @reads_urdf("EU-URD-020")
@@ -435,10 +415,11 @@ def axes_are_snapped(robot: Any) -> None:
             axis.set("xyz", " ".join(str(number if abs(number) >= least else 0.0) for number in numbers))
 
 
-@refuses("EU-URD-011")
-def universe_in_any_case_is_reserved(data: Any, robot: Any) -> bool:
-    """`Universe` is reserved too."""
-    return any(name.lower() == "universe" for name in robot.xpath("(link|joint)/@name"))
+wrong = refuses("EU-URD-011")
+wrong(
+    "`Universe` is reserved too.",
+    lambda data, robot: any(name.lower() == "universe" for name in robot.xpath("(link|joint)/@name")),
+)
 
 
 # -- Versions of URDF -------------------------------------------------------------------------------------------------
@@ -484,10 +465,11 @@ def quaternions_have_an_effect_in_every_version(robot: Any) -> None:
         robot.set("version", "1.1")
 
 
-@refuses("EU-URD-005")
-def limits_of_every_version_need_an_effort(data: Any, robot: Any) -> bool:
-    """A limit must have an effort in version 1.2 too."""
-    return any("effort" not in limit.attrib for limit in robot.iterfind("joint/limit"))
+wrong = refuses("EU-URD-005")
+wrong(
+    "A limit must have an effort in version 1.2 too.",
+    lambda data, robot: any("effort" not in limit.attrib for limit in robot.iterfind("joint/limit")),
+)
 
 
 @reads_urdf("EU-URD-005")

@@ -24,46 +24,33 @@ def _pyyaml(text: str) -> str | None:
         return None
 
 
-@reads_yaml("EU-YML-011")
-def yaml_as_pyyaml_reads_it(text: str) -> str | None:
-    """The description is read by PyYAML's `safe_load`, which is YAML 1.1."""
-    return _pyyaml(text)
+wrong = reads_yaml("EU-YML-011")
+wrong("The description is read by PyYAML's `safe_load`, which is YAML 1.1.", lambda text: _pyyaml(text))
 
+wrong = reads_yaml("EU-YML-004")
+wrong("Of two equal keys the last counts, as in PyYAML.", lambda text: _pyyaml(text))
 
-@reads_yaml("EU-YML-004")
-def last_of_two_equal_keys_counts(text: str) -> str | None:
-    """Of two equal keys the last counts, as in PyYAML."""
-    return _pyyaml(text)
+wrong = reads_yaml("EU-YML-001")
+wrong(
+    "The escapes of a surrogate pair are one character, as in JSON.",
+    lambda text: re.sub(r"\\u[Dd][89ABab][0-9A-Fa-f]{2}\\u[Dd][C-Fc-f][0-9A-Fa-f]{2}", "joined", text),
+)
+wrong(
+    "Of two %YAML directives of one document the last counts.",
+    lambda text: text.replace("%YAML 1.2\n%YAML 1.2\n", "%YAML 1.2\n"),
+)
 
+wrong = reads_yaml("EU-YML-003")
+wrong("What follows the line `...` is not read.", lambda text: re.split(r"(?m)^\.\.\.$", text)[0])
 
-@reads_yaml("EU-YML-001")
-def escapes_of_surrogate_pairs_are_joined(text: str) -> str:
-    """The escapes of a surrogate pair are one character, as in JSON."""
-    return re.sub(r"\\u[Dd][89ABab][0-9A-Fa-f]{2}\\u[Dd][C-Fc-f][0-9A-Fa-f]{2}", "joined", text)
+wrong = reads_yaml("EU-YML-010")
+wrong("A %YAML directive has no effect, whatever version it names.", lambda text: re.sub(r"(?m)^%YAML.*$", "", text))
 
-
-@reads_yaml("EU-YML-001")
-def last_of_two_directives_counts(text: str) -> str:
-    """Of two %YAML directives of one document the last counts."""
-    return text.replace("%YAML 1.2\n%YAML 1.2\n", "%YAML 1.2\n")
-
-
-@reads_yaml("EU-YML-003")
-def what_follows_the_end_is_ignored(text: str) -> str:
-    """What follows the line `...` is not read."""
-    return re.split(r"(?m)^\.\.\.$", text)[0]
-
-
-@reads_yaml("EU-YML-010")
-def yaml_directives_are_ignored(text: str) -> str:
-    """A %YAML directive has no effect, whatever version it names."""
-    return re.sub(r"(?m)^%YAML.*$", "", text)
-
-
-@reads_yaml("EU-YML-003")
-def first_document_counts(text: str) -> str:
-    """Of several documents the first counts."""
-    return re.split(r"(?m)^(?:---|\.\.\.)$", text.removeprefix("---\n"))[0]
+wrong = reads_yaml("EU-YML-003")
+wrong(
+    "Of several documents the first counts.",
+    lambda text: re.split(r"(?m)^(?:---|\.\.\.)$", text.removeprefix("---\n"))[0],
+)
 
 
 @reads_description("EU-EXT-001")
@@ -98,68 +85,42 @@ def booleans_of_yaml_1_1() -> Deviation:
     return _words(dict.fromkeys(yes, True) | dict.fromkeys(no, False))
 
 
-@means("EU-YML-011")
-def octals_of_yaml_1_1() -> Deviation:
-    """A number that begins with 0 is octal, as in YAML 1.1 and C."""
-    return _pattern("[-+]?0[0-7]+", lambda text: int(text, 8))
-
-
-@means("EU-YML-011")
-def octals_of_yaml_1_2_are_text() -> Deviation:
-    """A number that begins with 0o is text, as in YAML 1.1."""
-    return _pattern("0o[0-7]+", str)
-
-
-@means("EU-YML-011")
-def times_are_sexagesimal() -> Deviation:
-    """12:30 is a number to the base 60, as in YAML 1.1."""
-    return _pattern(
+wrong = means("EU-YML-011")
+wrong(
+    "A number that begins with 0 is octal, as in YAML 1.1 and C.",
+    lambda: _pattern("[-+]?0[0-7]+", lambda text: int(text, 8)),
+)
+wrong("A number that begins with 0o is text, as in YAML 1.1.", lambda: _pattern("0o[0-7]+", str))
+wrong(
+    "12:30 is a number to the base 60, as in YAML 1.1.",
+    lambda: _pattern(
         "[0-9]+(:[0-5]?[0-9])+", lambda text: sum(int(n) * 60**i for i, n in enumerate(text.split(":")[::-1]))
-    )
-
-
-@means("EU-YML-011")
-def numbers_may_have_underscores() -> Deviation:
-    """1_000 is a number, as in YAML 1.1."""
-    return _pattern("[0-9]+(_[0-9]+)+", int)
-
-
-@means("EU-YML-011")
-def exponents_need_a_point() -> Deviation:
-    """1e-3 is text, as in PyYAML."""
-    return _pattern(r"[-+]?([0-9]+[eE][-+]?[0-9]+|[0-9.]+[eE][0-9]+)", str)
-
-
-@means("EU-YML-011")
-def dates_are_dates() -> Deviation:
-    """2024-01-31 is a date, as in YAML 1.1."""
-    return _pattern("[0-9]{4}-[0-9]{2}-[0-9]{2}", lambda text: {"date": datetime.date.fromisoformat(text).day})
-
-
-@means("EU-YML-011")
-def words_in_any_case() -> Deviation:
-    """nULL and tRUE are null and true."""
-    return instead(yaml_text, "plain", lambda plain, text: plain(text.lower() if text.isalpha() else text))
-
-
-@means("EU-YML-011")
-def numbers_as_in_json() -> Deviation:
-    """A number that JSON does not allow, such as .5 or +2, is text."""
-    return _pattern(r"\+.*|[-+]?\.[0-9].*|[-+]?[0-9]+\.", str)
-
-
-@means("EU-YML-011")
-def quotes_have_no_effect() -> Deviation:
-    """A quoted scalar is resolved as if it were plain."""
-    return instead(
+    ),
+)
+wrong("1_000 is a number, as in YAML 1.1.", lambda: _pattern("[0-9]+(_[0-9]+)+", int))
+wrong("1e-3 is text, as in PyYAML.", lambda: _pattern(r"[-+]?([0-9]+[eE][-+]?[0-9]+|[0-9.]+[eE][0-9]+)", str))
+wrong(
+    "2024-01-31 is a date, as in YAML 1.1.",
+    lambda: _pattern("[0-9]{4}-[0-9]{2}-[0-9]{2}", lambda text: {"date": datetime.date.fromisoformat(text).day}),
+)
+wrong(
+    "nULL and tRUE are null and true.",
+    lambda: instead(yaml_text, "plain", lambda plain, text: plain(text.lower() if text.isalpha() else text)),
+)
+wrong(
+    "A number that JSON does not allow, such as .5 or +2, is text.",
+    lambda: _pattern(r"\+.*|[-+]?\.[0-9].*|[-+]?[0-9]+\.", str),
+)
+wrong(
+    "A quoted scalar is resolved as if it were plain.",
+    lambda: instead(
         yaml_text, "scalar", lambda scalar, event: scalar(event) if event.tag else yaml_text.plain(event.value)
-    )
-
-
-@means("EU-YML-011")
-def empty_quotes_are_null() -> Deviation:
-    """A quoted text without characters is null."""
-    return instead(yaml_text, "scalar", lambda scalar, event: scalar(event) if event.value else None)
+    ),
+)
+wrong(
+    "A quoted text without characters is null.",
+    lambda: instead(yaml_text, "scalar", lambda scalar, event: scalar(event) if event.value else None),
+)
 
 
 @means("EU-YML-011")
@@ -173,10 +134,13 @@ def blocks_end_without_a_line_break() -> Deviation:
     return instead(yaml_text, "scalar", scalar)
 
 
-@answers("EU-SEC-001")
-def tags_of_python_are_accepted(right: Answer, description: Path, urdf: Path) -> Answer:
-    """A node with a tag such as !!python/object is accepted."""
-    return accepted() if {issue.code for issue in right.issues} == {"yaml-unknown-tag"} else right
+wrong = answers("EU-SEC-001")
+wrong(
+    "A node with a tag such as !!python/object is accepted.",
+    lambda right, description, urdf: (
+        accepted() if {issue.code for issue in right.issues} == {"yaml-unknown-tag"} else right
+    ),
+)
 
 
 def _rejects_text(where: Callable[[str], Any], right: Answer, description: Path) -> Answer:
@@ -185,28 +149,33 @@ def _rejects_text(where: Callable[[str], Any], right: Answer, description: Path)
     return right
 
 
-@answers("EU-FIL-003")
-def byte_order_marks_are_refused(right: Answer, description: Path, urdf: Path) -> Answer:
-    """A description that begins with a byte order mark is rejected."""
-    return _rejects_text(lambda text: text.startswith("\ufeff"), right, description)
+wrong = answers("EU-FIL-003")
+wrong(
+    "A description that begins with a byte order mark is rejected.",
+    lambda right, description, urdf: _rejects_text(lambda text: text.startswith("\ufeff"), right, description),
+)
 
+wrong = answers("EU-YML-001")
+wrong(
+    "A description with a tab is rejected, wherever it is.",
+    lambda right, description, urdf: _rejects_text(lambda text: "\t" in text, right, description),
+)
 
-@answers("EU-YML-001")
-def tabs_are_refused(right: Answer, description: Path, urdf: Path) -> Answer:
-    """A description with a tab is rejected, wherever it is."""
-    return _rejects_text(lambda text: "\t" in text, right, description)
+wrong = answers("EU-YML-005")
+wrong(
+    "A description with a tag of the core schema is rejected.",
+    lambda right, description, urdf: _rejects_text(
+        lambda text: re.search(r"!!(str|int|float|map|seq|bool|null)", text), right, description
+    ),
+)
 
-
-@answers("EU-YML-005")
-def core_tags_are_refused(right: Answer, description: Path, urdf: Path) -> Answer:
-    """A description with a tag of the core schema is rejected."""
-    return _rejects_text(lambda text: re.search(r"!!(str|int|float|map|seq|bool|null)", text), right, description)
-
-
-@answers("EU-YML-006")
-def aliases_are_refused(right: Answer, description: Path, urdf: Path) -> Answer:
-    """A description with an alias is rejected."""
-    return _rejects_text(lambda text: re.search(r"(?m)[ \[{,]\*[A-Za-z0-9]", text), right, description)
+wrong = answers("EU-YML-006")
+wrong(
+    "A description with an alias is rejected.",
+    lambda right, description, urdf: _rejects_text(
+        lambda text: re.search(r"(?m)[ \[{,]\*[A-Za-z0-9]", text), right, description
+    ),
+)
 
 
 def _depth(value: Any) -> int:
@@ -215,10 +184,13 @@ def _depth(value: Any) -> int:
     return 1 + max(map(_depth, value.values() if isinstance(value, dict) else value), default=0)
 
 
-@answers("EU-YML-007")
-def depth_of_63(right: Answer, description: Path, urdf: Path) -> Answer:
-    """Mappings and lists may be nested 63 deep, not 64."""
-    return _rejects_text(lambda text: _depth(yaml_text.value_of(text.removeprefix("\ufeff"))) > 63, right, description)
+wrong = answers("EU-YML-007")
+wrong(
+    "Mappings and lists may be nested 63 deep, not 64.",
+    lambda right, description, urdf: _rejects_text(
+        lambda text: _depth(yaml_text.value_of(text.removeprefix("\ufeff"))) > 63, right, description
+    ),
+)
 
 
 @answers("EU-YML-007")
@@ -244,34 +216,19 @@ def numbers_of_single_precision(right: Answer, description: Path, urdf: Path) ->
     return _rejects_text(lambda text: large(yaml_text.value_of(text.removeprefix("\ufeff"))), right, description)
 
 
-@reads_yaml("EU-YML-009")
-def infinities_with_a_plus_are_text(text: str) -> str:
-    """`+.inf` is text, as if only the sign - were allowed."""
-    return re.sub(r"\+\.(inf|Inf|INF)\b", '"inf"', text)
+wrong = reads_yaml("EU-YML-009")
+wrong(
+    "`+.inf` is text, as if only the sign - were allowed.", lambda text: re.sub(r"\+\.(inf|Inf|INF)\b", '"inf"', text)
+)
+wrong("`.NAN` is text; only `.nan` and `.NaN` are no number.", lambda text: re.sub(r"(?<=[ ,])\.NAN\b", '"nan"', text))
 
-
-@reads_yaml("EU-YML-009")
-def nan_in_capitals_is_text(text: str) -> str:
-    """`.NAN` is text; only `.nan` and `.NaN` are no number."""
-    return re.sub(r"(?<=[ ,])\.NAN\b", '"nan"', text)
-
-
-@reads_yaml("EU-YML-008")
-def tags_of_keys_have_no_effect(text: str) -> str:
-    """The tag of a key is not read: `!!str 12` is a number."""
-    return re.sub(r"!(!str)? (?=[\w.]+:)", "", text)
-
-
-@reads_yaml("EU-YML-008")
-def hexadecimal_keys_are_text(text: str) -> str:
-    """A hexadecimal number as a key is its text."""
-    return re.sub(r"(?<=[{ ,])(0x[0-9A-F]+)(?=:)", r'"\1"', text)
-
-
-@reads_yaml("EU-YML-008")
-def keys_with_a_point_are_text(text: str) -> str:
-    """A number with a point as a key is its text, as a JSON object has it."""
-    return re.sub(r"(?<=[{ ,])([0-9]+\.[0-9]+)(?=:)", r'"\1"', text)
+wrong = reads_yaml("EU-YML-008")
+wrong("The tag of a key is not read: `!!str 12` is a number.", lambda text: re.sub(r"!(!str)? (?=[\w.]+:)", "", text))
+wrong("A hexadecimal number as a key is its text.", lambda text: re.sub(r"(?<=[{ ,])(0x[0-9A-F]+)(?=:)", r'"\1"', text))
+wrong(
+    "A number with a point as a key is its text, as a JSON object has it.",
+    lambda text: re.sub(r"(?<=[{ ,])([0-9]+\.[0-9]+)(?=:)", r'"\1"', text),
+)
 
 
 @answers("EU-YML-007")
@@ -281,10 +238,11 @@ def aliases_in_aliases_are_no_deeper(right: Answer, description: Path, urdf: Pat
     return accepted() if is_nested and {issue.code for issue in right.issues} == {"yaml-too-deep"} else right
 
 
-@answers("EU-YML-009")
-def zeros_in_front_are_digits(right: Answer, description: Path, urdf: Path) -> Answer:
-    """A number with more than 309 digits is beyond a double, also if they are zeros."""
-    return _rejects_text(lambda text: re.search("0{310}", text), right, description)
+wrong = answers("EU-YML-009")
+wrong(
+    "A number with more than 309 digits is beyond a double, also if they are zeros.",
+    lambda right, description, urdf: _rejects_text(lambda text: re.search("0{310}", text), right, description),
+)
 
 
 @answers("EU-YML-004")

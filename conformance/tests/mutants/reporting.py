@@ -23,46 +23,26 @@ def _each(found: list[Issue], change: Callable[[Issue], Members]) -> list[Issue]
 # -- Codes and severities -------------------------------------------------------------------------------------------
 
 
-@reports("EU-DIA-001")
-def one_code_for_all(found: list[Issue], *files: Path) -> list[Issue]:
-    """Whatever is wrong has one code."""
-    return _each(found, lambda issue: {"code": "wrong-value"})
+wrong = reports("EU-DIA-001")
+wrong("Whatever is wrong has one code.", lambda found, *files: _each(found, lambda issue: {"code": "wrong-value"}))
+wrong("What is wrong has no code, only a sentence.", lambda found, *files: _each(found, lambda issue: {"code": None}))
+wrong("What is wrong is reported twice.", lambda found, *files: [*found, *found])
 
+wrong = reports("EU-DIA-002")
+wrong(
+    "Beside an error it is reported that no configuration closes the loops.",
+    lambda found, *files: [*found, *(_each(found[:1], lambda issue: {"code": "closure-cannot-close"}))],
+)
 
-@reports("EU-DIA-001")
-def no_codes(found: list[Issue], *files: Path) -> list[Issue]:
-    """What is wrong has no code, only a sentence."""
-    return _each(found, lambda issue: {"code": None})
+wrong = reports("EU-DIA-004")
+wrong("Whatever is reported is an error.", lambda found, *files: _each(found, lambda issue: {"severity": "error"}))
+wrong("Whatever is reported is a warning.", lambda found, *files: _each(found, lambda issue: {"severity": "warning"}))
 
-
-@reports("EU-DIA-001")
-def errors_are_reported_twice(found: list[Issue], *files: Path) -> list[Issue]:
-    """What is wrong is reported twice."""
-    return [*found, *found]
-
-
-@reports("EU-DIA-002")
-def what_follows_is_reported(found: list[Issue], *files: Path) -> list[Issue]:
-    """Beside an error it is reported that no configuration closes the loops."""
-    return [*found, *(_each(found[:1], lambda issue: {"code": "closure-cannot-close"}))]
-
-
-@reports("EU-DIA-004")
-def warnings_are_errors(found: list[Issue], *files: Path) -> list[Issue]:
-    """Whatever is reported is an error."""
-    return _each(found, lambda issue: {"severity": "error"})
-
-
-@reports("EU-DIA-004")
-def errors_are_warnings(found: list[Issue], *files: Path) -> list[Issue]:
-    """Whatever is reported is a warning."""
-    return _each(found, lambda issue: {"severity": "warning"})
-
-
-@reports("EU-DIA-005")
-def codes_of_its_own(found: list[Issue], *files: Path) -> list[Issue]:
-    """Codes are the parser's own, and do not begin with x-."""
-    return _each(found, lambda issue: {"code": f"{issue.code}-error"})
+wrong = reports("EU-DIA-005")
+wrong(
+    "Codes are the parser's own, and do not begin with x-.",
+    lambda found, *files: _each(found, lambda issue: {"code": f"{issue.code}-error"}),
+)
 
 
 @reports("EU-CNF-003")
@@ -86,16 +66,17 @@ def _searching(name: str, less: Any, found: list[Issue], files: tuple[Path, ...]
     return [] if closes else [error]
 
 
-@reports("EU-CLO-016")
-def search_ends_after_one_step(found: list[Issue], *files: Path) -> list[Issue]:
-    """Loops that one step from each start does not close are reported."""
-    return _searching("STEPS", 1, found, files)
+wrong = reports("EU-CLO-016")
+wrong(
+    "Loops that one step from each start does not close are reported.",
+    lambda found, *files: _searching("STEPS", 1, found, files),
+)
 
-
-@reports("EU-CLO-016", versions=("2.1",))
-def search_starts_at_neutral_alone(found: list[Issue], *files: Path) -> list[Issue]:
-    """Loops that are not closed from the neutral configuration are reported."""
-    return _searching("ASIDE", (), found, files)
+wrong = reports("EU-CLO-016", versions=("2.1",))
+wrong(
+    "Loops that are not closed from the neutral configuration are reported.",
+    lambda found, *files: _searching("ASIDE", (), found, files),
+)
 
 
 @reports("EU-INR-002")
@@ -110,46 +91,38 @@ def diagonals_alone_are_checked(found: list[Issue], *files: Path) -> list[Issue]
 # -- Places ---------------------------------------------------------------------------------------------------------
 
 
-@reports("EU-DIA-009")
-def no_columns(found: list[Issue], *files: Path) -> list[Issue]:
-    """Only the line is reported."""
-    return _each(found, lambda issue: {"column": None})
+wrong = reports("EU-DIA-009")
+wrong("Only the line is reported.", lambda found, *files: _each(found, lambda issue: {"column": None}))
+wrong(
+    "The file is reported with the folder that it is in.",
+    lambda found, *files: _each(found, lambda issue: {"file": f"case/{issue.file}"}),
+)
+wrong(
+    "What is wrong with the URDF is reported in the description.",
+    lambda found, *files: _each(found, lambda issue: {"file": files[0].name}),
+)
+wrong(
+    "The column is that of the first character on the line that is not a blank.",
+    lambda found, *files: _moved(found, files, lambda line, before, after: (line, len(before) - len(before.lstrip()))),
+)
 
+wrong = reports("EU-DIA-010")
+wrong(
+    "What is wrong with a file as a whole is reported at its first character.",
+    lambda found, *files: _each(found, lambda issue: {"line": issue.line or 1, "column": issue.column or 1}),
+)
 
-@reports("EU-DIA-009")
-def files_with_their_folder(found: list[Issue], *files: Path) -> list[Issue]:
-    """The file is reported with the folder that it is in."""
-    return _each(found, lambda issue: {"file": f"case/{issue.file}"})
+wrong = reports("EU-DIA-011")
+wrong(
+    "Lines are counted from 0.",
+    lambda found, *files: _each(found, lambda issue: {"line": None if issue.line is None else issue.line - 1}),
+)
 
-
-@reports("EU-DIA-009")
-def errors_are_in_the_description(found: list[Issue], *files: Path) -> list[Issue]:
-    """What is wrong with the URDF is reported in the description."""
-    return _each(found, lambda issue: {"file": files[0].name})
-
-
-@reports("EU-DIA-009")
-def columns_of_the_first_character(found: list[Issue], *files: Path) -> list[Issue]:
-    """The column is that of the first character on the line that is not a blank."""
-    return _moved(found, files, lambda line, before, after: (line, len(before) - len(before.lstrip())))
-
-
-@reports("EU-DIA-010")
-def files_begin_at_line_1(found: list[Issue], *files: Path) -> list[Issue]:
-    """What is wrong with a file as a whole is reported at its first character."""
-    return _each(found, lambda issue: {"line": issue.line or 1, "column": issue.column or 1})
-
-
-@reports("EU-DIA-011")
-def lines_from_0(found: list[Issue], *files: Path) -> list[Issue]:
-    """Lines are counted from 0."""
-    return _each(found, lambda issue: {"line": None if issue.line is None else issue.line - 1})
-
-
-@reports("EU-DIA-012")
-def columns_from_0(found: list[Issue], *files: Path) -> list[Issue]:
-    """Columns are counted from 0."""
-    return _each(found, lambda issue: {"column": None if issue.column is None else issue.column - 1})
+wrong = reports("EU-DIA-012")
+wrong(
+    "Columns are counted from 0.",
+    lambda found, *files: _each(found, lambda issue: {"column": None if issue.column is None else issue.column - 1}),
+)
 
 
 def _moved(
@@ -169,22 +142,21 @@ def _moved(
     return _each(found, moved)
 
 
-@reports("EU-DIA-012")
-def columns_in_bytes(found: list[Issue], *files: Path) -> list[Issue]:
-    """Columns count bytes of UTF-8."""
-    return _moved(found, files, lambda line, before, after: (line, len(before.encode())))
-
-
-@reports("EU-DIA-012")
-def columns_in_utf_16(found: list[Issue], *files: Path) -> list[Issue]:
-    """Columns count code units of UTF-16, as in JavaScript, C# and Java."""
-    return _moved(found, files, lambda line, before, after: (line, len(before.encode("utf-16-le")) // 2))
-
-
-@reports("EU-DIA-012")
-def tabs_of_8(found: list[Issue], *files: Path) -> list[Issue]:
-    """A tab counts up to the next multiple of 8."""
-    return _moved(found, files, lambda line, before, after: (line, len(before.expandtabs(8))))
+wrong = reports("EU-DIA-012")
+wrong(
+    "Columns count bytes of UTF-8.",
+    lambda found, *files: _moved(found, files, lambda line, before, after: (line, len(before.encode()))),
+)
+wrong(
+    "Columns count code units of UTF-16, as in JavaScript, C# and Java.",
+    lambda found, *files: _moved(
+        found, files, lambda line, before, after: (line, len(before.encode("utf-16-le")) // 2)
+    ),
+)
+wrong(
+    "A tab counts up to the next multiple of 8.",
+    lambda found, *files: _moved(found, files, lambda line, before, after: (line, len(before.expandtabs(8)))),
+)
 
 
 def _by_lines(found: list[Issue], files: tuple[Path, ...], ends: str) -> list[Issue]:
@@ -202,28 +174,19 @@ def _by_lines(found: list[Issue], files: tuple[Path, ...], ends: str) -> list[Is
     return _each(found, moved)
 
 
-@reports("EU-DIA-011")
-def carriage_returns_end_no_line(found: list[Issue], *files: Path) -> list[Issue]:
-    """A carriage return alone ends no line."""
-    return _by_lines(found, files, "\n")
+wrong = reports("EU-DIA-011")
+wrong("A carriage return alone ends no line.", lambda found, *files: _by_lines(found, files, "\n"))
+wrong("A carriage return and a line feed end one line each.", lambda found, *files: _by_lines(found, files, "[\r\n]"))
+wrong(
+    "A line also ends at the separators of Unicode, as in str.splitlines.",
+    lambda found, *files: _by_lines(found, files, "\r\n|[\n\r\v\f\x1c-\x1e\x85\u2028\u2029]"),
+)
 
-
-@reports("EU-DIA-011")
-def carriage_return_and_line_feed_are_two_lines(found: list[Issue], *files: Path) -> list[Issue]:
-    """A carriage return and a line feed end one line each."""
-    return _by_lines(found, files, "[\r\n]")
-
-
-@reports("EU-DIA-011")
-def lines_of_unicode(found: list[Issue], *files: Path) -> list[Issue]:
-    """A line also ends at the separators of Unicode, as in str.splitlines."""
-    return _by_lines(found, files, "\r\n|[\n\r\v\f\x1c-\x1e\x85\u2028\u2029]")
-
-
-@reports("EU-URD-007", level=Level.DIAGNOSE)
-def values_in_single_quotes_begin_one_later(found: list[Issue], *files: Path) -> list[Issue]:
-    """The value of an attribute in single quotes begins after its first character."""
-    return _moved(found, files, lambda line, before, after: (line, len(before) + before.endswith("'")))
+wrong = reports("EU-URD-007", level=Level.DIAGNOSE)
+wrong(
+    "The value of an attribute in single quotes begins after its first character.",
+    lambda found, *files: _moved(found, files, lambda line, before, after: (line, len(before) + before.endswith("'"))),
+)
 
 
 @reports("EU-URD-007", level=Level.DIAGNOSE)

@@ -18,40 +18,24 @@ def _of_child_links(robot: CanonicalRobot, types: Sequence[str]) -> set[str]:
     return {joint.child for joint in robot.joints if joint.type in types}
 
 
-@describes("EU-CAN-006")
-def shapes_are_left_out(robot: CanonicalRobot) -> Members:
-    """No shape is read."""
-    return {"shapes": []}
-
-
-@describes("EU-CAN-006")
-def collision_shapes_are_left_out(robot: CanonicalRobot) -> Members:
-    """Only visual shapes are read."""
-    return {"shapes": [shape for shape in robot.shapes if shape.use == "visual"]}
-
-
-@describes("EU-CAN-006")
-def only_the_first_shape_of_a_link_is_read(robot: CanonicalRobot) -> Members:
-    """A link has at most one visual and one collision shape."""
-    return {"shapes": list({(shape.link, shape.use): shape for shape in reversed(robot.shapes)}.values())}
-
-
-@describes("EU-CAN-006")
-def visual_and_collision_are_swapped(robot: CanonicalRobot) -> Members:
-    """Visual shapes are for collisions, and the other way round."""
-    return _each(robot, lambda shape: {"use": "collision" if shape.use == "visual" else "visual"})
-
-
-@describes("EU-CAN-006")
-def shapes_are_at_their_link(robot: CanonicalRobot) -> Members:
-    """The origin of a shape is ignored."""
-    return _each(robot, lambda shape: {"pose": _HERE})
-
-
-@describes("EU-CAN-006")
-def shapes_are_not_turned(robot: CanonicalRobot) -> Members:
-    """The orientation of a shape is ignored."""
-    return _each(robot, lambda shape: {"pose": shape.pose.model_copy(update={"rotation": _HERE.rotation})})
+wrong = describes("EU-CAN-006")
+wrong("No shape is read.", lambda robot: {"shapes": []})
+wrong(
+    "Only visual shapes are read.", lambda robot: {"shapes": [shape for shape in robot.shapes if shape.use == "visual"]}
+)
+wrong(
+    "A link has at most one visual and one collision shape.",
+    lambda robot: {"shapes": list({(shape.link, shape.use): shape for shape in reversed(robot.shapes)}.values())},
+)
+wrong(
+    "Visual shapes are for collisions, and the other way round.",
+    lambda robot: _each(robot, lambda shape: {"use": "collision" if shape.use == "visual" else "visual"}),
+)
+wrong("The origin of a shape is ignored.", lambda robot: _each(robot, lambda shape: {"pose": _HERE}))
+wrong(
+    "The orientation of a shape is ignored.",
+    lambda robot: _each(robot, lambda shape: {"pose": shape.pose.model_copy(update={"rotation": _HERE.rotation})}),
+)
 
 
 @describes("EU-CAN-006", versions=("1",))
@@ -68,13 +52,14 @@ def shapes_on_spherical_joints_are_moved(robot: CanonicalRobot) -> Members:
     return _each(robot, lambda shape: {"pose": _HERE} if shape.link in moved else {})
 
 
-@describes("EU-CAN-006")
-def lengths_of_cylinders_are_halved(robot: CanonicalRobot) -> Members:
-    """The length of a cylinder is taken for twice its half."""
-    return _each(robot, lambda shape: {"size": [shape.size[0], shape.size[1] / 2]} if shape.type == "cylinder" else {})
-
-
-@describes("EU-CAN-006")
-def meshes_are_not_scaled(robot: CanonicalRobot) -> Members:
-    """The scale of a mesh is ignored."""
-    return _each(robot, lambda shape: {"size": [1.0, 1.0, 1.0]} if shape.type == "mesh" else {})
+wrong = describes("EU-CAN-006")
+wrong(
+    "The length of a cylinder is taken for twice its half.",
+    lambda robot: _each(
+        robot, lambda shape: {"size": [shape.size[0], shape.size[1] / 2]} if shape.type == "cylinder" else {}
+    ),
+)
+wrong(
+    "The scale of a mesh is ignored.",
+    lambda robot: _each(robot, lambda shape: {"size": [1.0, 1.0, 1.0]} if shape.type == "mesh" else {}),
+)
