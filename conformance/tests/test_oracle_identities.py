@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 import numpy as np
@@ -12,12 +11,16 @@ from hypothesis import strategies as st
 
 from eurdf_conformance.comparison.canonical import canonical_differences
 from eurdf_conformance.oracle import OracleRobot
+from eurdf_conformance.oracle.description import Description
 from eurdf_conformance.oracle.integration import integrate
 from eurdf_conformance.oracle.joint_kind import KINDS
 from eurdf_conformance.oracle.logarithm import log3, log6, log6_derivative
 from eurdf_conformance.oracle.spatial import Array, from_quaternion, pose, rotation, skew, unit
 from eurdf_conformance.oracle.transform import motion, transform
-from random_files import mechanisms
+from eurdf_conformance.oracle.tree import build
+from eurdf_conformance.properties.mechanism import Mechanism
+from eurdf_conformance.properties.strategies.mechanisms import mechanisms
+from eurdf_conformance.properties.truth import truth
 from written import chain, joint, link, robot, two
 
 T = 1e-5
@@ -29,20 +32,21 @@ def differentiated(function: Any) -> Any:
     return (8.0 * one - two) / (12.0 * T)
 
 
-def placed(drawn: tuple[str, dict[str, Any], int]) -> tuple[OracleRobot, dict[str, list[float]], Array]:
-    """A random robot at a random configuration, with a random velocity."""
-    urdf, description, seed = drawn
-    elements = urdf.removeprefix('<robot name="random">').removesuffix("</robot>")
-    found = robot([elements], json.dumps(description))
+def placed(found: OracleRobot, seed: int) -> tuple[dict[str, list[float]], Array]:
+    """A random configuration, and a random velocity."""
     random = np.random.default_rng(seed)
     nv = len(found.velocities)
-    return found, found.moved({}, random.normal(size=nv)), random.normal(size=nv)
+    return found.moved({}, random.normal(size=nv)), random.normal(size=nv)
+
+
+ROBOTS = mechanisms("1", 1).map(lambda found: truth(found, "1")) | mechanisms("2", 1).map(truth)
+SEEDS = st.integers(0, 2**32 - 1)
 
 
 @settings(max_examples=60, deadline=None, derandomize=True)
-@given(mechanisms("1") | mechanisms("2"))
-def test_k_is_the_derivative_of_the_residual_along_every_velocity(drawn: Any) -> None:
-    found, q, v = placed(drawn)
+@given(ROBOTS, SEEDS)
+def test_k_is_the_derivative_of_the_residual_along_every_velocity(found: OracleRobot, seed: int) -> None:
+    q, v = placed(found, seed)
     r = found.residual(q)
     turns = [float(np.linalg.norm(rows[3:])) for rows in found.residuals(q).values()]
     if any(turn > 3.1 for turn in turns):
@@ -52,9 +56,9 @@ def test_k_is_the_derivative_of_the_residual_along_every_velocity(drawn: Any) ->
 
 
 @settings(max_examples=60, deadline=None, derandomize=True)
-@given(mechanisms("1") | mechanisms("2"))
-def test_m_is_symmetric_and_gives_the_kinetic_energy(drawn: Any) -> None:
-    found, q, v = placed(drawn)
+@given(ROBOTS, SEEDS)
+def test_m_is_symmetric_and_gives_the_kinetic_energy(found: OracleRobot, seed: int) -> None:
+    q, v = placed(found, seed)
     M = found.mass_matrix(q) - np.diag(found.armature)
     np.testing.assert_allclose(M, M.T, atol=1e-12 * np.max(np.abs(M), initial=0.0))
     links = list(found.tree.links)
@@ -77,10 +81,9 @@ def test_m_is_symmetric_and_gives_the_kinetic_energy(drawn: Any) -> None:
 
 @settings(max_examples=40, deadline=None, derandomize=True)
 @given(mechanisms("2"))
-def test_merging_and_locking_preserve_mass_and_neutral_poses(drawn: Any) -> None:
-    urdf, description, seed = drawn
-    found, _, _ = placed(drawn)
-    plain, _, _ = placed((urdf, description | {"joints": {}, "actuators": []}, seed))
+def test_merging_and_locking_preserve_mass_and_neutral_poses(mechanism: Mechanism) -> None:
+    found = truth(mechanism)
+    plain = OracleRobot(found.urdf, Description(), build(found.urdf, Description()))
     frames = list(plain.tree.links)
     one, other = (each.evaluate({}, frames, ["poses", "mass", "center_of_mass"]) for each in (found, plain))
     assert one.mass == pytest.approx(other.mass, rel=1e-12)

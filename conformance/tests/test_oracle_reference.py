@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, get_args
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import HealthCheck, Phase, given, settings
 
 import eurdf
 from eurdf.linking.description import Linked, describe
 from eurdf.pinocchio.robot import build_robot
-from eurdf_conformance.adapters.reference import Reference
+from eurdf_conformance.adapters.reference import PARSER, Reference
 from eurdf_conformance.adapters.reference_canonical import canonical_robot
 from eurdf_conformance.adapters.reference_values import Quantities
 from eurdf_conformance.comparison.canonical import canonical_differences
@@ -25,9 +23,13 @@ from eurdf_conformance.fresh.draw import drawn_examples
 from eurdf_conformance.level import VERSIONS, Version
 from eurdf_conformance.oracle import OracleRobot, read
 from eurdf_conformance.properties.files import files_of
+from eurdf_conformance.properties.harness import Harness
+from eurdf_conformance.properties.mechanism import Mechanism
+from eurdf_conformance.properties.query import query_of
+from eurdf_conformance.properties.strategies.mechanisms import mechanisms
 from eurdf_conformance.properties.truth import truth
 from eurdf_conformance.protocol.message import Accepted, Quantity, Values
-from random_files import mechanisms
+from eurdf_conformance.runner.in_process import InProcess
 from support.watchdog import watchdog
 from support.wild import FACTS, WILD
 
@@ -138,26 +140,44 @@ def test_the_oracle_finds_the_published_dimensions(name: str) -> None:
     assert list(vars(found.dimensions(found.closed({}))).values()) == facts
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
-@given(mechanisms("2"))
-def test_oracle_and_reference_agree_on_random_mechanisms_of_version_2(
-    tmp_path_factory: pytest.TempPathFactory, drawn: tuple[str, dict[str, Any], int]
+@pytest.mark.parametrize(
+    ("version", "closures", "count"),
+    [
+        ("1", 1, 25),
+        ("2", 1, 25),
+        pytest.param("1", 1, 50, marks=pytest.mark.slow),
+        pytest.param("2", 0, 60, marks=pytest.mark.slow),
+        pytest.param("2", 1, 75, marks=pytest.mark.slow),
+    ],
+)
+def test_mechanisms_agree_within_a_billionth_of_their_size(
+    version: Version, closures: int, count: int, tmp_path: Path
 ) -> None:
-    assert_agreement(*both(tmp_path_factory.mktemp("robot"), *drawn[:2]), seed=drawn[2])
+    harness = Harness(InProcess(PARSER), tmp_path)
+    tried = []
 
+    @settings(
+        max_examples=count,
+        derandomize=True,
+        database=None,
+        deadline=None,
+        phases=[Phase.generate],
+        suppress_health_check=list(HealthCheck),
+    )
+    @given(mechanisms(version, closures))
+    def agree(mechanism: Mechanism) -> None:
+        tried.append(mechanism)
+        asked, robot = query_of(mechanism, version), truth(mechanism, version)
+        harness.begin()
+        read = harness.read(asked)
+        assert read is not None
+        assert canonical_differences(robot.canonical(), read, robot.bodies) == []
+        for q, given_values in zip(asked.configurations, harness.evaluate(asked, QUANTITIES), strict=True):
+            expected = robot.evaluate(q, asked.frames, QUANTITIES)
+            assert_values(expected, given_values, NEAR * max(1.0, robot.size(q)))
 
-@settings(max_examples=40, deadline=None, derandomize=True)
-@given(mechanisms("1"))
-def test_oracle_and_reference_agree_on_random_mechanisms_of_version_1(
-    tmp_path_factory: pytest.TempPathFactory, drawn: tuple[str, dict[str, Any], int]
-) -> None:
-    assert_agreement(*both(tmp_path_factory.mktemp("robot"), *drawn[:2]), seed=drawn[2])
-
-
-def both(folder: Path, urdf: str, description: dict[str, Any]) -> Sequence[Any]:
-    (folder / "robot.urdf").write_text(urdf, encoding="utf-8")
-    (folder / "robot.yaml").write_text(json.dumps(description), encoding="utf-8")
-    return read(folder / "robot.yaml", folder / "robot.urdf"), eurdf.load(folder, geometry=False)
+    agree()
+    assert len(tried) == count
 
 
 def test_a_large_robot_is_evaluated() -> None:

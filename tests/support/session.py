@@ -31,7 +31,7 @@ FIRST = (
     "test_editor.py",
     "test_write_an_adapter.py",
     "test_explore.py",
-    "test_random_mechanisms.py",
+    "test_oracle_reference.py",
     "test_suite.py",
     "test_workspace.py",
     "test_bad_input.py",
