@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 
 import eurdf
+from support.described import body, revolute, written
+from support.plain_urdf import robot
 
 DATA = Path(__file__).parents[1] / "data"
 
@@ -260,3 +262,32 @@ def test_invalid_mesh_is_refused_with_geometry(tmp_path: Path) -> None:
     assert error.code == "urdf-mesh-unreadable"
     assert "bad.stl" in (folder / URDF).read_text(encoding="utf-8").split("\n")[error.line - 1][error.column - 1 :]
     assert eurdf.load(folder / YAML, geometry=False).model.nv > 0
+
+
+@pytest.mark.parametrize(
+    ("yaml", "without"),
+    [
+        ("", ["x", "y", "z", "grip"]),
+        ("joints: {ball: {type: spherical, merges: [x, y, z]}}\n", ["grip"]),
+        ("joints: {grip: fixed}\n", ["x", "y", "z"]),
+        ("joints: {grip: {limits: {lower: -1, upper: 1}}, x: spherical}\n", ["y", "z"]),
+        ("joints: {ball: {type: spherical, merges: [x, y, z]}, grip: {type: universal, axes: xy}}\n", []),
+        ("name_mot: [grip]\n", ["grip"]),  # version 1 merges by itself
+        ("name_mot: []\njoint_name: [grip]\njoint_type: [UJOINT_XY]\n", []),
+    ],
+)
+def test_only_remaining_joints_need_ranges(tmp_path: Path, yaml: str, without: list[str]) -> None:
+    chain = [("x", "base", "one"), ("y", "one", "two"), ("z", "two", "hand"), ("grip", "hand", "finger")]
+    axes = [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 2, 3)]
+    joints = [
+        revolute(*names, axis).replace('lower="-3" upper="3" ', "") for names, axis in zip(chain, axes, strict=True)
+    ]
+    links = [body("base"), '<link name="one"/><link name="two"/>', body("hand"), body("finger")]
+    found = eurdf.check(written(tmp_path, robot(*links, *joints), yaml)).diagnostics
+    told = [each.message for each in found if each.code == "urdf-no-range"]
+    if not without:
+        assert told == []
+        return
+    count = "1 joint has" if len(without) == 1 else f"{len(without)} joints have"
+    named = ", ".join(f"'{name}'" for name in without[:3]) + (", ..." if len(without) > 3 else "")
+    assert told == [f"{count} the position limits 0 and 0: {named}"]
