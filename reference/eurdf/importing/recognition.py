@@ -7,7 +7,7 @@ from pathlib import Path
 from lxml import etree
 
 from eurdf.diagnostics import FileError
-from eurdf.format.version import VERSION_KEY
+from eurdf.format.conventions import VERSION_KEY
 from eurdf.importing.exceptions import CannotImport
 from eurdf.importing.xml_files import read_root, unreadable
 from eurdf.reading.given import is_xml

@@ -12,8 +12,8 @@ from typing import Literal, NamedTuple
 from eurdf.collection import find_robot
 from eurdf.diagnostics import Diagnostics, FileError, Place, quoted
 from eurdf.exceptions import CannotExpand
-from eurdf.format.extension import ClosureEntry, CouplingEntry, Extension
-from eurdf.format.read_extension import read_extension, version_of
+from eurdf.format.model import Description
+from eurdf.format.read import read_description, version_of
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.urdf.read import read_urdf
 from eurdf.linking.inertia import check_inertias, check_leaves
@@ -73,12 +73,12 @@ class Described(Linked):
         extension: The description.
     """
 
-    extension: Extension
+    extension: Description
 
     def place_of_constraint(self, name: str) -> Place:
         """Where a closure or a coupling is stated."""
-        entries: tuple[ClosureEntry | CouplingEntry, ...] = (*self.extension.closures, *self.extension.couplings)
-        return self.extension.document.place(next(entry for entry in entries if entry.name == name).pointer)
+        pointers = {entry.name: entry.pointer for entry in (*self.extension.closures, *self.extension.couplings)}
+        return self.extension.document.place(pointers[name])
 
     def place_of_configuration(self, name: str) -> Place:
         """Where a configuration is stated."""
@@ -137,7 +137,7 @@ def describe(
         mimic_errors: _MimicErrors = "refused" if mimic else "kept"
     else:
         document = _read_description(files.description, diagnostics, confined)
-        extension = None if document is None else read_extension(document, diagnostics)
+        extension = None if document is None else read_description(document, diagnostics)
         if given is not None:
             read = partial(_own_source, given)
         else:
@@ -237,7 +237,7 @@ def _expanded(
 
 def _named_xacro(
     urdf: Path,
-    extension: Extension,
+    extension: Description,
     diagnostics: Diagnostics,
     package_dirs: Sequence[str | os.PathLike[str]],
     xacro_args: Mapping[str, str] | None,
@@ -295,7 +295,7 @@ def _read_urdf(
     return urdf
 
 
-def _named_urdf(folder: Path, extension: Extension | None, document: YamlDocument | None) -> Path:
+def _named_urdf(folder: Path, extension: Description | None, document: YamlDocument | None) -> Path:
     name = "robot.urdf"
     if extension is not None:
         name = extension.urdf
@@ -348,7 +348,7 @@ def _may_read(
     path: Path,
     is_inside: bool,
     description: Path | Source,
-    extension: Extension | None,
+    extension: Description | None,
     diagnostics: Diagnostics,
     confined: bool,
 ) -> bool:
@@ -381,7 +381,7 @@ def _is_beside(path: Path, description: Path) -> bool:
     return _is_inside(path, description.resolve().parent)
 
 
-def _urdf_not_found(path: Path, extension: Extension, diagnostics: Diagnostics) -> None:
+def _urdf_not_found(path: Path, extension: Description, diagnostics: Diagnostics) -> None:
     """EU-FIL-004: the URDF that the description names exists."""
     document = extension.document
     home = document.source.folder
@@ -391,7 +391,7 @@ def _urdf_not_found(path: Path, extension: Extension, diagnostics: Diagnostics) 
     diagnostics.report("urdf-not-found", message, document.place(("urdf",)), _urdf_hint(path, home, extension))
 
 
-def _urdf_hint(path: Path, home: Path, extension: Extension) -> str:
+def _urdf_hint(path: Path, home: Path, extension: Description) -> str:
     """A hint with the paths of nearby URDFs from the description."""
     # Only now: few descriptions name a URDF that does not exist.
     import difflib

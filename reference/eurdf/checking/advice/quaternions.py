@@ -31,7 +31,6 @@ def advise_on_quaternions(description: Described, robot: Robot | None, diagnosti
         diagnostics: Gets what is found.
     """
     mechanism, extension = description.mechanism, description.extension
-    entries = {entry.name: entry for entry in extension.configurations}
     for name, coordinates in mechanism.configurations.items():
         turned = w_first(mechanism, coordinates)
         if not turned:
@@ -51,7 +50,7 @@ def advise_on_quaternions(description: Described, robot: Robot | None, diagnosti
                     "x-quaternion-order",
                     f"the quaternion of joint '{joint}' in configuration '{name}' "
                     f"is probably in the order w, x, y, z: {why} only then",
-                    extension.document.place((*entries[name].pointer, joint)),
+                    extension.document.place(("configurations", name, joint)),
                     f"the order is x, y, z, w: {quaternion}",
                 )
 

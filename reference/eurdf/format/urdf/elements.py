@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 
 from eurdf.diagnostics import Hint, did_you_mean
-from eurdf.format.near import near
-from eurdf.format.numbers import HINT, LARGEST, too_large
+from eurdf.format.conventions import HINT, LARGEST, too_large
+from eurdf.format.wording import near
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 from eurdf.reading.reporter import Element, XmlReporter

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 
 from eurdf.diagnostics import did_you_mean
-from eurdf.format.numbers import is_too_small, lower_limit, too_small, upper_limit
+from eurdf.format.conventions import is_too_small, lower_limit, too_small, upper_limit
 from eurdf.format.urdf.data import Limit, UrdfJoint
 from eurdf.format.urdf.elements import RESERVED, URDF_JOINT_TYPES, UrdfReader, named
 from eurdf.mechanism.joint_types import JointType
