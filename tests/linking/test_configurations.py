@@ -94,7 +94,7 @@ def test_coordinates_invert_configurations(data: st.DataObject, seed: int, root:
     coordinates = robot.coordinates(q)
     assert ("root_joint" in coordinates) == (root == "floating")
     for joint in mechanism.joints:
-        assert len(coordinates.get(joint.name, ())) == len(joint.coordinates.names)
+        assert len(coordinates.get(joint.name, ())) == len(joint.type.coordinates)
     np.testing.assert_allclose(configuration_vector(mechanism, robot.model, coordinates), q, rtol=0.0, atol=1e-12)
 
 

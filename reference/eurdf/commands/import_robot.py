@@ -16,9 +16,9 @@ from eurdf.commands.output_file import writing
 from eurdf.commands.robot_options import ending
 
 if TYPE_CHECKING:
+    from eurdf.convert.losses import Loss
     from eurdf.diagnostics import Place
     from eurdf.importing.import_robot import Import
-    from eurdf.loss import Loss
 
 _DESCRIPTION = """\
 Describe a robot that is in a file of a simulator, with its closed loops, and show every loss: what a description cannot

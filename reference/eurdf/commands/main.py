@@ -19,7 +19,7 @@ from eurdf import __version__
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.exit_code import BROKEN_PIPE, INTERRUPTED
 from eurdf.exceptions import CannotExpand, MissingExtra
-from eurdf.system import BOUNDS_MEMORY
+from eurdf.sandbox import BOUNDS_MEMORY
 
 #: The commands, in the order in which the help shows them, and the module of each in `eurdf.commands`.
 COMMANDS = {

@@ -9,8 +9,8 @@ from eurdf.diagnostics.visible import visible
 from eurdf.exceptions import EurdfError
 
 if TYPE_CHECKING:
+    from eurdf.convert.losses import Loss
     from eurdf.diagnostics import Diagnostic
-    from eurdf.loss import Loss
 
 
 class CannotImport(EurdfError, ValueError):  # noqa: N818 - part of the public interface

@@ -15,6 +15,7 @@ from types import MappingProxyType
 import numpy as np
 
 from eurdf.checking.check import check
+from eurdf.convert.losses import Effect, Loss, Losses, LossKind
 from eurdf.diagnostics import Diagnostic, Severity, did_you_mean
 from eurdf.diagnostics.visible import visible
 from eurdf.exceptions import RobotNotFound
@@ -32,7 +33,6 @@ from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.residual import closure_openings, residual
 from eurdf.linking.configurations import beyond_limits
 from eurdf.linking.description import Unlinked, describe
-from eurdf.loss import Effect, Loss, Losses, LossKind
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.spanning_tree import rigid_poses
 from eurdf.mesh_files.folders import Folders

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import fields, replace
 
-from eurdf.loss import Effect, Losses, LossKind
+from eurdf.convert.losses import Effect, Losses, LossKind
 from eurdf.mechanism.joint import Joint, JointProperties, is_no_range
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 
 #: Of a joint that is locked.
 LOCKED = LossKind(

@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Literal
 
-from eurdf.exporting.hinges import with_hinges
+from eurdf.convert.hinges import with_hinges
 from eurdf.kinematics.assembly import assemble
 from eurdf.mechanism.constraint import HingeClosure
 from eurdf.mechanism.mechanism import Mechanism

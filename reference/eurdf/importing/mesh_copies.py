@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from eurdf.loss import Effect, Losses, LossKind
+from eurdf.convert.losses import Effect, Losses, LossKind
 from eurdf.mesh_files.folders import Folders
 from eurdf.mesh_files.reader import MeshReader
 from eurdf.writing.file_names import FileNames

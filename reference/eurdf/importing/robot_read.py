@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 
-from eurdf.loss import Loss, LossKind
+from eurdf.convert.losses import Loss, LossKind
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.reading.other_formats import IMPORTED
 from eurdf.reading.resource import FileFinder

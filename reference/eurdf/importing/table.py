@@ -9,9 +9,9 @@ import re
 import sys
 from pathlib import Path
 
+from eurdf.convert.losses import LossKind
 from eurdf.importing.formats import FORMATS
 from eurdf.importing.import_robot import COMMON
-from eurdf.loss import LossKind
 
 _PLACE = re.compile(r"(<!-- tables: [^\n]*-->\n).*?(<!-- end of tables -->)", re.DOTALL)
 

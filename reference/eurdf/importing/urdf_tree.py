@@ -10,6 +10,7 @@ from pathlib import Path
 
 from lxml import etree
 
+from eurdf.convert.losses import Effect, Losses, LossKind
 from eurdf.diagnostics import Diagnostics, FileError
 from eurdf.format.urdf.read import read_urdf
 from eurdf.importing.elements import Elements, local
@@ -17,10 +18,9 @@ from eurdf.importing.exceptions import CannotImport
 from eurdf.importing.mesh_copies import NAMED_FILE, MeshCopies
 from eurdf.importing.xml_files import inside, read_root
 from eurdf.linking.link import link
-from eurdf.loss import Effect, Losses, LossKind
 from eurdf.mechanism.body import Shape
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.motor import Motor
 from eurdf.mesh_files.reader import RefusedFile
@@ -195,7 +195,7 @@ def _actuated(mechanism: Mechanism, root: etree._Element, elements: Elements, lo
         joint, actuator = transmission.find("joint"), transmission.find("actuator")
         name = "" if joint is None else joint.get("name", "")
         own = joints.get(name)
-        if own is None or own.type is JointType.FIXED or own.mimic is not None or name in actuators:
+        if own is None or own.type.is_fixed or own.mimic is not None or name in actuators:
             losses.add("import-actuator", name or transmission.get("name", ""))
             continue
         shown = name if actuator is None else actuator.get("name") or name
@@ -219,7 +219,7 @@ def _geared(joint: Joint, actuator: etree._Element, elements: Elements) -> Joint
     ratio, rotor = values.get("gear_ratio", 1.0), values.get("rotor_inertia", 0.0)
     if ratio == 1.0 and not rotor:
         return joint
-    nv = joint.coordinates.nv
+    nv = joint.type.nv
     own = replace(
         joint.properties,
         gear_ratio=(ratio,) * nv,

@@ -13,19 +13,19 @@ from pathlib import Path
 
 from lxml import etree
 
+from eurdf.convert.losses import Effect, Losses, LossKind
+from eurdf.convert.names import UniqueNames
 from eurdf.importing.elements import Elements, local, named
 from eurdf.importing.locked import LOCKED, without_locks
 from eurdf.importing.robot_read import ImportFormat, RobotRead
 from eurdf.importing.urdf_tree import URDF_LOSSES, UrdfTree, read_tree
-from eurdf.loss import Effect, Losses, LossKind
 from eurdf.mechanism.constraint import Closure, Coupling, PointClosure
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
-from eurdf.mechanism.joint_type import COORDINATES, JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import IDENTITY, Pose
 from eurdf.reading.resource import FileFinder
-from eurdf.writing.names import UniqueNames
 from eurdf.writing.urdf_elements import UNLIMITED
 
 _WORLD = "world"
@@ -159,7 +159,7 @@ def _as_in_drake(joint: Joint, joints: _Joints) -> Joint:
         limit = (joints.acceleration[joint.name],)
         return joint.with_properties(replace(joint.properties, acceleration=limit, deceleration=limit))
     kind = _TYPES[stated][1]
-    nv = COORDINATES[kind].nv
+    nv = kind.nv
     own = joint.properties
     properties = JointProperties.unlimited(kind)
     if stated == "planar":
@@ -177,7 +177,7 @@ def _on_the_world(mechanism: Mechanism) -> Mechanism:
     world = mechanism.bodies[0]
     held = [joint for joint in mechanism.joints if joint.parent == _WORLD]
     bare = world.inertia is None and not world.visuals and not world.collisions
-    if bare and len(held) == 1 and held[0].type is JointType.FIXED and held[0].placement == IDENTITY:
+    if bare and len(held) == 1 and held[0].type.is_fixed and held[0].placement == IDENTITY:
         return replace(mechanism, bodies=mechanism.bodies[1:], joints=mechanism.joints[1:])
     return mechanism
 

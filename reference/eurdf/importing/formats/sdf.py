@@ -19,24 +19,24 @@ from typing import Any
 
 from lxml import etree
 
+from eurdf.convert.losses import Effect, Losses, LossKind
+from eurdf.convert.names import UniqueNames
 from eurdf.importing.elements import Elements, named
 from eurdf.importing.locked import LOCKED, without_locks
 from eurdf.importing.mesh_copies import NAMED_FILE, MeshCopies
 from eurdf.importing.robot_read import ImportFormat, RobotRead
 from eurdf.importing.xml_files import inside, read_root
-from eurdf.loss import Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.constraint import Closure, FrameClosure, HingeClosure, PointClosure
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
-from eurdf.mechanism.joint_type import COORDINATES, JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, Root
-from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic
+from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 from eurdf.mechanism.spanning_tree import depth_first
 from eurdf.mesh_files.reader import RefusedFile
 from eurdf.reading.resource import FileFinder
-from eurdf.writing.names import UniqueNames
 
 #: A limit beyond this is none: 1e16 is the default of SDFormat.
 UNLIMITED = 1e15
@@ -359,7 +359,7 @@ class _Reader:
         kind = _TYPES[joint.type]
         axes = self._axes(joint, placed)
         name = self.names.new(joint.name)
-        if kind is JointType.FIXED:
+        if kind.is_fixed:
             return Joint(name, kind, joint.parent, joint.child, parent.inverse() * child)
         placement = parent.inverse() * child * joint.in_child
         offset = joint.in_child.inverse() if joint.in_child != IDENTITY else IDENTITY
@@ -423,7 +423,7 @@ class _Reader:
 
     def _properties(self, joint: _SdfJoint, kind: JointType) -> JointProperties:
         free = JointProperties.unlimited(kind)
-        axes = [joint.element.find(tag) for tag in ("axis", "axis2")[: COORDINATES[kind].nv]]
+        axes = [joint.element.find(tag) for tag in ("axis", "axis2")[: kind.nv]]
         if kind is JointType.SPHERICAL:
             if any(
                 axis is not None and (axis.find("limit") is not None or axis.find("dynamics") is not None)
@@ -467,7 +467,7 @@ class _Reader:
                 leader = mimic.get("joint", "")
                 factor = self._number(mimic, "multiplier", 1.0)
                 offset = self._number(mimic, "offset", 0.0) - factor * self._number(mimic, "reference", 0.0)
-                if types.get(leader) in MIMIC_TYPES and joint.type in MIMIC_TYPES and len(mimics) == 1:
+                if leader in types and types[leader].is_axial and joint.type.is_axial and len(mimics) == 1:
                     joint = replace(joint, mimic=Mimic(leader, factor, offset))
                 else:
                     self.losses.add("import-mimic", joint.name)
@@ -491,7 +491,7 @@ class _Reader:
         name = self.names.new(joint.name)
         if kind is JointType.SPHERICAL:
             return PointClosure(name, a, b)
-        if kind is JointType.FIXED:
+        if kind.is_fixed:
             return FrameClosure(name, a, b)
         (axis,) = self._axes(joint, IDENTITY)
         return HingeClosure(name, a, b, (axis, axis))

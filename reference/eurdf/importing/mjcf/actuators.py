@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from eurdf.importing.mjcf.joint_properties import largest_effort
 from eurdf.importing.mjcf.reading import MjcfReading
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.motor import Motor
 
 
@@ -32,7 +32,7 @@ def read_actuators(reading: MjcfReading) -> tuple[tuple[str, ...], dict[str, Mot
         else:
             mine.append((index, joint))
     motors: dict[str, Motor] = {}
-    fixed = {joint.name for joint in reading.joints if joint.type is JointType.FIXED or joint.mimic}
+    fixed = {joint.name for joint in reading.joints if joint.type.is_fixed or joint.mimic}
     actuated = []
     for name, group in groups.items():
         if name in fixed:
@@ -89,7 +89,7 @@ def _motor(reading: MjcfReading, name: str, group: Sequence[tuple[int, int]]) ->
     model = reading.model
     (at,) = (i for i, joint in enumerate(reading.joints) if joint.name == name)
     joint = reading.joints[at]
-    nv = joint.coordinates.nv
+    nv = joint.type.nv
     stated = [model.names["actuator"][index] for index, _ in group]
     shown = stated[0] or name
     if nv > 1 and all(each == f"{stated[0].removesuffix('_1')}_{i + 1}" for i, each in enumerate(stated)):

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
+from eurdf.convert.names import UniqueNames
 from eurdf.importing.mjcf.joints import coordinates_at
 from eurdf.importing.mjcf.reading import MjcfReading
 from eurdf.importing.mjcf.values import usable, xyzw
 from eurdf.linking.configurations import beyond_limits
-from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
-from eurdf.writing.names import UniqueNames
 
 
 def read_configurations(
@@ -46,6 +45,6 @@ def _at(reading: MjcfReading, qpos: Sequence[float], mechanism: Mechanism) -> Ma
         found[ROOT_JOINT] = (*qpos[at : at + 3], *xyzw(qpos[at + 3 : at + 7]))
     steps = {step.name: step for step in reading.steps.values()}
     for joint_ in mechanism.joints:
-        if joint_.name in steps and joint_.type is not JointType.FIXED and joint_.mimic is None:
+        if joint_.name in steps and not joint_.type.is_fixed and joint_.mimic is None:
             found[joint_.name] = coordinates_at(reading, steps[joint_.name], qpos)
     return MappingProxyType(found)

@@ -11,8 +11,7 @@ from eurdf.mechanism.constraint import (
     Coupling,
 )
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_transform import joint_transform
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mimic import Mimic
 
 
@@ -88,7 +87,7 @@ def _lock(reading: MjcfReading, coefficients: Mapping[str, float], offset: float
         properties = replace(joint.properties, lower=(value,), upper=(value,))
         reading.joints[index] = replace(joint, type=kind, properties=properties)
         return
-    placement = joint.placement * joint_transform(joint, (value,))
+    placement = joint.placement * joint.transform((value,))
     reading.joints[index] = Joint(name, JointType.FIXED, joint.parent, joint.child, placement, joint.offset)
     reading.losses.add("import-locked-joint", name, f"is fixed at {value:g}, where an equality holds it")
 

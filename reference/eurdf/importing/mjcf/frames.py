@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from eurdf.convert.names import UniqueNames
 from eurdf.importing.mjcf.reading import MjcfReading
 from eurdf.importing.mjcf.values import pose_from, usable
 from eurdf.mechanism.frame import Frame
 from eurdf.mechanism.mechanism import ROOT_JOINT
-from eurdf.writing.names import UniqueNames
 
 
 def read_frames(reading: MjcfReading) -> tuple[Frame, ...]:

@@ -10,7 +10,7 @@ from eurdf.importing.mjcf.reading import MjcfReading
 from eurdf.importing.mjcf.step import Step
 from eurdf.importing.mjcf.values import row
 from eurdf.mechanism.joint import JointProperties
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 
 #: A bound beyond this is none, rad or m.
 UNLIMITED = 1e10

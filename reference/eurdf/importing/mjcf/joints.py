@@ -12,8 +12,7 @@ from eurdf.importing.mjcf.steps import grouped
 from eurdf.importing.mjcf.values import xyzw
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_transform import joint_transform
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import IDENTITY, Pose, Quaternion
 
 
@@ -66,7 +65,7 @@ def _reference(reading: MjcfReading, step: Step) -> Pose:
         return IDENTITY
     coordinates = coordinates_at(reading, step, reading.model["qpos0"])
     bare = Joint(step.name, step.type, "", "", axes=step.axes, pitch=step.pitch)
-    return joint_transform(bare, coordinates) if any(coordinates) else IDENTITY
+    return bare.transform(coordinates) if any(coordinates) else IDENTITY
 
 
 def coordinates_at(reading: MjcfReading, step: Step, qpos: Sequence[float]) -> tuple[float, ...]:

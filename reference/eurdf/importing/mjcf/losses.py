@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from eurdf.convert.losses import Effect, LossKind
 from eurdf.importing.mesh_copies import NAMED_FILE
-from eurdf.loss import Effect, LossKind
 
 LOSSES = (
     LossKind(

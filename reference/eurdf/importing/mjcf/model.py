@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -17,8 +16,7 @@ from eurdf.importing.exceptions import CannotImport
 from eurdf.importing.xml_files import included_by
 from eurdf.mesh_files.folders import Folders
 from eurdf.mesh_files.reader import BYTES_LIMIT
-from eurdf.program import command_of
-from eurdf.system import exceeded
+from eurdf.sandbox import run
 
 #: Processor time (s) and memory (bytes) that compiling a file may take.
 SECONDS, MEMORY = 60, 6 << 30
@@ -102,18 +100,12 @@ def compile_mjcf(path: Path, folders: Folders) -> MjcfModel:
         "memory": MEMORY,
     }
     with tempfile.TemporaryDirectory() as scratch:
-        done = subprocess.run(
-            command_of(_PROGRAM),
-            input=json.dumps(request).encode(),
-            capture_output=True,
-            check=False,
-            cwd=scratch,
-        )
-    if exceeded(done.returncode, done.stderr):
+        done = run(_PROGRAM, request, folder=scratch)
+    if done.exceeded:
         raise CannotImport(path, f"MuJoCo does not compile it within {SECONDS} s")
-    if done.returncode or not done.stdout:
+    if done.code or not done.output:
         raise CannotImport(path, "MuJoCo crashes on it; check the file with MuJoCo's own tools")
-    answer = json.loads(done.stdout)
+    answer = json.loads(done.output)
     if "error" in answer:
         scene = included_by(path)  # a fragment can lack what the file states that includes it
         hint = "" if scene is None else f"; it is included by '{scene.name}': import that file instead"

@@ -1,8 +1,7 @@
 """The process that compiles an MJCF file: the request is JSON on standard input, the model is JSON on standard output.
 
-Of this package, it imports only modules that need nothing but the standard library. MuJoCo's compiler is C++ that a
-hostile file can make crash, or take minutes and gigabytes; here this ends a process, not that of a caller. It runs in a
-folder of its own, as MuJoCo writes a log there.
+Of this package, it imports only modules that need nothing but the standard library. It runs in a folder of its own, as
+MuJoCo writes a log there.
 """
 
 from __future__ import annotations
@@ -10,14 +9,13 @@ from __future__ import annotations
 import json
 import math
 import os
-import sys
 from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
 
 from eurdf.mesh_files.folders import Folders
-from eurdf.system import bound_memory, bound_time, leave_no_core
+from eurdf.sandbox import bound_memory, bound_time, request_and_answers
 
 #: Arrays of the model that the importer needs, by the kind of element. Those of later releases may be missing.
 _ARRAYS = {
@@ -90,11 +88,7 @@ class Refused(Exception):  # noqa: N818 - the answer to the request
 
 def main() -> None:
     """Answer the request."""
-    request = json.load(sys.stdin.buffer)
-    # MuJoCo may print: its lines are no part of the answer.
-    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-    leave_no_core()
+    request, answers = request_and_answers()
     bound_time(2 * request["seconds"], request["seconds"])
     bound_memory(request["memory"])
     try:
@@ -105,7 +99,7 @@ def main() -> None:
         answer = {"error": "it takes too much memory"}
     except Exception as error:
         answer = {"error": "MuJoCo says: " + " ".join(str(error).split())}
-    json.dump(answer, answers)
+    answers.write(json.dumps(answer).encode())
     answers.flush()
 
 

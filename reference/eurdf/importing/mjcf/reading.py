@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from eurdf.convert.losses import Losses
+from eurdf.convert.names import UniqueNames
 from eurdf.importing.mesh_copies import MeshCopies
 from eurdf.importing.mjcf.losses import LOSSES
 from eurdf.importing.mjcf.model import MjcfModel
 from eurdf.importing.mjcf.step import Step
 from eurdf.importing.mjcf.values import pose_from
-from eurdf.loss import Losses
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.mechanism import ROOT_JOINT, Root
 from eurdf.mechanism.pose import IDENTITY, Pose
 from eurdf.mesh_files.folders import Folders
-from eurdf.writing.names import UniqueNames
 
 WORLD = "world"
 

@@ -10,7 +10,7 @@ from eurdf.importing.mjcf.reading import MjcfReading
 from eurdf.importing.mjcf.step import Step
 from eurdf.importing.mjcf.values import SAME, cross, dot, usable, vector
 from eurdf.importing.orientation import orientation
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import IDENTITY
 
 #: By the types of the joints of a body, the ends of their names, and the joint that an export splits into them.
