@@ -35,9 +35,9 @@ from eurdf_conformance.runner.answer import read_answer
 from eurdf_conformance.runner.outcome import Answered, Malformed, Misplaced, Outcome
 from eurdf_conformance.runner.session import Session
 from support.every_joint import ARMATURES, CONFIGURATION, MASSES, VELOCITIES, moved, write_every_joint
-from support.node_packages import MODULES, why_not_installed
 from support.plain_urdf import inertial, joint_element, link_element
 from support.plain_urdf import robot as urdf_of
+from support.processes import MODULES, why_not_installed
 
 ROOT = Path(__file__).parents[2]
 ROBOTS = ROOT / "robots"

@@ -11,7 +11,7 @@ import pytest
 
 from eurdf_conformance import adapters
 from eurdf_conformance.certificate.certificate import read_certificate
-from support.node_packages import MODULES, why_not_installed
+from support.processes import MODULES, why_not_installed
 from support.session import SharedRun
 
 PARSER = Path(adapters.__file__).with_name("javascript")

@@ -30,7 +30,7 @@ from eurdf_conformance.properties.strategies.mechanisms import mechanisms
 from eurdf_conformance.properties.truth import truth
 from eurdf_conformance.protocol.message import Accepted, Quantity, Values
 from eurdf_conformance.runner.in_process import InProcess
-from support.watchdog import watchdog
+from support.processes import watchdog
 from support.wild import FACTS, WILD
 
 QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)

@@ -21,8 +21,9 @@ from eurdf.commands.output_schema import output_schemas
 from eurdf.commands.selection import select
 from eurdf.diagnostics import Diagnostic, Place
 from eurdf.diagnostics.report import Report
-from support.arm import DESCRIPTION, URDF
-from support.terminal import on_a_terminal
+from support.described import ARM as URDF
+from support.described import ARM_DESCRIPTION as DESCRIPTION
+from support.processes import on_a_terminal
 
 ACTUATES_NOTHING = """\
 extended_urdf: "2.0"

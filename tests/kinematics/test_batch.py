@@ -27,8 +27,8 @@ from eurdf.mechanism.joint_types import JointType
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand
 from support.actuated import robot_called
-from support.closed_tree import closed_tree
 from support.described import body, load, revolute
+from support.mechanisms import closed_tree
 from support.plain_urdf import robot as urdf
 
 EQUAL = 1e-9

@@ -17,17 +17,21 @@ from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.projection import project_acceleration, project_configuration, project_velocity
 from eurdf.kinematics.residual import acceleration_drift, residual, residual_and_jacobian
 from support.actuated import ROBOTS, closed_near, robot_called
-from support.branching import JOINTS, MIMIC, branching, far_from_half_a_turn, somewhere
 from support.linkage import (
+    JOINTS,
+    MIMIC,
     Linkage,
     Z,
     bennett,
+    branching,
     closure,
+    far_from_half_a_turn,
     loop,
     n_bar,
     pulled_apart,
     sarrus,
     slider_crank,
+    somewhere,
     spherical_four_bar,
     stewart,
     translation,

@@ -15,8 +15,18 @@ import eurdf
 from eurdf.kinematics.analysis import analyze
 from eurdf.kinematics.residual import closure_openings, openings_once, residual, residual_and_jacobian
 from eurdf.pinocchio.frame_pairs import FramePairs, PathMemory
-from support.branching import JOINTS, MIMIC, branching, far_from_half_a_turn, somewhere
-from support.linkage import Linkage, closure, n_bar, swapped, translation
+from support.linkage import (
+    JOINTS,
+    MIMIC,
+    Linkage,
+    branching,
+    closure,
+    far_from_half_a_turn,
+    n_bar,
+    somewhere,
+    swapped,
+    translation,
+)
 
 seeds = st.integers(0, 2**32 - 1)
 

@@ -17,7 +17,8 @@ from eurdf.diagnostics.sarif import sarif_log
 from eurdf.diagnostics.text import report_lines
 from eurdf.reading import given
 from eurdf.reading.given import source_of
-from support.arm import DESCRIPTION, URDF
+from support.described import ARM as URDF
+from support.described import ARM_DESCRIPTION as DESCRIPTION
 
 FOUR_BAR = Path(__file__).parents[2] / "robots" / "four_bar"
 MISSPELT = DESCRIPTION.replace("shoulder", "sholder")

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from eurdf.diagnostics import FileError
 from eurdf.reading.source import FILE_LIMIT, Source, read_source
-from support.watchdog import watchdog
+from support.processes import watchdog
 
 
 def error_of(path: str | os.PathLike[str], **options: int) -> FileError:

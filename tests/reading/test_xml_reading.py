@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from eurdf.diagnostics import Diagnostic, FileError, Place
 from eurdf.reading.source import FILE_LIMIT, Source
 from eurdf.reading.xml_reader import ATTRIBUTE_LIMIT, TAG_LIMIT, XmlDocument, read_xml
-from support.watchdog import watchdog
+from support.processes import watchdog
 
 SAMPLE = """\
 <?xml version="1.0" encoding="utf-8"?>

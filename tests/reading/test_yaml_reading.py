@@ -19,7 +19,7 @@ from eurdf.reading.core_schema import resolve
 from eurdf.reading.source import FILE_LIMIT, Source, read_source
 from eurdf.reading.yaml_reader import NODE_LIMIT, YamlDocument, read_yaml
 from eurdf.reading.yaml_values import usual_values
-from support.watchdog import watchdog
+from support.processes import watchdog
 
 ROBOTS = Path(__file__).parents[2] / "robots"
 

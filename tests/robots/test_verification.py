@@ -22,7 +22,7 @@ from eurdf.pinocchio.robot import Robot, build_robot
 from support.exported import random_robot
 from support.plain_urdf import inertial, joint_element, link_element
 from support.plain_urdf import robot as robot_element
-from support.terminal import on_a_terminal
+from support.processes import on_a_terminal
 
 PACKAGES = {"mjcf": "mujoco", "drake": "pydrake", "sdf": "pydrake", "usd": "pxr"}
 
