@@ -144,7 +144,7 @@ def test_missing_file_and_unknown_format_are_refused(capsys: pytest.CaptureFixtu
 
 
 def test_missing_mujoco_is_an_error(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    from eurdf.importing.mjcf import model as mjcf_model
+    from eurdf.importing.mjcf import compiled as mjcf_model
 
     monkeypatch.setattr(mjcf_model, "find_spec", lambda name: None)
     assert main(["import", "four_bar.xml", "-o", "out"]) == 2

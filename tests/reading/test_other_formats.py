@@ -9,7 +9,7 @@ import pytest
 import eurdf
 from eurdf.commands.main import main
 from eurdf.importing.formats import FORMATS
-from eurdf.importing.recognition import recognized
+from eurdf.importing.xml_elements import recognized
 from eurdf.reading.other_formats import IMPORTED
 
 LINKS = (

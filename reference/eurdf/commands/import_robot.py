@@ -135,7 +135,7 @@ class _Places:
     def of(self, loss: Loss) -> Place | None:
         """Where the element of a loss is, if it has a name there."""
         if self._of is None:
-            from eurdf.importing.places import places_of_names
+            from eurdf.importing.xml_elements import places_of_names
 
             self._of = places_of_names(self._sources)
         return self._of.get(loss.name)

@@ -21,21 +21,19 @@ from eurdf.exceptions import RobotNotFound
 from eurdf.format.schema import FILES, SchemaVersion, json_schema, schema_text
 from eurdf.importing.exceptions import CannotImport
 from eurdf.importing.formats import FORMATS
+from eurdf.importing.import_format import ImportInput, RobotRead, dropped, exact, loss_kinds
 from eurdf.importing.loop_axes import allowed_axes, with_axes
-from eurdf.importing.places import places_of_names
 from eurdf.importing.readme import licence_file, readme
-from eurdf.importing.recognition import recognized
-from eurdf.importing.robot_read import RobotRead
+from eurdf.importing.xml_elements import places_of_names, recognized
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.opening import CLOSED, Opening
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.residual import closure_openings, residual
 from eurdf.linking.configurations import beyond_limits
 from eurdf.linking.description import Unlinked, describe
-from eurdf.loss import Effect, Loss, Losses, LossKind
+from eurdf.loss import Effect, Loss, Losses
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.spanning_tree import rigid_poses
-from eurdf.mesh_files.folders import Folders
 from eurdf.pinocchio.robot import build_robot
 from eurdf.reading.resource import FileFinder
 from eurdf.writing.assembled import NAME as ASSEMBLED
@@ -44,42 +42,44 @@ from eurdf.writing.joined_closures import join_points
 from eurdf.writing.output_folder import write_files
 
 #: Losses of every format.
-COMMON = (
-    LossKind(
-        "import-not-assembled",
-        "configuration",
-        Effect.DROPPED,
-        "no configuration was found that closes the loops within the limits of the joints",
-        "correct limits or frames, and find one with `eurdf assemble`",
-    ),
-    LossKind(
-        "import-joined-points",
-        "3d closure",
-        Effect.EXACT,
-        "is one hinge or 6d closure with others of the same two bodies: their points are as far apart in both",
-        "use the hinge or the 6d closure: it has fewer rows",
-    ),
-    LossKind(
-        "import-points-apart",
-        "3d closure",
-        Effect.EXACT,
-        "stays as it is: another one joins the same two bodies, and both cannot be closed",
-        "correct the points in the file",
-    ),
-    LossKind(
-        "import-open-assembled",
-        "configuration",
-        Effect.EXACT,
-        "the name is reserved for a configuration that closes the loops: this one is renamed",
-        "choose another name in the file",
-    ),
-    LossKind(
-        "import-file-outside",
-        "file",
-        Effect.EXACT,
-        "is outside the robot's folder, and was read because of --allow-outside",
-        "copy it into the robot's folder",
-    ),
+COMMON = loss_kinds(
+    {
+        "name": exact(
+            "name",
+            "is changed: the name is missing, reserved, or used by another element",
+            "give the element a unique name in the file",
+        ),
+        "mesh-names": dropped(
+            "mesh",
+            "a material, a buffer or a picture that it names is left out",
+            "copy it into the robot's folder, and name it by its path from the mesh",
+        ),
+        "not-assembled": dropped(
+            "configuration",
+            "no configuration was found that closes the loops within the limits of the joints",
+            "correct limits or frames, and find one with `eurdf assemble`",
+        ),
+        "joined-points": exact(
+            "3d closure",
+            "is one hinge or 6d closure with others of the same two bodies: their points are as far apart in both",
+            "use the hinge or the 6d closure: it has fewer rows",
+        ),
+        "points-apart": exact(
+            "3d closure",
+            "stays as it is: another one joins the same two bodies, and both cannot be closed",
+            "correct the points in the file",
+        ),
+        "open-assembled": exact(
+            "configuration",
+            "the name is reserved for a configuration that closes the loops: this one is renamed",
+            "choose another name in the file",
+        ),
+        "file-outside": exact(
+            "file",
+            "is outside the robot's folder, and was read because of --allow-outside",
+            "copy it into the robot's folder",
+        ),
+    }
 )
 
 
@@ -179,7 +179,7 @@ def import_robot(
         raise ValueError(f"there is no format '{format}'; {hint}")
     name = format or recognized(file)
     finder = FileFinder(file.absolute().parent, [] if within is None else [within], allow_outside=allow_outside)
-    imported = _import(name, file, FORMATS[name].read(file, finder), finder.folders)
+    imported = _import(name, ImportInput(file, finder, Losses((*COMMON, *FORMATS[name].losses))))
     if strict and (refused := tuple(loss for loss in imported.losses if loss.effect is not Effect.EXACT)):
         more = f"; and {len(refused) - 1} more" if len(refused) > 1 else ""
         raise CannotImport(file, f"it has losses: {refused[0]}{more}", refused)
@@ -197,10 +197,11 @@ def _relative(found: Diagnostic, folder: str) -> Diagnostic:
     return Diagnostic(found.code, found.message.replace(here, ""), place, hint)
 
 
-def _import(format_: str, path: Path, read: RobotRead, folders: Folders) -> Import:
-    losses = Losses((*COMMON, *FORMATS[format_].losses))
-    licence = licence_file(path, folders)
-    for outside in folders.let_through:
+def _import(format_: str, given: ImportInput) -> Import:
+    path, losses = given.path, given.losses
+    read = FORMATS[format_].read(given)
+    licence = licence_file(path, given.folders)
+    for outside in given.folders.let_through:
         losses.add("import-file-outside", outside)
     start, coordinates = read.start
     # First: no number that the format refuses, such as an infinite one, may reach the kinematics.
@@ -234,9 +235,17 @@ def _import(format_: str, path: Path, read: RobotRead, folders: Folders) -> Impo
         version=version_needed(mechanism),
         metadata=MappingProxyType({"source": visible(path.name), **mechanism.metadata}),
     )
-    found_losses = (*read.losses, *losses.found)
-    files = _files(path, format_, mechanism, read, found_losses, opened, licence)
-    return Import(format_, mechanism, found_losses, MappingProxyType(files), start, opened, closes, read.sources)
+    written, schema = _description(path, format_, mechanism, read)
+    files = {
+        "robot.urdf": written.urdf,
+        "robot.yaml": written.yaml.encode(),
+        "README.md": readme(path, FORMATS[format_], mechanism, losses.found, read, opened, licence).encode(),
+        FILES[schema]: schema_text(json_schema(schema)).encode(),
+        **given.meshes,
+    }
+    if licence is not None:
+        files["LICENSE"] = licence.read_bytes()
+    return Import(format_, mechanism, losses.found, MappingProxyType(files), start, opened, closes, read.sources)
 
 
 def _with_points_joined(mechanism: Mechanism, losses: Losses) -> Mechanism:
@@ -284,28 +293,6 @@ def _without_open_assembled(mechanism: Mechanism, losses: Losses) -> Mechanism:
     losses.add("import-open-assembled", ASSEMBLED, f"its loops are open: it is renamed to '{name}'")
     renamed = {name if key == ASSEMBLED else key: value for key, value in configurations.items()}
     return replace(mechanism, configurations=MappingProxyType(renamed))
-
-
-def _files(
-    path: Path,
-    format_: str,
-    mechanism: Mechanism,
-    read: RobotRead,
-    losses: tuple[Loss, ...],
-    opened: tuple[Opening, ...],
-    licence: Path | None,
-) -> dict[str, bytes]:
-    written, schema = _description(path, format_, mechanism, read)
-    files = {
-        "robot.urdf": written.urdf,
-        "robot.yaml": written.yaml.encode(),
-        "README.md": readme(path, FORMATS[format_], mechanism, losses, read, opened, licence).encode(),
-        FILES[schema]: schema_text(json_schema(schema)).encode(),
-        **read.meshes,
-    }
-    if licence is not None:
-        files["LICENSE"] = licence.read_bytes()
-    return files
 
 
 def _description(

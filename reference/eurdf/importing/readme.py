@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from eurdf.diagnostics.visible import visible
-from eurdf.importing.robot_read import ImportFormat, RobotRead
+from eurdf.importing.import_format import ImportFormat, RobotRead
 from eurdf.kinematics.opening import Opening
 from eurdf.loss import Loss
 from eurdf.mechanism.mechanism import Mechanism

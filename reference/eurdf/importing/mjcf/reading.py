@@ -1,33 +1,57 @@
-"""What is read of a model so far."""
+"""What is read of an MJCF file so far, and values of a compiled model as those of a mechanism."""
 
 from __future__ import annotations
 
-from pathlib import Path
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
 
-from eurdf.importing.mesh_copies import MeshCopies
-from eurdf.importing.mjcf.losses import LOSSES
-from eurdf.importing.mjcf.model import MjcfModel
-from eurdf.importing.mjcf.step import Step
-from eurdf.importing.mjcf.values import pose_from
-from eurdf.loss import Losses
+from eurdf.importing.import_format import ImportInput
+from eurdf.importing.mjcf.compiled import Element, MjcfModel
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Root
-from eurdf.mechanism.pose import IDENTITY, Pose
-from eurdf.mesh_files.folders import Folders
+from eurdf.mechanism.pose import IDENTITY, Pose, Quaternion, Vector3
 from eurdf.writing.names import UniqueNames
 
 WORLD = "world"
+
+#: Types whose one coordinate equalities and tendons relate.
+SCALAR = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC, JointType.HELICAL)
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """A joint of the mechanism that one or several joints of a body are.
+
+    Attributes:
+        name: Its name.
+        type: Its type.
+        joints: The MuJoCo joints that it is, in order.
+        anchor: Its origin in the body at qpos0, m.
+        turn: Orientation of its frame in the body.
+        axes: Of the joint, in its frame.
+        pitch: Of a helical joint, m per revolution.
+    """
+
+    name: str
+    type: JointType
+    joints: tuple[Element, ...]
+    anchor: Vector3 = (0.0, 0.0, 0.0)
+    axes: tuple[Vector3, ...] = ()
+    turn: Pose = IDENTITY
+    pitch: float = 0.0
 
 
 class MjcfReading:
     """A file while it is read.
 
     Attributes:
-        model: The compiled model.
-        path: The file.
+        given: The file, and the meshes to write.
         losses: What is lost.
-        copies: Files of meshes to write.
+        model: The compiled model.
         links: Names of links.
         joint_names: Names of joints.
         equalities: Names of closures and couplings.
@@ -35,79 +59,75 @@ class MjcfReading:
         joints_of: For each body, its joints in MuJoCo.
         root: Whether the root floats.
         root_body: The body that is the root.
-        bodies: Link of each body.
+        bodies: Link of each body, by its index.
         extra: Links without mass between the joints of a body.
-        joints: The joints of the mechanism.
-        steps: For each joint of MuJoCo, the joint of the mechanism that it is a part of.
+        joints: The joints of the mechanism, by name.
+        steps: For each joint of MuJoCo, by its index, the joint of the mechanism that it is a part of.
         consumed: Indices of the equalities that are read.
     """
 
-    def __init__(self, model: MjcfModel, path: Path, folders: Folders) -> None:
-        self.model, self.path = model, path
-        self.losses = Losses(LOSSES)
-        self.copies = MeshCopies(folders, self.losses)
-        self.links = UniqueNames(self.losses, "universe", code="import-name")
-        self.joint_names = UniqueNames(self.losses, "universe", ROOT_JOINT, code="import-name")
-        self.children: dict[int, list[int]] = {}
-        for body, parent in enumerate(model["body_parentid"][1:], 1):
-            self.children.setdefault(parent, []).append(body)
-        self.joints_of: dict[int, list[int]] = {}
-        for joint, body in enumerate(model["jnt_bodyid"]):
-            self.joints_of.setdefault(body, []).append(joint)
+    def __init__(self, given: ImportInput, model: MjcfModel) -> None:
+        self.given, self.losses, self.model = given, given.losses, model
+        self.links = self.names("universe")
+        self.joint_names = self.names("universe", ROOT_JOINT)
+        self.equalities = self.names()
+        self.children: dict[int, list[int]] = {body.index: [] for body in model["body"]}
+        for body in model["body"][1:]:
+            self.children[body.parentid].append(body.index)
+        self.joints_of: dict[int, list[Element]] = {body.index: [] for body in model["body"]}
+        for joint in model["jnt"]:
+            self.joints_of[joint.bodyid].append(joint)
         self.root, self.root_body = self._root()
         self.bodies: dict[int, Body] = {}
         self.extra: list[Body] = []
-        self.joints: list[Joint] = []
+        self.joints: dict[str, Joint] = {}
         self.steps: dict[int, Step] = {}
         self.consumed: set[int] = set()
-        self.equalities = UniqueNames(self.losses, code="import-name")
+
+    def names(self, *reserved: str) -> UniqueNames:
+        """Names of elements of one kind."""
+        return UniqueNames(self.losses, *reserved, code="import-name")
+
+    def new_name(self, names: UniqueNames, element: Element, kind: str, made: str) -> str:
+        """The name of an element that needs one; made if it has none."""
+        stated = usable(element.name)
+        name = names.new(stated or made)
+        if not stated or stated != element.name:
+            self.losses.add("import-name", element.name or f"{kind} {element.index}", f"becomes '{name}'")
+        return name
 
     @property
     def name(self) -> str:
         """Name of the robot: that of the model, else of the file."""
         name = self.model.name
-        return self.path.stem if name in ("", "MuJoCo Model") else name
+        return self.given.path.stem if name in ("", "MuJoCo Model") else name
 
     def _root(self) -> tuple[Root, int]:
         """Whether the root floats, and the body that it is."""
         model = self.model
-        top = self.children.get(0, [])
+        top = self.children[0]
         moving = [body for body in top if self._moves(body)]
-        joined = {body for bodies in self._bodies_of_equalities() for body in bodies}
+        joined = {body for each in model["eq"] if each.type in ("connect", "weld") for body in self._bodies_of(each)}
         free = [body for body in moving if self.kinds(body) == ["free"]]
         if len(moving) == 1 and free and joined <= set(self.below(free[0])):
             return "floating", free[0]
-        at_world = 0 in joined
-        empty = not at_world and 0 not in model["site_bodyid"]
-        solid = [kind for body, kind in zip(model["geom_bodyid"], model["geom_type"], strict=True) if body == 0]
-        if (
-            len(top) == 1
-            and empty
-            and set(solid) <= {"plane"}
-            and not self.kinds(top[0])
-            and self.pose_of(top[0]) == IDENTITY
-        ):
+        solid = {geom.type for geom in model["geom"] if geom.bodyid == 0}
+        is_empty = 0 not in joined and solid <= {"plane"} and not any(site.bodyid == 0 for site in model["site"])
+        if len(top) == 1 and is_empty and not self.kinds(top[0]) and self.pose_of(top[0]) == IDENTITY:
             return "fixed", top[0]
         return "fixed", 0
 
     def _moves(self, body: int) -> bool:
         """Whether a body or one below it has a joint."""
-        return bool(self.joints_of.get(body)) or any(map(self._moves, self.children.get(body, ())))
+        return bool(self.joints_of[body]) or any(map(self._moves, self.children[body]))
 
     def kinds(self, body: int) -> list[str]:
         """Types of the joints of a body, as MuJoCo calls them."""
-        return [self.model["jnt_type"][joint] for joint in self.joints_of.get(body, ())]
+        return [joint.type for joint in self.joints_of[body]]
 
-    def _bodies_of_equalities(self) -> list[tuple[int, ...]]:
-        model = self.model
-        found = []
-        for kind, object_, one, other in zip(
-            model["eq_type"], model["eq_objtype"], model["eq_obj1id"], model["eq_obj2id"], strict=True
-        ):
-            if kind in ("connect", "weld"):
-                pair = (one, other) if object_ == "body" else tuple(model["site_bodyid"][site] for site in (one, other))
-                found.append(pair)
-        return found
+    def _bodies_of(self, equality: Element) -> list[int]:
+        ends = equality.obj1id, equality.obj2id
+        return [self.model["site"][end].bodyid for end in ends] if equality.objtype == "site" else list(ends)
 
     def below(self, body: int) -> list[int]:
         """A body and all that it carries, depth first."""
@@ -115,15 +135,67 @@ class MjcfReading:
         while stack:
             body = stack.pop()
             found.append(body)
-            stack += reversed(self.children.get(body, []))
+            stack += reversed(self.children[body])
         return found
 
     def pose_of(self, body: int) -> Pose:
         """Pose of a body in its parent at the reference configuration."""
-        return pose_from(self.model["body_pos"][body], self.model["body_quat"][body])
+        return pose_from(self.model["body"][body].pos, self.model["body"][body].quat)
 
-    def wraps(self, tendon: int) -> list[tuple[str, int, float]]:
-        """What a tendon goes by: kind, index of the element, and coefficient."""
-        model = self.model
-        at, count = model["tendon_adr"][tendon], model["tendon_num"][tendon]
-        return [(model["wrap_type"][i], model["wrap_objid"][i], model["wrap_prm"][i]) for i in range(at, at + count)]
+    def wraps(self, tendon: int) -> Sequence[Element]:
+        """What a tendon goes by: its type, the index ``objid`` of the element, and the coefficient ``prm``."""
+        found = self.model["tendon"][tendon]
+        return self.model["wrap"][found.adr : found.adr + found.num]
+
+    def driven(self, actuator: Element) -> Element | None:
+        """The joint that an actuator acts on, if it acts on a joint."""
+        return self.model["jnt"][actuator.trnid[0]] if actuator.trntype in ("joint", "jointinparent") else None
+
+
+class NoDirection(ValueError):  # noqa: N818 - named as the other refusals are
+    """A quaternion or an axis has no direction, as MuJoCo makes of numbers that overflow."""
+
+
+def must_have_direction(what: str, values: Sequence[float]) -> float:
+    """The length of a quaternion or an axis.
+
+    Raises:
+        NoDirection: It is zero, or not finite.
+    """
+    length = math.hypot(*values)
+    if not 0.0 < length < math.inf:
+        shown = " ".join(f"{value:g}" for value in values)
+        raise NoDirection(f"the {what} {shown}; its length must be finite, and not zero")
+    return length
+
+
+def usable(name: str) -> str:
+    """A name that a description can contain wherever it names something: ``x-`` begins user data there."""
+    return f"_{name}" if name.startswith("x-") else name
+
+
+def vector(values: Iterable[float]) -> Vector3:
+    """Three numbers."""
+    x, y, z = map(float, values)
+    return x, y, z
+
+
+def xyzw(wxyz: Sequence[float]) -> Quaternion:
+    """The unit quaternion x y z w along one of MuJoCo, w x y z.
+
+    Raises:
+        NoDirection: Its length is zero, or not finite.
+    """
+    norm = must_have_direction("quaternion", wxyz)
+    w, x, y, z = (float(value) / norm for value in wxyz)
+    return x, y, z, w
+
+
+def pose_from(xyz: Sequence[float], wxyz: Sequence[float]) -> Pose:
+    """The pose of a position, m, and a quaternion of MuJoCo."""
+    return Pose(vector(xyz), xyzw(wxyz))
+
+
+def flat(value: Any) -> Sequence[float]:
+    """A number, or some, as a sequence."""
+    return value if isinstance(value, list) else (value,)

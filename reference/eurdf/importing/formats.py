@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from eurdf.importing.formats import drake, loop_joint, mjcf, sdf, urdf_plus
-from eurdf.importing.robot_read import ImportFormat
+from eurdf.importing import drake, loop_joint, sdf, urdf_plus
+from eurdf.importing.import_format import ImportFormat
+from eurdf.importing.mjcf import read as mjcf
 
 #: Every format, by its name.
 FORMATS: dict[str, ImportFormat] = {each.FORMAT.name: each.FORMAT for each in (mjcf, sdf, loop_joint, drake, urdf_plus)}
