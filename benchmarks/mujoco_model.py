@@ -14,7 +14,7 @@ import eurdf
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.constraint import FrameClosure, PointClosure
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.pose import Pose
 

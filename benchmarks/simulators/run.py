@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from eurdf.mechanism.constraint import DistanceClosure, FrameClosure, HingeClosure
 from eurdf.mechanism.frame import Anchor
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose, Quaternion, Vector3, direction
 

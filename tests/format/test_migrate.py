@@ -96,8 +96,8 @@ def randomly_posed(before: Robot, after: Robot, seed: int) -> tuple[Any, Any]:
     other: dict[str, list[float]] = {}
     names = {joint.name for joint in before.mechanism.joints}
     for joint in after.mechanism.joints:
-        values = [float(value) for value in rng.uniform(-1.5, 1.5, len(joint.coordinates.names))]
-        if joint.coordinates.quaternion is not None:
+        values = [float(value) for value in rng.uniform(-1.5, 1.5, len(joint.type.coordinates))]
+        if joint.type.quaternion is not None:
             values = list(np.array(values) / np.linalg.norm(values))
         if not values or joint.mimic is not None:
             continue
@@ -131,7 +131,7 @@ def assert_same_motion(before: Mechanism, after: Mechanism) -> None:
     one, other = build_robot(before, geometry=False), build_robot(after, geometry=False)
     assert one.model.nv == other.model.nv
     assert pin.computeTotalMass(one.model) == pytest.approx(pin.computeTotalMass(other.model), rel=1e-12)
-    moving = [joint.name for joint in after.joints if joint.coordinates.nv and joint.mimic is None]
+    moving = [joint.name for joint in after.joints if joint.type.nv and joint.mimic is None]
     parts = [[name] if one.model.existJointName(name) else halves(one, name) for name in moving]
     rows_one, rows_other = velocities(one, [name for part in parts for name in part]), velocities(other, moving)
     for attribute in ("velocityLimit", "damping", "friction", "armature", "upperEffortLimit"):

@@ -31,7 +31,7 @@ from eurdf.mechanism.constraint import (
     PointClosure,
 )
 from eurdf.mechanism.frame import Anchor
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand
@@ -280,7 +280,7 @@ REFERENCE = Path(eurdf.__file__).parent
 #: configurations.
 STATING = (
     "checking/",
-    "exporting/",
+    "convert/",
     "format/",
     "importing/",
     "linking/",

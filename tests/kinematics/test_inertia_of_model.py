@@ -22,9 +22,7 @@ def at_random(seed: int) -> tuple[Mechanism, dict[str, tuple[float, ...]], np.ra
     random = np.random.default_rng(seed)
     mechanism = by_hand.tree_of_all_types(random)
     joints = tuple(replace(joint, offset=by_hand.some_pose(random)) for joint in mechanism.joints)
-    coordinates = {
-        joint.name: by_hand.some_coordinates(joint.type, random) for joint in joints if joint.coordinates.nv > 0
-    }
+    coordinates = {joint.name: by_hand.some_coordinates(joint.type, random) for joint in joints if joint.type.nv > 0}
     return replace(mechanism, joints=joints), coordinates, random
 
 
@@ -64,7 +62,7 @@ def test_mass_matrix_matches_kinetic_energy_of_bodies(seed: int) -> None:
 def test_armature_adds_to_mass_matrix_diagonal(seed: int) -> None:
     mechanism, coordinates, random = at_random(seed)
     joints = tuple(
-        replace(joint, properties=JointProperties(armature=tuple(random.uniform(0.0, 1.0, joint.coordinates.nv))))
+        replace(joint, properties=JointProperties(armature=tuple(random.uniform(0.0, 1.0, joint.type.nv))))
         for joint in mechanism.joints
     )
     mechanism = replace(mechanism, joints=joints)

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.configuration import configuration_vector, joint_coordinates
@@ -182,7 +182,7 @@ def test_missing_joint_is_at_neutral() -> None:
     np.testing.assert_array_equal(q, pin.neutral(model))
     for name, values in joint_coordinates(mechanism, model, q).items():
         joint = next(joint for joint in mechanism.joints if joint.name == name)
-        assert values == joint.coordinates.neutral
+        assert values == joint.type.neutral
 
 
 def test_unknown_joint_or_wrong_length_is_refused() -> None:

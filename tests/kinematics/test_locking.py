@@ -24,7 +24,7 @@ from eurdf.mechanism.body import Shape
 from eurdf.mechanism.constraint import FrameClosure, PointClosure
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose
@@ -112,11 +112,11 @@ def some_robot(random: np.random.Generator, mimic: bool, root: str = "fixed") ->
             mimic=followers.get(joint.name),
             offset=by_hand.some_pose(random) if joint.type is JointType.SPHERICAL else joint.offset,
             properties=JointProperties(
-                lower=(-2.0,) * joint.coordinates.nv if joint.type in AXIAL else (),
-                upper=(3.0,) * joint.coordinates.nv if joint.type in AXIAL else (),
-                effort=tuple(random.uniform(1, 2, joint.coordinates.nv).tolist()),
-                armature=tuple(random.uniform(1, 2, joint.coordinates.nv).tolist()),
-                gear_ratio=tuple(random.uniform(1, 2, joint.coordinates.nv).tolist()),
+                lower=(-2.0,) * joint.type.nv if joint.type in AXIAL else (),
+                upper=(3.0,) * joint.type.nv if joint.type in AXIAL else (),
+                effort=tuple(random.uniform(1, 2, joint.type.nv).tolist()),
+                armature=tuple(random.uniform(1, 2, joint.type.nv).tolist()),
+                gear_ratio=tuple(random.uniform(1, 2, joint.type.nv).tolist()),
             ),
         )
         for joint in tree.joints

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.configuration import configuration_vector

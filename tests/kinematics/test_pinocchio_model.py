@@ -17,7 +17,7 @@ from eurdf.mechanism.body import Body
 from eurdf.mechanism.constraint import FrameClosure, PointClosure
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import Pose
@@ -329,7 +329,7 @@ def _hand_made(joint: Joint, **changes: object) -> Mechanism:
 @pytest.mark.parametrize("kind", by_hand.MOVING)
 def test_joint_properties_are_at_its_velocities(kind: JointType) -> None:
     joint = by_hand.some_joint(kind, np.random.default_rng(0))
-    nv = joint.coordinates.nv
+    nv = joint.type.nv
     names = ("velocity", "effort", "damping", "friction", "armature", "gear_ratio", "rotor_inertia")
     values = {name: tuple(10.0 * row + column for column in range(nv)) for row, name in enumerate(names, 1)}
     model = build_model(_hand_made(replace(joint, properties=JointProperties(**values))))
@@ -370,7 +370,7 @@ LIMITS = {
 @pytest.mark.parametrize("kind", LIMITS)
 def test_position_limits_are_at_pinocchio_coordinates(kind: str) -> None:
     joint = by_hand.some_joint(JointType(kind), np.random.default_rng(0))
-    count = len(joint.coordinates.names)
+    count = len(joint.type.coordinates)
     lower = tuple(-1.0 - 0.5 * index for index in range(count))
     upper = tuple(2.0 + 0.5 * index for index in range(count))
     model = build_model(_hand_made(replace(joint, properties=JointProperties(lower, upper))))

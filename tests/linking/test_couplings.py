@@ -54,16 +54,6 @@ def mimic(tmp_path: Path) -> eurdf.Robot:
     return eurdf.load(written(tmp_path / "mimic", 'extended_urdf: "2.0"\nactuators: [j0]\n', text))
 
 
-def test_coupling_is_read_as_written(belt: eurdf.Robot) -> None:
-    assert belt.constraints == (Coupling("belt", (("j1", 2.0), ("j0", -1.0)), 0.4),)
-
-
-def test_coupling_removes_one_freedom(belt: eurdf.Robot) -> None:
-    found = eurdf.analyze(belt)
-    assert (found.nv, found.nc, found.rank, found.mobility, found.uncontrolled) == (2, 1, 1, 1, 0)
-    assert [loop.joints for loop in found.loops] == [("j0", "j1")]
-
-
 @pytest.mark.parametrize("angle", [0.3, 9.0, -20.0])
 def test_whole_turns_of_a_coupled_joint_count(belt: eurdf.Robot, angle: float) -> None:
     q = at(belt, angle)
@@ -88,17 +78,6 @@ def test_locked_joint_moves_into_the_offset(belt: eurdf.Robot) -> None:
     locked = eurdf.lock(belt, ["j0"], at(belt, 0.7))
     assert (locked.dropped_closures, locked.model.nv) == ((), 1)
     assert locked.constraints == (Coupling("belt", (("j1", 2.0),), 1.1),)
-
-
-def test_coupled_branches_are_one_group_of_loops(tmp_path: Path) -> None:
-    joints = [
-        joint_element(name, "continuous", "base", child, '<axis xyz="0 0 1"/>') for name, child in ("ab", "cd", "ef")
-    ]
-    text = urdf(body("base"), body("b"), body("d"), body("f"), *joints)
-    yaml = HEAD + "couplings: [{name: gear, joints: {a: 1, e: 3}}]\nactuators: [a, c]\n"
-    found = eurdf.analyze(eurdf.load(written(tmp_path, yaml, text)))
-    assert [(loop.closures, loop.joints) for loop in found.loops] == [(("gear",), ("a", "e"))]
-    assert (found.mobility, found.uncontrolled) == (2, 0)
 
 
 def test_leader_of_an_earlier_mimic_joint_can_be_coupled(tmp_path: Path) -> None:
@@ -152,13 +131,6 @@ def test_check_reports_a_coupling_without_actuator(tmp_path: Path) -> None:
     found = eurdf.check(written(tmp_path, BELT.replace("actuators: [j0]\n", ""))).diagnostics
     assert [(each.code, each.line) for each in found] == [("x-no-actuator", 2)]
     assert "1 coupling and no actuator" in found[0].message
-
-
-def test_own_key_in_a_coupling_that_is_a_joint_is_reported(tmp_path: Path) -> None:
-    text = arm().replace('"j1"', '"x-j1"')
-    yaml = HEAD + "couplings: [{name: belt, joints: {j0: 1, j2: 1, x-j1: 2}}]\n"
-    codes = [found.code for found in eurdf.check(written(tmp_path, yaml, text)).diagnostics]
-    assert codes == ["own-key-is-joint", "unknown-coupled-joint"]
 
 
 def test_info_shows_couplings_as_equations(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

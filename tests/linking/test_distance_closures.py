@@ -13,7 +13,6 @@ import pytest
 import eurdf
 from eurdf.commands.main import main
 from eurdf.kinematics.residual import acceleration_drift
-from eurdf.mechanism.constraint import DistanceClosure
 from eurdf.pinocchio.constraint import NoConstraintModel
 from support.described import body, revolute
 from support.plain_urdf import robot as urdf
@@ -65,17 +64,6 @@ def twin(tmp_path: Path) -> eurdf.Robot:
 
 def closed(robot: eurdf.Robot) -> Any:
     return eurdf.forward_kinematics(robot, {"j0": 0.4})
-
-
-def test_distance_is_read_with_its_length(robot: eurdf.Robot) -> None:
-    (rod,) = robot.constraints
-    assert isinstance(rod, DistanceClosure)
-    assert (rod.name, rod.length, rod.a.body, rod.b.body) == ("rod", 1.0, "crank", "rocker")
-
-
-def test_distance_removes_one_freedom(robot: eurdf.Robot) -> None:
-    found = eurdf.analyze(robot)
-    assert (found.nv, found.nc, found.rank, found.mobility, found.uncontrolled) == (3, 1, 1, 2, 1)
 
 
 def test_distance_assembles_where_the_rod_in_the_tree_does(robot: eurdf.Robot, twin: eurdf.Robot) -> None:

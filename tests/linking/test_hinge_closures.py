@@ -11,7 +11,6 @@ import pytest
 
 import eurdf
 from eurdf.commands.main import main
-from eurdf.mechanism.constraint import HingeClosure
 
 ROBOTS = Path(__file__).parents[2] / "robots"
 
@@ -28,16 +27,6 @@ def hinged(folder: Path, name: str, closure: str) -> Path:
     return path
 
 
-def test_hinge_leaves_a_four_bar_its_mobility(tmp_path: Path) -> None:
-    robot = eurdf.load(hinged(tmp_path, "four_bar", "3d"), geometry=False)
-    (closure,) = robot.constraints
-    assert isinstance(closure, HingeClosure)
-    assert closure.axes == ((0.0, 1.0, 0.0), (0.0, 1.0, 0.0))
-    found = eurdf.analyze(robot)
-    assert (found.nc, found.rank, found.mobility, found.redundant) == (5, 2, 1, 3)
-    assert np.abs(eurdf.assemble(robot).residual).max() < 1e-9
-
-
 def test_gains_of_both_constraint_models_of_hinge_must_agree(tmp_path: Path) -> None:
     robot = eurdf.load(hinged(tmp_path, "four_bar", "3d"), geometry=False)
     q, v = eurdf.assemble(robot).q, np.zeros(3)
@@ -51,10 +40,6 @@ def test_gains_of_both_constraint_models_of_hinge_must_agree(tmp_path: Path) -> 
     moved = pin.integrate(robot.model, q, 1e-6 * np.arange(3))
     found, expected = (eurdf.forward_dynamics(robot, moved, v, gains=gains).a for gains in (None, (400.0, 0.0)))
     np.testing.assert_allclose(found, expected, atol=1e-12)
-
-
-def test_hinged_robot_has_no_error(tmp_path: Path) -> None:
-    assert eurdf.check(hinged(tmp_path, "four_bar", "3d")).diagnostics == ()
 
 
 def test_info_shows_version_and_hinge(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-from eurdf.exporting.verification.read_model import without_armature
+from eurdf.convert.verification.read_model import without_armature
 from eurdf.pinocchio.robot import Robot
 from support.drake_witness import InDrake
 from support.exported import hanging, random_robot

@@ -13,8 +13,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import eurdf
-from eurdf.exporting.inertia import about_centre
-from eurdf.exporting.verification.read_model import without_armature
+from eurdf.convert.inertia import about_centre
+from eurdf.convert.verification.read_model import without_armature
 from eurdf.mechanism.body import Body, Inertia
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose

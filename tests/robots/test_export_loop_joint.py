@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-from eurdf.exporting.formats.loop_joint import from_x
+from eurdf.convert.loop_joint.write import from_x
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import Robot
 from support.exported import random_robot

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 import eurdf
 from eurdf.mechanism.constraint import Constraint, Coupling, HingeClosure
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from lxml import etree
 
 import eurdf
-from eurdf.exporting.verification.read_model import without_armature
-from eurdf.mechanism.joint_type import JointType
+from eurdf.convert.verification.read_model import without_armature
+from eurdf.mechanism.joint_types import JointType
 from eurdf.pinocchio.robot import Robot
 from support.drake_witness import InDrake, TreeInDrake
 from support.exported import random_robot

@@ -16,7 +16,7 @@ import pytest
 import eurdf
 from eurdf.commands.main import main
 from eurdf.mechanism.constraint import Coupling, HingeClosure
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand
 from support.exported import random_robot
@@ -393,7 +393,7 @@ def test_names_that_usd_cannot_have_are_shown(tmp_path: Path) -> None:
 
 
 def test_missing_extra_is_named(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("eurdf.exporting.formats.usd.find_spec", lambda name: None)
+    monkeypatch.setattr("eurdf.convert.usd.write.find_spec", lambda name: None)
     assert main(["export", "four_bar", "--to", "usd"]) == 2
     assert "the package that writes USD is not installed; install it with: " in (err := capsys.readouterr().err)
     assert "[usd]" in err

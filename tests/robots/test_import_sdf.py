@@ -12,7 +12,7 @@ import pytest
 
 import eurdf
 from eurdf.mechanism.constraint import FrameClosure, HingeClosure, PointClosure
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.mimic import Mimic
 from support import by_hand

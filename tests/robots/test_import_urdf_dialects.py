@@ -10,9 +10,9 @@ import pytest
 from lxml import etree
 
 import eurdf
-from eurdf.loss import Effect
+from eurdf.convert.losses import Effect
 from eurdf.mechanism.constraint import Coupling, FrameClosure, HingeClosure, PointClosure
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.pinocchio.robot import build_robot
 from support.plain_urdf import inertial, joint_element, link_element
 

@@ -13,13 +13,13 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import eurdf
-from eurdf.exporting.coordinates import Part
-from eurdf.exporting.verification.read_model import without_armature
-from eurdf.loss import Effect
+from eurdf.convert.coordinates import Part
+from eurdf.convert.losses import Effect
+from eurdf.convert.verification.read_model import without_armature
 from eurdf.mechanism.constraint import HingeClosure
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.mechanism.pose import IDENTITY, Pose, direction
 from eurdf.mechanism.spanning_tree import rigid_roots
@@ -80,7 +80,7 @@ def in_normal_form(mechanism: Mechanism) -> Mechanism:
         c = coupling.coefficients[0][1]
         terms = tuple((name, value / c) for name, value in coupling.coefficients)
         couplings.append(replace(coupling, coefficients=terms, offset=coupling.offset / c))
-    neutral = {joint.name: joint.coordinates.neutral for joint in mechanism.joints}
+    neutral = {joint.name: joint.type.neutral for joint in mechanism.joints}
     configurations = {
         name: {joint: values for joint, values in stated.items() if values != neutral.get(joint)}
         for name, stated in mechanism.configurations.items()
@@ -215,9 +215,9 @@ def with_limits(robot: Robot, random: np.random.Generator) -> Robot:
     def limited(joint: Joint) -> Joint:
         if joint.type is JointType.FIXED:
             return joint
-        n, nv = len(joint.coordinates.names), joint.coordinates.nv
+        n, nv = len(joint.type.coordinates), joint.type.nv
         values: dict[str, Any] = {name: tuple(random.uniform(1.0, 9.0, nv).tolist()) for name in ("velocity", "effort")}
-        if joint.type is not JointType.CONTINUOUS and joint.coordinates.quaternion is None:
+        if joint.type is not JointType.CONTINUOUS and joint.type.quaternion is None:
             values["lower"] = tuple(random.uniform(-9.0, -7.0, n).tolist())
             values["upper"] = tuple(random.uniform(7.0, 9.0, n).tolist())
         return replace(joint, properties=replace(joint.properties, **values))

@@ -12,10 +12,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import eurdf
-from eurdf.exporting.inertia import about_centre
-from eurdf.loss import Effect
+from eurdf.convert.inertia import about_centre
+from eurdf.convert.losses import Effect
 from eurdf.mechanism.body import Inertia
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.spanning_tree import rigid_roots
 from eurdf.pinocchio.robot import Robot, build_robot
@@ -54,7 +54,7 @@ def matched(export: eurdf.Export, there: Robot, robot: Robot, q: Any) -> Any:
             continue
         for name in part.names:
             kind = there.slots[name].joint.type if name in there.slots else None
-            n = 0 if kind is None else len(there.slots[name].joint.coordinates.names)
+            n = 0 if kind is None else len(there.slots[name].joint.type.coordinates)
             if kind is None:  # a mimic joint
                 at += 1
             elif kind is JointType.SPHERICAL and part.rotation == "rpy":

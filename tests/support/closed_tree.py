@@ -18,7 +18,7 @@ from eurdf.mechanism.constraint import (
     PointClosure,
 )
 from eurdf.mechanism.frame import Anchor
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism, Root
 from eurdf.mechanism.mimic import Mimic
 from eurdf.pinocchio.coordinates import slots

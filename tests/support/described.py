@@ -12,7 +12,7 @@ import numpy as np
 import pinocchio as pin
 
 import eurdf
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.configuration import configuration_vector
 from support.plain_urdf import inertial, joint_element, link_element

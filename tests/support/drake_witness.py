@@ -11,8 +11,8 @@ import pytest
 pytest.importorskip("pydrake", reason="Drake is not installed: pip install -e '.[drake]'")
 
 import eurdf
-from eurdf.exporting.verification.drake_model import Plant, SdfTree
-from eurdf.exporting.verification.read_model import Exported
+from eurdf.convert.verification.drake_model import Plant, SdfTree
+from eurdf.convert.verification.read_model import Exported
 from eurdf.pinocchio.robot import Robot
 
 

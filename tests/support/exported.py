@@ -9,10 +9,10 @@ import mujoco
 import numpy as np
 
 import eurdf
-from eurdf.exporting.coordinates import Coordinates
+from eurdf.convert.coordinates import Coordinates
 from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.joint import Joint, JointProperties
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Root
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand
@@ -35,7 +35,7 @@ def some_properties(joint: Joint, random: np.random.Generator) -> JointPropertie
     """
     if joint.type is JointType.FIXED:
         return joint.properties
-    nv = joint.coordinates.nv
+    nv = joint.type.nv
     together = joint.type in (JointType.SPHERICAL, JointType.PLANAR, JointType.FLOATING)
 
     def values() -> tuple[float, ...]:

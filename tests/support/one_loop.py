@@ -11,8 +11,7 @@ from eurdf.mechanism.body import Body
 from eurdf.mechanism.constraint import CLOSURES, Closure, Coupling
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_transform import joint_transform
-from eurdf.mechanism.joint_type import COORDINATES, JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose
@@ -60,7 +59,7 @@ def one_loop(
             coordinates[joint.name] = c
         joints.append(joint)
         bodies.append(Body(f"b{index + 1}"))
-        tip = tip * joint.placement * joint_transform(joint, c)
+        tip = tip * joint.placement * joint.transform(c)
     b = _pose(random)
     closed = _closure(closure, tip * b, b, f"b{len(joints)}", random)
     couplings = ()
@@ -104,7 +103,7 @@ def _pose(random: np.random.Generator) -> Pose:
 
 
 def _coordinates(kind: JointType, random: np.random.Generator) -> tuple[float, ...]:
-    values = 0.5 * random.uniform(-1.0, 1.0, len(COORDINATES[kind].names))
-    if (first := COORDINATES[kind].quaternion) is not None:
+    values = 0.5 * random.uniform(-1.0, 1.0, len(kind.coordinates))
+    if (first := kind.quaternion) is not None:
         values[first:] /= np.linalg.norm(values[first:])
     return tuple(values.tolist())

@@ -9,7 +9,7 @@ from typing import Any
 from eurdf.mechanism.body import Shape
 from eurdf.mechanism.constraint import RIGID, Compliance, DistanceClosure, HingeClosure
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.motor import Motor
 from eurdf.mechanism.pose import Vector3

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from eurdf.mechanism.joint_type import COORDINATES, JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 
 if TYPE_CHECKING:
@@ -141,10 +141,8 @@ def assembly_info(
 
 def _units(kind: JointType) -> list[tuple[str, Unit]]:
     """Name and unit of each coordinate of a joint."""
-    coordinates = COORDINATES[kind]
-    start = len(coordinates.names) if coordinates.quaternion is None else coordinates.quaternion
-    plain = coordinates.names[:start]
-    return [(name, _UNITS[name] if name in plain else "") for name in coordinates.names]
+    plain = kind.coordinates[: kind.quaternion]
+    return [(name, _UNITS[name] if name in plain else "") for name in kind.coordinates]
 
 
 def _finite(number: float) -> float | None:

@@ -17,11 +17,12 @@ from eurdf.commands.progress import progress_bar
 from eurdf.commands.robot_options import add_robot_options, add_robot_path, ending, robot_options
 from eurdf.commands.selection import select_one
 from eurdf.commands.verification_lines import verification_lines
+from eurdf.convert.formats import ACTUATORS, CLOSURES, EXPORTS, MESH_FILES
 
 if TYPE_CHECKING:
+    from eurdf.convert.losses import Loss
     from eurdf.diagnostics import Place
     from eurdf.linking.description import Linked
-    from eurdf.loss import Loss
 
 _DESCRIPTION = """\
 Write a robot in the format of a simulator, with the closed loops that the format can state, and show every loss: what
@@ -37,13 +38,6 @@ _EPILOG = ending(
     "eurdf export my_robot --to mjcf -o simulation --actuators position",
 )
 
-#: Names of the formats, and of what actuators, closures and mesh files become. They are checked against
-#: `eurdf.exporting` by the tests: importing it here would slow every command down.
-FORMATS = ("mjcf", "usd", "drake", "loop-joint", "sdf", "urdf")
-ACTUATORS = ("motor", "position", "none")
-CLOSURES = ("stated", "hinge")
-MESH_FILES = ("copy", "reference")
-
 
 def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command to the parser."""
@@ -56,7 +50,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     add_robot_path(parser)
     add_robot_options(parser)
-    parser.add_argument("--to", required=True, choices=FORMATS, metavar="FORMAT", help=", ".join(FORMATS))
+    parser.add_argument("--to", required=True, choices=EXPORTS, metavar="FORMAT", help=", ".join(EXPORTS))
     parser.add_argument(
         "-o", "--output", metavar="OUT", help="the folder to write to; default: the robot's name, _ and the format"
     )
@@ -110,9 +104,9 @@ def run(args: argparse.Namespace) -> int:
     if description.diagnostics:  # such as closures of another dialect, which the file will not have
         show_report(description.path, tuple(description.diagnostics), False)
 
-    from eurdf.exporting.exceptions import CannotExport
-    from eurdf.exporting.export import Choices, export_linked
-    from eurdf.exporting.verification.verify import require_reader
+    from eurdf.convert.exceptions import CannotExport
+    from eurdf.convert.export import Choices, export_linked
+    from eurdf.convert.verification.verify import require_reader
 
     if args.verify:
         require_reader(args.to)

@@ -12,10 +12,10 @@ from eurdf.commands.loss_info import LossInfo, loss_info
 from eurdf.diagnostics.report import encodable
 
 if TYPE_CHECKING:
+    from eurdf.convert.losses import Loss
+    from eurdf.convert.verification.verify import Verification
     from eurdf.diagnostics import Place
-    from eurdf.exporting.verification.verify import Verification
     from eurdf.kinematics.opening import Opening
-    from eurdf.loss import Loss
 
 
 class _Entry(BaseModel):

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from eurdf.convert.losses import Effect
 from eurdf.diagnostics.report import encodable
-from eurdf.loss import Effect
 
 if TYPE_CHECKING:
+    from eurdf.convert.losses import Loss
     from eurdf.diagnostics import Place
-    from eurdf.loss import Loss
 
 
 class LossInfo(BaseModel):

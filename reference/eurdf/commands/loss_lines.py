@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from eurdf.convert.losses import Loss
     from eurdf.diagnostics import Place
     from eurdf.diagnostics.text import Line
-    from eurdf.loss import Loss
 
 # Elements that are shown of each kind of loss.
 _MOST_SHOWN = 4

@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from eurdf.mechanism.constraint import CLOSURES
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 
 if TYPE_CHECKING:
     from eurdf.kinematics.analysis import Analysis
@@ -330,7 +330,7 @@ def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
             ActuatorInfo(
                 joint=joint,
                 type=joints[joint].type,
-                nv=joints[joint].coordinates.nv,
+                nv=joints[joint].type.nv,
                 name=name,
                 control=controls.get(joint),
             )
@@ -365,7 +365,7 @@ def _joint_infos(robot: Robot) -> Iterator[JointInfo]:
         )
     at, actuated = slots(mechanism), set(robot.actuation.joints)
     for joint in mechanism.joints:
-        if joint.type is JointType.FIXED:
+        if joint.type.is_fixed:
             continue
         slot = at.get(joint.name)
         yield JointInfo(

@@ -207,7 +207,7 @@ def _common(robot: Robot, joints: Selection, motors: Selection, configurations: 
 def _axes(robot: Robot, chosen: Selection) -> tuple[AxisInfo, ...]:
     units: list[Literal["rad", "m"]] = []
     for name in chosen.joints:
-        kinds = robot.slots[name].joint.coordinates.names
+        kinds = robot.slots[name].joint.type.coordinates
         units += ["m" if kind == "length" else "rad" for kind in kinds]
     return tuple(AxisInfo(name=name, unit=unit) for name, unit in zip(chosen.names, units, strict=True))
 

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from eurdf.convert.verification.verify import Verification
     from eurdf.diagnostics.text import Line
-    from eurdf.exporting.verification.verify import Verification
 
 
 def verification_lines(found: Verification) -> Iterator[Line]:
@@ -16,8 +16,8 @@ def verification_lines(found: Verification) -> Iterator[Line]:
     Args:
         found: The result of `Export.verify`.
     """
+    from eurdf.convert.verification.fall import amount
     from eurdf.diagnostics.visible import visible
-    from eurdf.exporting.verification.fall import amount
 
     yield [(f"read back by {found.reader}", "bold")]
     if not found.refused:

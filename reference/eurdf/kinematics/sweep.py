@@ -14,7 +14,7 @@ from eurdf.kinematics.branch import Branch, Point
 from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.position_limit import PositionLimits, chosen_limits
 from eurdf.kinematics.scale import characteristic_length
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.pinocchio.arguments import checked_count
 
 if TYPE_CHECKING:

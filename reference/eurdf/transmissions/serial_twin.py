@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, cast
 
 import numpy as np
 
+from eurdf.convert.export import export, files_of_meshes
 from eurdf.diagnostics import enumerated
-from eurdf.exporting.export import export, files_of_meshes
 from eurdf.kinematics.array import Mask, Matrix, Vector
 from eurdf.kinematics.driven_motion import DrivenMotion
 from eurdf.mechanism.joint import JointProperties
@@ -84,7 +84,7 @@ class Neglected:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SerialTwin:
-    """A serial robot that stands for one with a parallel transmission.
+    """The serial equivalent of a robot with a parallel transmission.
 
     Attributes:
         robot: The serial robot. Its joints are actuated, with the limits and armatures below.

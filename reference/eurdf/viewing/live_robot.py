@@ -17,9 +17,7 @@ from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_sc
 from eurdf.mechanism.body import Shape
 from eurdf.mechanism.constraint import Closure, Constraint, Coupling, DistanceClosure, HingeClosure
 from eurdf.mechanism.frame import Anchor
-from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
+from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, root_joint
 from eurdf.mechanism.mimic import drivers
 from eurdf.mechanism.pose import IDENTITY, Pose, direction
 from eurdf.viewing.scene import Scene
@@ -137,8 +135,7 @@ def live_robot(robot: Robot, q: Vector | None = None) -> dict[str, Any]:
 def _moving(robot: Robot) -> Iterable[str]:
     """Names of the joints that have velocities of their own."""
     root = [ROOT_JOINT] if robot.mechanism.root == "floating" else []
-    fixed = JointType.FIXED
-    return [*root, *(each.name for each in robot.mechanism.joints if each.mimic is None and each.type is not fixed)]
+    return [*root, *(each.name for each in robot.mechanism.joints if each.mimic is None and not each.type.is_fixed)]
 
 
 def _joints(
@@ -148,7 +145,7 @@ def _joints(
     joints = list(mechanism.joints)
     parents = [bodies[joint.parent] for joint in joints]
     if mechanism.root == "floating":
-        joints.insert(0, Joint(ROOT_JOINT, JointType.FLOATING, "", mechanism.bodies[0].name))
+        joints.insert(0, root_joint(mechanism.bodies[0].name))
         parents.insert(0, -1)
     numbers = {joint.name: index for index, joint in enumerate(joints)}
     found = []

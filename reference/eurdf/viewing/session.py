@@ -23,10 +23,9 @@ from eurdf.kinematics.position_limit import driven_coordinates, position_limits
 from eurdf.kinematics.residual import residual
 from eurdf.kinematics.scale import characteristic_length
 from eurdf.kinematics.sweep import sweep
-from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array
-from eurdf.viewing.joint_pose import LONGEST, NAMES, motions, values_at
+from eurdf.viewing.joint_pose import LONGEST, NAMES, ROTATION, motions, values_at
 from eurdf.viewing.spring_rest import SpringRest
 
 if TYPE_CHECKING:
@@ -241,7 +240,7 @@ class Session:
 
     def carried_to(self, robot: Robot) -> Vector:
         """The configuration of another version of the robot in which its joints are where they are here."""
-        names = {joint.name: len(joint.coordinates.names) for joint in robot.mechanism.joints if joint.mimic is None}
+        names = {joint.name: len(joint.type.coordinates) for joint in robot.mechanism.joints if joint.mimic is None}
         here = self.robot.coordinates(self.q)
         kept = {name: values for name, values in here.items() if names.get(name) == len(values)}
         root = {name: here[name] for name in (ROOT_JOINT,) if name in here and robot.mechanism.root == "floating"}
@@ -272,12 +271,11 @@ class Session:
 
     def _longest(self, slider: Slider) -> float:
         """How far from zero a coordinate of a pose can be."""
-        rotation = NAMES[JointType.SPHERICAL]
         names = NAMES[self.robot.slots[slider.joint].joint.type]
-        if names[slider.number] not in rotation:
+        if names[slider.number] not in ROTATION:
             return math.inf
         pose = self._pose(slider, self.q)
-        others = [pose[number] for number, name in enumerate(names) if name in rotation and number != slider.number]
+        others = [pose[number] for number, name in enumerate(names) if name in ROTATION and number != slider.number]
         return math.sqrt(max(0.0, LONGEST**2 - sum(value**2 for value in others)))
 
     def _move_pose(self, slider: Slider, at: float, goal: float) -> Stop | None:
@@ -413,7 +411,7 @@ def _sliders(robot: Robot, q: Vector, analysis: Analysis) -> Iterator[Slider]:
     for name in moved:
         joint = joints[name]
         velocities = tree.velocities_of(name)
-        turns = joint.type is JointType.CONTINUOUS
+        turns = joint.type.is_axial and not joint.type.limited
         actuated = name in robot.actuation.joints
         if not len(velocities) or (joint.type in NAMES and robot.constraints and not actuated):
             continue  # the velocities of a joint that is not actuated are not held, so its pose is not either
@@ -429,7 +427,7 @@ def _sliders(robot: Robot, q: Vector, analysis: Analysis) -> Iterator[Slider]:
         if joint.type in NAMES:
             continue
         for number, velocity in enumerate(velocities):
-            word = joint.coordinates.names[number]
+            word = joint.type.coordinates[number]
             at = float(q[coordinates[velocity]]) if velocity in direct else 0.0
             around = length if word == "length" else math.pi
             lower, upper = float(limits.lower[velocity]), float(limits.upper[velocity])

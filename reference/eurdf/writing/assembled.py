@@ -10,8 +10,7 @@ from eurdf.diagnostics import Diagnostics
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.residual import residual
 from eurdf.linking.description import Described
-from eurdf.mechanism.joint_type import COORDINATES, JointType
-from eurdf.mechanism.mechanism import ROOT_JOINT
+from eurdf.mechanism.mechanism import ROOT_JOINT, root_joint
 from eurdf.pinocchio.configuration import configuration_vector
 from eurdf.pinocchio.robot import Robot
 
@@ -79,8 +78,8 @@ def _to_state(
     """The coordinates of the joints that a file has to state."""
     entries = {entry.name: entry.joints for entry in description.extension.configurations}
     stated = entries.get(configuration, {})
-    neutral = {joint.name: joint.coordinates.neutral for joint in robot.mechanism.joints}
-    neutral[ROOT_JOINT] = COORDINATES[JointType.FLOATING].neutral
+    neutral = {joint.name: joint.type.neutral for joint in robot.mechanism.joints}
+    neutral[ROOT_JOINT] = root_joint("").type.neutral
     return {name: values for name, values in coordinates.items() if name in stated or tuple(values) != neutral[name]}
 
 

@@ -10,7 +10,7 @@ from eurdf.format.urdf.elements import UrdfReader
 from eurdf.format.urdf.mimics import check_mimics
 from eurdf.linking.description import Described
 from eurdf.linking.rereading import reread
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.same_model import differences, with_universal_joints
 from eurdf.reading.reporter import XmlReporter

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from eurdf.format.extension import Extension
 from eurdf.linking.description import Described, Linked
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.reading.yaml_node import Pointer
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ def _in_extension(extension: Extension, mechanism: Mechanism) -> Iterator[_Found
             if _orientation_in_degrees(value):
                 yield found(value, "an angle of 'rpy'", (*reference.pointer, "rpy", index))
     angles = {
-        joint.name: [index for index, name in enumerate(joint.coordinates.names) if name == "angle"]
+        joint.name: [index for index, name in enumerate(joint.type.coordinates) if name == "angle"]
         for joint in mechanism.joints
     }
     for entry in extension.joints:

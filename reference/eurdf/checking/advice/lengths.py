@@ -8,7 +8,6 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from eurdf.linking.description import Described, Linked, place_of_file
-from eurdf.mechanism.joint_type import JointType
 
 if TYPE_CHECKING:
     from eurdf.diagnostics import Diagnostics, Place
@@ -81,7 +80,7 @@ def _hint(length: float) -> str:
 def _between_joints(urdf: Urdf) -> Iterator[_Found]:
     """The origins of the joints, except those that only place the robot in its world."""
     for joint in urdf.joints.values():
-        if joint.parent != urdf.root or joint.type is not JointType.FIXED:
+        if joint.parent != urdf.root or not joint.type.is_fixed:
             origin = joint.element.find("origin")
             place = partial(urdf.document.place, joint.element if origin is None else origin, "xyz")
             yield math.hypot(*joint.placement.xyz), f"the distance of joint '{joint.name}' from its parent", place

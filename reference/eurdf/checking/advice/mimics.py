@@ -6,7 +6,6 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from eurdf.diagnostics import quoted
-from eurdf.mechanism.mimic import MIMIC_TYPES
 
 if TYPE_CHECKING:
     from eurdf.diagnostics import Diagnostics
@@ -26,7 +25,7 @@ def advise_on_mimics(description: Linked, diagnostics: Diagnostics) -> None:
     urdf, mechanism = description.urdf, description.mechanism
     if mechanism.version != "1" or not mechanism.actuators:
         return
-    free = {joint.name for joint in mechanism.joints if joint.type in MIMIC_TYPES} - set(mechanism.actuators)
+    free = {joint.name for joint in mechanism.joints if joint.type.is_axial} - set(mechanism.actuators)
     found = [joint for joint in urdf.joints.values() if joint.mimic is not None and joint.name in free]
     if not found:
         return

@@ -58,7 +58,7 @@ def advise_on_quaternions(description: Described, robot: Robot | None, diagnosti
 
 def w_first(mechanism: Mechanism, coordinates: _Coordinates) -> dict[str, tuple[float, ...]]:
     """The coordinates of the joints with a quaternion, read w first, where that is another orientation."""
-    quaternion = {joint.name: joint.coordinates.quaternion for joint in mechanism.joints}
+    quaternion = {joint.name: joint.type.quaternion for joint in mechanism.joints}
     quaternion[ROOT_JOINT] = 3
     turned = {}
     for name, values in coordinates.items():

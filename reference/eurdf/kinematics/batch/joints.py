@@ -16,7 +16,7 @@ import numpy as np
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.batch import rigid
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import direction
 
 

@@ -14,7 +14,6 @@ import numpy as np
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.batch import rigid
 from eurdf.kinematics.batch.joints import Floating, Motion, Screw, motion
-from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.pose import IDENTITY, Pose
 from eurdf.pinocchio.coordinates import slots
 from eurdf.pinocchio.mimic import following
@@ -101,7 +100,7 @@ class BatchTree:
         for joint in mechanism.joints:
             parent, pose = places[joint.parent]
             pose = pose * joint.placement
-            if joint.type is JointType.FIXED:
+            if joint.type.is_fixed:
                 places[joint.child] = parent, pose * joint.offset
                 continue
             mimic = led.mimics.get(joint.name)
