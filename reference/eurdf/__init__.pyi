@@ -6,8 +6,11 @@ from eurdf.checking.load import load as load
 from eurdf.collection import collection_names as collection_names
 from eurdf.convert.coordinates import Coordinates as Coordinates
 from eurdf.convert.exceptions import CannotExport as CannotExport
+from eurdf.convert.exceptions import CannotImport as CannotImport
 from eurdf.convert.export import Export as Export
 from eurdf.convert.export import export as export
+from eurdf.convert.import_robot import Import as Import
+from eurdf.convert.import_robot import import_robot as import_robot
 from eurdf.convert.losses import Loss as Loss
 from eurdf.diagnostics import Diagnostic as Diagnostic
 from eurdf.diagnostics.report import Report as Report
@@ -16,9 +19,6 @@ from eurdf.exceptions import EurdfError as EurdfError
 from eurdf.exceptions import InvalidRobot as InvalidRobot
 from eurdf.exceptions import MissingExtra as MissingExtra
 from eurdf.exceptions import RobotNotFound as RobotNotFound
-from eurdf.importing.exceptions import CannotImport as CannotImport
-from eurdf.importing.import_robot import Import as Import
-from eurdf.importing.import_robot import import_robot as import_robot
 from eurdf.kinematics.analysis import Analysis as Analysis
 from eurdf.kinematics.analysis import LoopAnalysis as LoopAnalysis
 from eurdf.kinematics.analysis import Motion as Motion

@@ -11,10 +11,10 @@ from eurdf.commands.loss_info import LossInfo, loss_info
 from eurdf.diagnostics.report import Report, encodable
 
 if TYPE_CHECKING:
+    from eurdf.convert.exceptions import CannotImport
+    from eurdf.convert.import_robot import Import
     from eurdf.convert.losses import Loss
     from eurdf.diagnostics import Place
-    from eurdf.importing.exceptions import CannotImport
-    from eurdf.importing.import_robot import Import
 
 
 class _Entry(BaseModel):

@@ -14,11 +14,12 @@ from eurdf.commands.migrate import print_notes
 from eurdf.commands.output import write_json, write_lines
 from eurdf.commands.output_file import writing
 from eurdf.commands.robot_options import ending
+from eurdf.convert.formats import IMPORTS
 
 if TYPE_CHECKING:
+    from eurdf.convert.import_robot import Import
     from eurdf.convert.losses import Loss
     from eurdf.diagnostics import Place
-    from eurdf.importing.import_robot import Import
 
 _DESCRIPTION = """\
 Describe a robot that is in a file of a simulator, with its closed loops, and show every loss: what a description cannot
@@ -33,10 +34,6 @@ _EPILOG = ending(
     "eurdf import cassie.xml -o cassie",
     "eurdf import scene/arm.xml -o arm --within .",
 )
-
-#: Names of the formats. They are checked against `eurdf.importing` by the tests: importing it here would slow every
-#: command down.
-FORMATS = ("mjcf", "sdf", "loop-joint", "drake", "urdf-plus")
 
 
 def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -53,9 +50,9 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "--from",
         dest="format_",
-        choices=FORMATS,
+        choices=IMPORTS,
         metavar="FORMAT",
-        help=f"{', '.join(FORMATS)}; default: recognized by the content",
+        help=f"{', '.join(IMPORTS)}; default: recognized by the content",
     )
     parser.add_argument(
         "--within",
@@ -75,9 +72,9 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def run(args: argparse.Namespace) -> int:
     """Import, show the losses, and return the exit code."""
     from eurdf.checking.check import check
+    from eurdf.convert.exceptions import CannotImport
+    from eurdf.convert.import_robot import import_robot
     from eurdf.diagnostics.report import Report
-    from eurdf.importing.exceptions import CannotImport
-    from eurdf.importing.import_robot import import_robot
 
     try:
         found = import_robot(
@@ -135,7 +132,7 @@ class _Places:
     def of(self, loss: Loss) -> Place | None:
         """Where the element of a loss is, if it has a name there."""
         if self._of is None:
-            from eurdf.importing.places import places_of_names
+            from eurdf.convert.xml_elements import places_of_names
 
             self._of = places_of_names(self._sources)
         return self._of.get(loss.name)

@@ -13,19 +13,25 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 from lxml import etree
 
-from eurdf.convert.losses import Effect, Losses, LossKind
+from eurdf.convert.import_format import (
+    LOCKED,
+    SIMULATION,
+    TEXTURE,
+    ImportFormat,
+    ImportInput,
+    RobotRead,
+    continuous_if_unlimited,
+    loss_kinds,
+    without_locks,
+)
+from eurdf.convert.losses import dropped, exact
 from eurdf.convert.names import UniqueNames
-from eurdf.importing.elements import Elements, named
-from eurdf.importing.locked import LOCKED, without_locks
-from eurdf.importing.mesh_copies import NAMED_FILE, MeshCopies
-from eurdf.importing.robot_read import ImportFormat, RobotRead
-from eurdf.importing.xml_files import inside, read_root
+from eurdf.convert.xml_elements import Elements, inside, named, read_root
 from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.constraint import Closure, FrameClosure, HingeClosure, PointClosure
 from eurdf.mechanism.frame import Anchor, Frame
@@ -36,7 +42,6 @@ from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 from eurdf.mechanism.spanning_tree import depth_first
 from eurdf.mesh_files.reader import RefusedFile
-from eurdf.reading.resource import FileFinder
 
 #: A limit beyond this is none: 1e16 is the default of SDFormat.
 UNLIMITED = 1e15
@@ -63,81 +68,47 @@ _TYPES: Mapping[str, JointType] = {
 #: Elements of a model, a link and a joint that are no part of a description.
 _SIMULATION = ("plugin", "sensor", "light", "particle_emitter", "projector", "audio_source", "gripper", "battery")
 
-LOSSES = (
-    LossKind(
-        "import-name",
-        "name",
-        Effect.EXACT,
-        "is changed: the name is missing, reserved, or used by another element",
-        "give the element a unique name in the file",
-    ),
-    LossKind(
-        "import-loop",
+_LOSSES = {
+    "loop": dropped(
         "joint",
-        Effect.DROPPED,
         "closes a loop and is left out: loops are closed by ball, fixed and revolute joints",
         "let another joint of the loop close it",
     ),
-    LossKind(
-        "import-loop-properties",
+    "loop-properties": dropped(
         "joint",
-        Effect.DROPPED,
         "closes a loop: its limits, springs and losses are left out",
         "let another joint of the loop close it",
     ),
-    LossKind(
-        "import-gearbox",
-        "joint",
-        Effect.DROPPED,
-        "is a gearbox and is left out",
-        "describe it by a coupling of the joints that it relates",
+    "gearbox": dropped(
+        "joint", "is a gearbox and is left out", "describe it by a coupling of the joints that it relates"
     ),
-    LossKind(
-        "import-default-inertia",
+    "default-inertia": exact(
         "inertia",
-        Effect.EXACT,
         "is not stated: the link has the default of SDFormat, 1 kg and 1 kg·m²",
         "state the inertia",
     ),
-    LossKind(
-        "import-ball-properties",
+    "ball-properties": dropped(
         "joint",
-        Effect.DROPPED,
         "is a ball joint: the limits, springs and losses of its axis are left out",
         "state the losses in the description",
     ),
-    LOCKED,
-    LossKind(
-        "import-mimic",
+    "locked-joint": LOCKED,
+    "mimic": dropped(
         "mimic joint",
-        Effect.DROPPED,
         "is left out: one of the joints has several axes, or none",
         "describe the relation by a coupling",
     ),
-    LossKind(
-        "import-shape",
-        "shape",
-        Effect.DROPPED,
-        "is left out: URDF has no such shape",
-        "replace it by boxes, spheres, capsules, cylinders or a mesh",
+    "shape": dropped(
+        "shape", "is left out: URDF has no such shape", "replace it by boxes, spheres, capsules, cylinders or a mesh"
     ),
-    LossKind(
-        "import-mesh",
+    "mesh": dropped(
         "mesh",
-        Effect.DROPPED,
         "is left out: its file was not found, or is refused",
         "correct its uri, or name the folder of the file with --within (within= in Python)",
     ),
-    NAMED_FILE,
-    LossKind("import-texture", "texture", Effect.DROPPED, "is left out; the color is kept", "add it to the URDF"),
-    LossKind(
-        "import-simulation",
-        "simulation",
-        Effect.DROPPED,
-        "is no part of a description",
-        "keep it in a file of the simulator",
-    ),
-)
+    "texture": TEXTURE,
+    "simulation": SIMULATION,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,23 +132,21 @@ class _SdfJoint:
     in_child: Pose
 
 
-def read(path: Path, finder: FileFinder) -> RobotRead:
+def read(given: ImportInput) -> RobotRead:
     """Read an SDFormat file with one model.
 
     Raises:
         CannotImport: It is not such a file, has an error, or its links do not hang together.
     """
-    inside(path, path.resolve(), finder.folders)
-    return replace(_Reader(path, read_root(path), finder).read(), sources=(path,))
+    inside(given.path, given.path.resolve(), given.folders)
+    return _Reader(given, read_root(given.path)).read()
 
 
 class _Reader:
     """A file while it is read."""
 
-    def __init__(self, path: Path, root: etree._Element, finder: FileFinder) -> None:
-        self.path, self.elements = path, Elements(path)
-        self.losses, self.finder = Losses(LOSSES), finder
-        self.copies = MeshCopies(finder.folders, self.losses)
+    def __init__(self, given: ImportInput, root: etree._Element) -> None:
+        self.given, self.losses, self.elements = given, given.losses, Elements(given.path)
         if root.tag != "sdf":
             raise self.elements.refuse(root, f"the root element is {named(root)}; it must be <sdf>")
         self.model = self._only_model(root)
@@ -243,6 +212,13 @@ class _Reader:
         pose = self.poses[name] = self._in_model(base, element, (*seen, name)) * found
         return pose
 
+    def _in_link(self, link: str, element: etree._Element) -> Pose:
+        """The pose of an element of a link in the link."""
+        pose, frame = self._pose(element)
+        if not frame:
+            return pose
+        return self._in_model(link, element).inverse() * self._in_model(frame, element) * pose
+
     def _link_of(self, name: str, element: etree._Element, seen: tuple[str, ...] = ()) -> str:
         """The link that a link, joint or frame is fixed to."""
         if name in self.links or name == _WORLD:
@@ -288,7 +264,7 @@ class _Reader:
             )
         closures = tuple(closure for joint in loops if (closure := self._closure(joint)) is not None)
         mechanism = Mechanism(
-            self.model.get("name") or self.path.stem,
+            self.model.get("name") or self.given.path.stem,
             "",
             root,
             (bodies[root_link], *(bodies[joint.child] for joint in ordered)),
@@ -301,9 +277,7 @@ class _Reader:
         if root == "floating":
             pose = base * self._in_model(root_link, self.model)
             start[ROOT_JOINT] = (*pose.xyz, *pose.quaternion)
-        return RobotRead(
-            mechanism, self.losses.found, self.copies.files, ("the pose of the links", MappingProxyType(start))
-        )
+        return RobotRead(mechanism, (self.given.path,), ("the pose of the links", MappingProxyType(start)))
 
     def _joint(self, name: str, element: etree._Element) -> _SdfJoint:
         kind = element.get("type", "")
@@ -331,7 +305,7 @@ class _Reader:
             while at in tree and at not in above:
                 above.add(at)
                 at = tree[at].parent
-            is_loop = joint.element.findtext("physics/simbody/must_be_loop_joint", "").strip() in ("true", "1")
+            is_loop = _is_true(joint.element, "physics/simbody/must_be_loop_joint")
             if is_loop or joint.child in tree or at in above or joint.child == _WORLD:
                 loops.append(joint)
             else:
@@ -350,7 +324,7 @@ class _Reader:
             return _WORLD, "fixed"
         free = [name for name in self.links if name not in hanging]
         root = self._canonical() if self._canonical() in free else free[0]
-        static = (self.model.findtext("static") or "").strip() in ("true", "1")
+        static = _is_true(self.model, "static")
         return root, "fixed" if static else "floating"
 
     def _tree_joint(self, joint: _SdfJoint, placed: Pose) -> Joint:
@@ -359,17 +333,14 @@ class _Reader:
         kind = _TYPES[joint.type]
         axes = self._axes(joint, placed)
         name = self.names.new(joint.name)
-        if kind.is_fixed:
+        if kind is JointType.FIXED:
             return Joint(name, kind, joint.parent, joint.child, parent.inverse() * child)
         placement = parent.inverse() * child * joint.in_child
         offset = joint.in_child.inverse() if joint.in_child != IDENTITY else IDENTITY
         pitch = self._pitch(joint) if kind is JointType.HELICAL else 0.0
         properties = self._properties(joint, kind)
         found = Joint(name, kind, joint.parent, joint.child, placement, offset, axes, pitch, properties)
-        found = without_locks(found, self.losses)
-        if found.type is JointType.REVOLUTE and not any(map(math.isfinite, found.ranges[0])):
-            found = replace(found, type=JointType.CONTINUOUS)
-        return found
+        return continuous_if_unlimited(without_locks(found, self.losses))
 
     def _axes(self, joint: _SdfJoint, placed: Pose) -> tuple[Vector3, ...]:
         """The axes of a joint, in its frame."""
@@ -389,7 +360,7 @@ class _Reader:
             if not any((x, y, z)):
                 raise self.elements.refuse(joint.element, f"an axis of joint '{joint.name}' is zero")
             frame = None if xyz is None else xyz.get("expressed_in")
-            in_model = (axis.findtext("use_parent_model_frame") or "").strip() in ("true", "1")
+            in_model = _is_true(axis, "use_parent_model_frame")
             vector: Vector3 = (x, y, z)
             if frame or in_model:
                 here = self._in_model(joint.child, joint.element) * joint.in_child
@@ -458,7 +429,7 @@ class _Reader:
 
     def _with_mimics(self, joints: Sequence[Joint]) -> list[Joint]:
         """The joints, each that mimics another with its leader."""
-        types = {joint.name: joint.type for joint in joints}
+        axial = {joint.name for joint in joints if joint.type.is_axial}
         found = []
         for joint in joints:
             element = self.joints.get(joint.name)
@@ -467,7 +438,7 @@ class _Reader:
                 leader = mimic.get("joint", "")
                 factor = self._number(mimic, "multiplier", 1.0)
                 offset = self._number(mimic, "offset", 0.0) - factor * self._number(mimic, "reference", 0.0)
-                if leader in types and types[leader].is_axial and joint.type.is_axial and len(mimics) == 1:
+                if leader in axial and joint.name in axial and len(mimics) == 1:
                     joint = replace(joint, mimic=Mimic(leader, factor, offset))
                 else:
                     self.losses.add("import-mimic", joint.name)
@@ -491,7 +462,7 @@ class _Reader:
         name = self.names.new(joint.name)
         if kind is JointType.SPHERICAL:
             return PointClosure(name, a, b)
-        if kind.is_fixed:
+        if kind is JointType.FIXED:
             return FrameClosure(name, a, b)
         (axis,) = self._axes(joint, IDENTITY)
         return HingeClosure(name, a, b, (axis, axis))
@@ -510,17 +481,13 @@ class _Reader:
         if inertial is None:
             self.losses.add("import-default-inertia", name)
             return Inertia(1.0, IDENTITY, (1.0, 0.0, 0.0, 1.0, 0.0, 1.0))
-        pose, frame = self._pose(inertial)
-        if frame:
-            pose = self._in_model(name, link).inverse() * self._in_model(frame, link) * pose
+        pose = self._in_link(name, inertial)
         xx, yy, zz = (self._number(inertial, f"inertia/{key}", 1.0) for key in ("ixx", "iyy", "izz"))
         xy, xz, yz = (self._number(inertial, f"inertia/{key}", 0.0) for key in ("ixy", "ixz", "iyz"))
         return Inertia(self._number(inertial, "mass", 1.0), pose, (xx, xy, xz, yy, yz, zz))
 
     def _shape(self, element: etree._Element, link: str) -> Shape | None:
-        pose, frame = self._pose(element)
-        if frame:
-            pose = self._in_model(link, element).inverse() * self._in_model(frame, element) * pose
+        pose = self._in_link(link, element)
         geometry = element.find("geometry")
         shapes = [] if geometry is None else [child for child in geometry if isinstance(child.tag, str)]
         color = self._color(element)
@@ -542,12 +509,12 @@ class _Reader:
 
     def _mesh(self, mesh: etree._Element, pose: Pose, color: tuple[float, float, float, float] | None) -> Shape | None:
         uri = (mesh.findtext("uri") or "").strip()
-        found = self.finder.find(uri) if uri else None
+        found = self.given.finder.find(uri) if uri else None
         if found is None:
             self.losses.add("import-mesh", uri)
             return None
         try:
-            copy = self.copies.file(Path(found))
+            copy = self.given.copy(found)
         except RefusedFile as reason:
             self.losses.add("import-mesh", uri, f"is left out: {reason}")
             return None
@@ -603,8 +570,12 @@ class _Reader:
 _CLOSING = (JointType.SPHERICAL, JointType.FIXED, JointType.REVOLUTE, JointType.CONTINUOUS)
 
 
-def _text(element: etree._Element, tag: str) -> str:
-    return (element.findtext(tag) or "").strip()
+def _text(element: etree._Element, path: str) -> str:
+    return (element.findtext(path) or "").strip()
 
 
-FORMAT = ImportFormat("sdf", read, LOSSES)
+def _is_true(element: etree._Element, path: str) -> bool:
+    return _text(element, path) in ("true", "1")
+
+
+FORMAT = ImportFormat("sdf", read, loss_kinds(_LOSSES))

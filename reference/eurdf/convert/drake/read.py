@@ -9,23 +9,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 
 from lxml import etree
 
-from eurdf.convert.losses import Effect, Losses, LossKind
+from eurdf.convert.import_format import LOCKED, ImportFormat, ImportInput, RobotRead, loss_kinds, without_locks
+from eurdf.convert.losses import approximate, dropped
 from eurdf.convert.names import UniqueNames
-from eurdf.importing.elements import Elements, local, named
-from eurdf.importing.locked import LOCKED, without_locks
-from eurdf.importing.robot_read import ImportFormat, RobotRead
-from eurdf.importing.urdf_tree import URDF_LOSSES, UrdfTree, read_tree
+from eurdf.convert.urdf.read import URDF_LOSSES, UrdfTree, read_tree
+from eurdf.convert.xml_elements import Elements, local, named
 from eurdf.mechanism.constraint import Closure, Coupling, PointClosure
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import IDENTITY, Pose
-from eurdf.reading.resource import FileFinder
 from eurdf.writing.urdf_elements import UNLIMITED
 
 _WORLD = "world"
@@ -39,25 +36,21 @@ _KNOWN = (
     "collision_filter_group",
 )
 
-LOSSES = (
-    LOCKED,
-    LossKind(
-        "import-tendon",
+_LOSSES = {
+    "locked-joint": LOCKED,
+    "tendon": dropped(
         "tendon constraint",
-        Effect.DROPPED,
         "is left out: it bounds a sum of coordinates, and does not fix it",
         "limit the motion in the controller",
     ),
-    LossKind(
-        "import-softness",
+    "softness": approximate(
         "tendon constraint",
-        Effect.APPROXIMATE,
         "becomes rigid: its stiffness and damping are left out",
         "keep them in a file of the simulator",
         error="what the constraint gives way under load",
     ),
-    *URDF_LOSSES,
-)
+    **URDF_LOSSES,
+}
 
 
 @dataclass(slots=True)
@@ -86,30 +79,25 @@ _TYPES = {
 }
 
 
-def read(path: Path, finder: FileFinder) -> RobotRead:
+def read(given: ImportInput) -> RobotRead:
     """Read a URDF of Drake.
 
     Raises:
         CannotImport: It has an error.
     """
-    losses, elements, joints = Losses(LOSSES), Elements(path), _Joints()
+    elements, joints = Elements(given.path), _Joints()
     tree = read_tree(
-        path,
-        finder,
-        losses,
+        given,
         _KNOWN,
         lambda root: _make_plain(root, elements, joints),
-        lambda joint: without_locks(_as_in_drake(joint, joints), losses),
+        lambda joint: without_locks(_as_in_drake(joint, joints), given.losses),
     )
-    mechanism = _on_the_world(tree.mechanism)
-    names = UniqueNames(losses, code="import-name")
+    tree = replace(tree, mechanism=_on_the_world(tree.mechanism))
+    names = tree.names()
     mechanism = replace(
-        mechanism,
-        frames=_frames(tree, mechanism, losses),
-        closures=_closures(tree, mechanism, names),
-        couplings=_couplings(tree, mechanism, names, losses),
+        tree.mechanism, frames=_frames(tree), closures=_closures(tree, names), couplings=_couplings(tree, names)
     )
-    return RobotRead(mechanism, losses.found, tree.copies.files, sources=(path,))
+    return RobotRead(mechanism, (given.path,))
 
 
 def _make_plain(root: etree._Element, elements: Elements, joints: _Joints) -> None:
@@ -177,28 +165,25 @@ def _on_the_world(mechanism: Mechanism) -> Mechanism:
     world = mechanism.bodies[0]
     held = [joint for joint in mechanism.joints if joint.parent == _WORLD]
     bare = world.inertia is None and not world.visuals and not world.collisions
-    if bare and len(held) == 1 and held[0].type.is_fixed and held[0].placement == IDENTITY:
+    if bare and len(held) == 1 and held[0].type is JointType.FIXED and held[0].placement == IDENTITY:
         return replace(mechanism, bodies=mechanism.bodies[1:], joints=mechanism.joints[1:])
     return mechanism
 
 
-def _frames(tree: UrdfTree, mechanism: Mechanism, losses: Losses) -> tuple[Frame, ...]:
-    links = [body.name for body in mechanism.bodies]
-    names = UniqueNames(losses, *links, *(joint.name for joint in mechanism.joints), code="import-name")
+def _frames(tree: UrdfTree) -> tuple[Frame, ...]:
+    names = tree.frame_names()
     return tuple(
         Frame(
             names.new(element.get("name", "frame")),
-            tree.elements.link(element, element.get("link"), links),
+            tree.link(element, element.get("link")),
             tree.elements.pose(element),
         )
-        for element in tree.root
-        if isinstance(element.tag, str) and local(element) == "frame"
+        for element in tree.children("frame")
     )
 
 
-def _closures(tree: UrdfTree, mechanism: Mechanism, names: UniqueNames) -> tuple[Closure, ...]:
+def _closures(tree: UrdfTree, names: UniqueNames) -> tuple[Closure, ...]:
     """The ball constraints. A collision filter group names those of its two bodies that are before it."""
-    links = [body.name for body in mechanism.bodies]
     found: list[Closure] = []
     group: list[tuple[Anchor, Anchor]] = []
 
@@ -217,7 +202,7 @@ def _closures(tree: UrdfTree, mechanism: Mechanism, names: UniqueNames) -> tuple
                 raise tree.elements.refuse(element, f"<ball_constraint> has no <drake:ball_constraint_{min(missing)}>")
             a, b = (
                 Anchor(
-                    tree.elements.link(element, parts[body].get("name"), links),
+                    tree.link(element, parts[body].get("name")),
                     Pose(tree.elements.vector(parts[point], "value")),
                 )
                 for body, point in (("body_A", "p_AP"), ("body_B", "p_BQ"))
@@ -233,12 +218,10 @@ def _closures(tree: UrdfTree, mechanism: Mechanism, names: UniqueNames) -> tuple
     return tuple(found)
 
 
-def _couplings(tree: UrdfTree, mechanism: Mechanism, names: UniqueNames, losses: Losses) -> tuple[Coupling, ...]:
-    joints = {joint.name for joint in mechanism.joints}
+def _couplings(tree: UrdfTree, names: UniqueNames) -> tuple[Coupling, ...]:
+    joints = {joint.name for joint in tree.mechanism.joints}
     found = []
-    for element in tree.root:
-        if not isinstance(element.tag, str) or local(element) != "tendon_constraint":
-            continue
+    for element in tree.children("tendon_constraint"):
         parts = {local(child).removeprefix("tendon_constraint_"): child for child in element}
         terms: dict[str, float] = {}
         for child in element:
@@ -255,12 +238,12 @@ def _couplings(tree: UrdfTree, mechanism: Mechanism, names: UniqueNames, losses:
         )
         stated = "_".join(terms)
         if lower != upper or len(terms) < 2:
-            losses.add("import-tendon", stated)
+            tree.losses.add("import-tendon", stated)
             continue
         name = names.new(stated)
-        losses.add("import-softness", name)
+        tree.losses.add("import-softness", name)
         found.append(Coupling(name, tuple(terms.items()), lower - offset))
     return tuple(found)
 
 
-FORMAT = ImportFormat("drake", read, LOSSES)
+FORMAT = ImportFormat("drake", read, loss_kinds(_LOSSES))

@@ -1,20 +1,30 @@
-"""The XML files of a robot: each is read by our own reader, which refuses entities, before another program reads it."""
+"""An MJCF file as MuJoCo's own compiler reads it, so that defaults, includes and classes are right."""
 
 from __future__ import annotations
 
 import itertools
+import json
 import os
 import re
-from collections.abc import Sequence
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
+from types import SimpleNamespace
 
 from lxml import etree
 
-from eurdf.diagnostics import Diagnostic, FileError
-from eurdf.importing.exceptions import CannotImport
+from eurdf.convert.exceptions import CannotImport
+from eurdf.convert.xml_elements import inside, read_root
+from eurdf.exceptions import MissingExtra
 from eurdf.mesh_files.folders import Folders
-from eurdf.reading.source import FILE_LIMIT, begin_of_file, read_source
-from eurdf.reading.xml_reader import read_xml
+from eurdf.mesh_files.reader import BYTES_LIMIT
+from eurdf.reading.source import FILE_LIMIT, begin_of_file
+from eurdf.sandbox import run
+
+#: Processor time (s) and memory (bytes) that compiling a file may take.
+SECONDS, MEMORY = 60, 6 << 30
 
 #: Files that may include each other in turn.
 DEPTH_LIMIT = 50
@@ -22,36 +32,95 @@ DEPTH_LIMIT = 50
 #: Files in the folder of another one that are read to find the one that includes it.
 OTHERS_LIMIT = 50
 
-_INCLUDE = re.compile(rb"""<include\s+file\s*=\s*["']([^"']+)["']""")
-
 #: Flexible bodies that may be in files of their own, and elements that state options of MuJoCo's compiler.
 FLEXIBLE_LIMIT = 50
 
+_INCLUDE = re.compile(rb"""<include\s+file\s*=\s*["']([^"']+)["']""")
 
-def read_root(path: Path) -> etree._Element:
-    """The root element of an XML file.
+_PROGRAM = Path(__file__).with_name("compile_process.py")
+
+#: An element of a compiled model: its ``index`` and ``name`` (empty for none), and its values by their names in
+#: ``mjModel``, such as ``pos`` of ``body_pos``. Enumerations are words, as ``hinge``; a value that a release of MuJoCo
+#: does not have is an empty list.
+Element = SimpleNamespace
+
+
+@dataclass(frozen=True, slots=True)
+class MjcfModel:
+    """A compiled model.
+
+    Attributes:
+        name: Name of the model.
+        elements: The elements of each kind, by its prefix in ``mjModel``, in the order of the model. A body also has
+            ``fullinertia`` (xx, yy, zz, xy, xz, yz along its axes, kg·m², if stated); a mesh the ``path`` of its file
+            (empty for none), ``scale``, and its content as ``obj``, in the frame of the compiled mesh, where the file
+            cannot be used (else empty).
+        qpos0: The reference configuration.
+        qpos_spring: The configuration at which springs are at rest.
+        counts: Numbers of elements that are not here, by their name in ``mjModel``.
+        left_out: Assets that were left out before compiling: ``kind``, ``name`` and ``reason``.
+    """
+
+    name: str
+    elements: Mapping[str, Sequence[Element]]
+    qpos0: Sequence[float]
+    qpos_spring: Sequence[float]
+    counts: Mapping[str, int]
+    left_out: Sequence[Element]
+
+    def __getitem__(self, kind: str) -> Sequence[Element]:
+        """The elements of a kind."""
+        return self.elements[kind]
+
+
+def compile_mjcf(path: Path, folders: Folders) -> MjcfModel:
+    """Compile a file in a process of its own.
+
+    Args:
+        path: The file.
+        folders: Where its meshes may be; others are left out.
 
     Raises:
-        CannotImport: It cannot be read, is not XML, is too large, or has entities.
+        CannotImport: MuJoCo refuses it, crashes on it, or takes too long.
+        MissingExtra: The extra ``mujoco`` is not installed.
     """
-    try:
-        return read_xml(read_source(path)).root
-    except FileError as error:
-        found = error.diagnostic
-        raise unreadable(path, found) from None
+    found = find_spec("mujoco")
+    if found is None or found.origin is None:
+        from eurdf.diagnostics.extras import install_command
+
+        message = f"'{path}' is an MJCF file, and MuJoCo, which reads it, is not installed; install it with: "
+        raise MissingExtra(message + install_command("mujoco"), "mujoco")
+    request = {
+        "path": os.path.abspath(path),
+        "folders": ["/"] if folders.allow_outside else folders.real,
+        "bytes": BYTES_LIMIT,
+        "seconds": SECONDS,
+        "memory": MEMORY,
+    }
+    with tempfile.TemporaryDirectory() as scratch:
+        done = run(_PROGRAM, request, folder=scratch)
+    if done.exceeded:
+        raise CannotImport(path, f"MuJoCo does not compile it within {SECONDS} s")
+    if done.code or not done.output:
+        raise CannotImport(path, "MuJoCo crashes on it; check the file with MuJoCo's own tools")
+    answer = json.loads(done.output, object_hook=_element)
+    if hasattr(answer, "error"):
+        scene = _included_by(path)  # a fragment can lack what the file states that includes it
+        hint = "" if scene is None else f"; it is included by '{scene.name}': import that file instead"
+        raise CannotImport(path, answer.error + hint)
+    return MjcfModel(**{**vars(answer), "elements": vars(answer.elements), "counts": vars(answer.counts)})
 
 
-def unreadable(path: Path, found: Diagnostic) -> CannotImport:
-    """The exception for an error that leaves nothing to import."""
-    where = f"{found.file}:{found.line}: " if found.line else ""
-    return CannotImport(path, "; ".join((where + found.message, *([found.hint] if found.hint else []))))
+def _element(values: dict[str, object]) -> Element:
+    return Element(**values)
 
 
 def included_files(path: Path, folders: Folders) -> tuple[Path, ...]:
     """An MJCF file and all that it includes, each read once, the main one first: paths as given, not absolute.
 
-    MuJoCo looks for an included file in the folder of the main one, then in that of the one that includes it; for what
-    a model to attach includes, in the folder of that model. A file that exists in any of these counts.
+    Our own reader, which refuses entities, reads each of them before MuJoCo does. MuJoCo looks for an included file in
+    the folder of the main one, then in that of the one that includes it; for what a model to attach includes, in the
+    folder of that model. A file that exists in any of these counts.
 
     Args:
         path: The file.
@@ -92,12 +161,8 @@ def included_files(path: Path, folders: Folders) -> tuple[Path, ...]:
     return files
 
 
-def included_by(path: Path) -> Path | None:
-    """The file beside an MJCF file that includes it, such as its scene; None if there is none.
-
-    Args:
-        path: The file.
-    """
+def _included_by(path: Path) -> Path | None:
+    """The file beside an MJCF file that includes it, such as its scene; None if there is none."""
     others = (other for other in sorted(path.parent.glob("*.xml")) if other.name != path.name)
     for other in itertools.islice(others, OTHERS_LIMIT):
         if other.is_symlink():  # which may lead out of the folder
@@ -109,21 +174,6 @@ def included_by(path: Path) -> Path | None:
         if any(os.path.normpath(name) == os.fsencode(path.name) for name in names):
             return other
     return None
-
-
-def inside(path: Path, file: Path, folders: Folders) -> None:
-    """Refuse a file that is outside the folders of the robot, with symbolic links followed.
-
-    Raises:
-        CannotImport: It is outside.
-    """
-    if not folders.admit(file):
-        raise CannotImport(
-            path,
-            f"it uses '{file}', which is outside the folder of the robot, {folders}; copy it there, or name a folder "
-            "that has both with --within (within= in Python); --allow-outside (allow_outside=True) reads files from "
-            "anywhere",
-        )
 
 
 def _check_flexible_bodies(

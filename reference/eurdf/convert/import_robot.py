@@ -15,18 +15,17 @@ from types import MappingProxyType
 import numpy as np
 
 from eurdf.checking.check import check
-from eurdf.convert.losses import Effect, Loss, Losses, LossKind
+from eurdf.convert.exceptions import CannotImport
+from eurdf.convert.formats import IMPORTS
+from eurdf.convert.import_format import ImportFormat, ImportInput, RobotRead, import_format, loss_kinds
+from eurdf.convert.loop_axes import allowed_axes, with_axes
+from eurdf.convert.losses import Effect, Loss, Losses, dropped, exact
+from eurdf.convert.readme import licence_file, readme
+from eurdf.convert.xml_elements import places_of_names, recognized
 from eurdf.diagnostics import Diagnostic, Severity, did_you_mean
 from eurdf.diagnostics.visible import visible
 from eurdf.exceptions import RobotNotFound
 from eurdf.format.schema import FILES, SchemaVersion, json_schema, schema_text
-from eurdf.importing.exceptions import CannotImport
-from eurdf.importing.formats import FORMATS
-from eurdf.importing.loop_axes import allowed_axes, with_axes
-from eurdf.importing.places import places_of_names
-from eurdf.importing.readme import licence_file, readme
-from eurdf.importing.recognition import recognized
-from eurdf.importing.robot_read import RobotRead
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.opening import CLOSED, Opening
 from eurdf.kinematics.position_limit import position_limits
@@ -35,7 +34,6 @@ from eurdf.linking.configurations import beyond_limits
 from eurdf.linking.description import Unlinked, describe
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.spanning_tree import rigid_poses
-from eurdf.mesh_files.folders import Folders
 from eurdf.pinocchio.robot import build_robot
 from eurdf.reading.resource import FileFinder
 from eurdf.writing.assembled import NAME as ASSEMBLED
@@ -44,42 +42,44 @@ from eurdf.writing.joined_closures import join_points
 from eurdf.writing.output_folder import write_files
 
 #: Losses of every format.
-COMMON = (
-    LossKind(
-        "import-not-assembled",
-        "configuration",
-        Effect.DROPPED,
-        "no configuration was found that closes the loops within the limits of the joints",
-        "correct limits or frames, and find one with `eurdf assemble`",
-    ),
-    LossKind(
-        "import-joined-points",
-        "3d closure",
-        Effect.EXACT,
-        "is one hinge or 6d closure with others of the same two bodies: their points are as far apart in both",
-        "use the hinge or the 6d closure: it has fewer rows",
-    ),
-    LossKind(
-        "import-points-apart",
-        "3d closure",
-        Effect.EXACT,
-        "stays as it is: another one joins the same two bodies, and both cannot be closed",
-        "correct the points in the file",
-    ),
-    LossKind(
-        "import-open-assembled",
-        "configuration",
-        Effect.EXACT,
-        "the name is reserved for a configuration that closes the loops: this one is renamed",
-        "choose another name in the file",
-    ),
-    LossKind(
-        "import-file-outside",
-        "file",
-        Effect.EXACT,
-        "is outside the robot's folder, and was read because of --allow-outside",
-        "copy it into the robot's folder",
-    ),
+COMMON = loss_kinds(
+    {
+        "name": exact(
+            "name",
+            "is changed: the name is missing, reserved, or used by another element",
+            "give the element a unique name in the file",
+        ),
+        "mesh-names": dropped(
+            "mesh",
+            "a material, a buffer or a picture that it names is left out",
+            "copy it into the robot's folder, and name it by its path from the mesh",
+        ),
+        "not-assembled": dropped(
+            "configuration",
+            "no configuration was found that closes the loops within the limits of the joints",
+            "correct limits or frames, and find one with `eurdf assemble`",
+        ),
+        "joined-points": exact(
+            "3d closure",
+            "is one hinge or 6d closure with others of the same two bodies: their points are as far apart in both",
+            "use the hinge or the 6d closure: it has fewer rows",
+        ),
+        "points-apart": exact(
+            "3d closure",
+            "stays as it is: another one joins the same two bodies, and both cannot be closed",
+            "correct the points in the file",
+        ),
+        "open-assembled": exact(
+            "configuration",
+            "the name is reserved for a configuration that closes the loops: this one is renamed",
+            "choose another name in the file",
+        ),
+        "file-outside": exact(
+            "file",
+            "is outside the robot's folder, and was read because of --allow-outside",
+            "copy it into the robot's folder",
+        ),
+    }
 )
 
 
@@ -174,12 +174,13 @@ def import_robot(
     file = Path(path)
     if not file.is_file():
         raise RobotNotFound(os.fspath(path), f"'{file}' is not a file")
-    if format is not None and format not in FORMATS:
-        hint = did_you_mean(format, FORMATS) or f"the formats are: {', '.join(FORMATS)}"
+    if format is not None and format not in IMPORTS:
+        hint = did_you_mean(format, IMPORTS) or f"the formats are: {', '.join(IMPORTS)}"
         raise ValueError(f"there is no format '{format}'; {hint}")
     name = format or recognized(file)
     finder = FileFinder(file.absolute().parent, [] if within is None else [within], allow_outside=allow_outside)
-    imported = _import(name, file, FORMATS[name].read(file, finder), finder.folders)
+    chosen = import_format(name)
+    imported = _import(chosen, ImportInput(file, finder, Losses((*COMMON, *chosen.losses))))
     if strict and (refused := tuple(loss for loss in imported.losses if loss.effect is not Effect.EXACT)):
         more = f"; and {len(refused) - 1} more" if len(refused) > 1 else ""
         raise CannotImport(file, f"it has losses: {refused[0]}{more}", refused)
@@ -197,14 +198,15 @@ def _relative(found: Diagnostic, folder: str) -> Diagnostic:
     return Diagnostic(found.code, found.message.replace(here, ""), place, hint)
 
 
-def _import(format_: str, path: Path, read: RobotRead, folders: Folders) -> Import:
-    losses = Losses((*COMMON, *FORMATS[format_].losses))
-    licence = licence_file(path, folders)
-    for outside in folders.let_through:
+def _import(chosen: ImportFormat, given: ImportInput) -> Import:
+    path, losses = given.path, given.losses
+    read = chosen.read(given)
+    licence = licence_file(path, given.folders)
+    for outside in given.folders.let_through:
         losses.add("import-file-outside", outside)
     start, coordinates = read.start
     # First: no number that the format refuses, such as an infinite one, may reach the kinematics.
-    _description(path, format_, read.mechanism, read)
+    _description(path, chosen.name, read.mechanism, read)
     _must_be_coordinates(path, start, coordinates)
     mechanism = _with_points_joined(read.mechanism, losses)
     if read.without_axis:
@@ -234,9 +236,17 @@ def _import(format_: str, path: Path, read: RobotRead, folders: Folders) -> Impo
         version=version_needed(mechanism),
         metadata=MappingProxyType({"source": visible(path.name), **mechanism.metadata}),
     )
-    found_losses = (*read.losses, *losses.found)
-    files = _files(path, format_, mechanism, read, found_losses, opened, licence)
-    return Import(format_, mechanism, found_losses, MappingProxyType(files), start, opened, closes, read.sources)
+    written, schema = _description(path, chosen.name, mechanism, read)
+    files = {
+        "robot.urdf": written.urdf,
+        "robot.yaml": written.yaml.encode(),
+        "README.md": readme(path, chosen, mechanism, losses.found, read, opened, licence).encode(),
+        FILES[schema]: schema_text(json_schema(schema)).encode(),
+        **given.meshes,
+    }
+    if licence is not None:
+        files["LICENSE"] = licence.read_bytes()
+    return Import(chosen.name, mechanism, losses.found, MappingProxyType(files), start, opened, closes, read.sources)
 
 
 def _with_points_joined(mechanism: Mechanism, losses: Losses) -> Mechanism:
@@ -284,28 +294,6 @@ def _without_open_assembled(mechanism: Mechanism, losses: Losses) -> Mechanism:
     losses.add("import-open-assembled", ASSEMBLED, f"its loops are open: it is renamed to '{name}'")
     renamed = {name if key == ASSEMBLED else key: value for key, value in configurations.items()}
     return replace(mechanism, configurations=MappingProxyType(renamed))
-
-
-def _files(
-    path: Path,
-    format_: str,
-    mechanism: Mechanism,
-    read: RobotRead,
-    losses: tuple[Loss, ...],
-    opened: tuple[Opening, ...],
-    licence: Path | None,
-) -> dict[str, bytes]:
-    written, schema = _description(path, format_, mechanism, read)
-    files = {
-        "robot.urdf": written.urdf,
-        "robot.yaml": written.yaml.encode(),
-        "README.md": readme(path, FORMATS[format_], mechanism, losses, read, opened, licence).encode(),
-        FILES[schema]: schema_text(json_schema(schema)).encode(),
-        **read.meshes,
-    }
-    if licence is not None:
-        files["LICENSE"] = licence.read_bytes()
-    return files
 
 
 def _description(

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 from lxml import etree
 
-from eurdf.convert.losses import Effect, Losses, LossKind
+from eurdf.convert.exceptions import CannotImport
+from eurdf.convert.import_format import ImportInput, continuous_if_unlimited
+from eurdf.convert.losses import Losses, LossKind, dropped
+from eurdf.convert.names import UniqueNames
+from eurdf.convert.xml_elements import Elements, inside, local, read_root
 from eurdf.diagnostics import Diagnostics, FileError
 from eurdf.format.urdf.read import read_urdf
-from eurdf.importing.elements import Elements, local
-from eurdf.importing.exceptions import CannotImport
-from eurdf.importing.mesh_copies import NAMED_FILE, MeshCopies
-from eurdf.importing.xml_files import inside, read_root
 from eurdf.linking.link import link
 from eurdf.mechanism.body import Shape
 from eurdf.mechanism.joint import Joint
@@ -24,64 +22,37 @@ from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.motor import Motor
 from eurdf.mesh_files.reader import RefusedFile
-from eurdf.reading.resource import FileFinder
 from eurdf.reading.source import Source, read_source
 from eurdf.reading.xml_reader import read_xml
 
+_URDF = ("link", "joint", "material", "transmission")
+
 #: Losses of every dialect.
-URDF_LOSSES = (
-    LossKind(
-        "import-name",
-        "name",
-        Effect.EXACT,
-        "is changed: the name is missing, or used by another element",
-        "give the element a unique name in the file",
-    ),
-    LossKind(
-        "import-mesh",
+URDF_LOSSES = {
+    "mesh": dropped(
         "mesh",
-        Effect.DROPPED,
         "its file was not found, or is refused; its name is kept",
         "put the file beside the URDF, or name its folder with --within (within= in Python), and import again",
     ),
-    NAMED_FILE,
-    LossKind(
-        "import-texture",
-        "texture",
-        Effect.DROPPED,
-        "its file is not copied; its name is kept",
-        "copy the file",
-    ),
-    LossKind(
-        "import-actuator",
+    "texture": dropped("texture", "its file is not copied; its name is kept", "copy the file"),
+    "actuator": dropped(
         "actuator",
-        Effect.DROPPED,
         "is left out: it names no joint that can be actuated",
         "name the actuated joint in the description",
     ),
-    LossKind(
-        "import-later-version",
+    "later-version": dropped(
         "element",
-        Effect.DROPPED,
         "has no effect: the file states no version of URDF that has it",
         "state the version in <robot>, and import again",
     ),
-    LossKind(
-        "import-element",
-        "element",
-        Effect.DROPPED,
-        "is no part of a description",
-        "keep it in a file of the simulator",
-    ),
-)
+    "element": dropped("element", "is no part of a description", "keep it in a file of the simulator"),
+}
 
 
 def loop_left_out(concept: str) -> LossKind:
     """The loss of a loop of a type that no closure is; the concept is what the dialect calls it."""
-    return LossKind(
-        "import-loop",
+    return dropped(
         concept,
-        Effect.DROPPED,
         "is left out: loops are closed by spherical, fixed and revolute joints",
         "let another joint of the loop close it",
     )
@@ -95,19 +66,38 @@ class UrdfTree:
         root: The root element, as written.
         elements: Reads its elements.
         mechanism: The links and joints, with actuators from ``<transmission>``.
-        copies: The mesh files.
+        losses: What is lost.
     """
 
     root: etree._Element
     elements: Elements
     mechanism: Mechanism
-    copies: MeshCopies
+    losses: Losses
+
+    @property
+    def links(self) -> list[str]:
+        """Names of the links."""
+        return [body.name for body in self.mechanism.bodies]
+
+    def link(self, element: etree._Element, name: str | None) -> str:
+        """The name of a link that exists, which an element states."""
+        return self.elements.link(element, name, self.links)
+
+    def children(self, tag: str) -> list[etree._Element]:
+        """The elements of the robot with a tag, in any namespace."""
+        return [element for element in self.root if isinstance(element.tag, str) and local(element) == tag]
+
+    def names(self, *reserved: str) -> UniqueNames:
+        """Names of elements of one kind."""
+        return UniqueNames(self.losses, *reserved, code="import-name")
+
+    def frame_names(self) -> UniqueNames:
+        """Names of frames."""
+        return self.names(*self.links, *(joint.name for joint in self.mechanism.joints))
 
 
 def read_tree(
-    path: Path,
-    finder: FileFinder,
-    losses: Losses,
+    given: ImportInput,
     known: tuple[str, ...],
     plain: Callable[[etree._Element], None] | None = None,
     change: Callable[[Joint], Joint] | None = None,
@@ -115,9 +105,7 @@ def read_tree(
     """Read the links and joints of a file.
 
     Args:
-        path: The file.
-        finder: Finds its meshes, and says where files may be.
-        losses: Where to record losses, of `URDF_LOSSES`.
+        given: The file; losses are those of `URDF_LOSSES`.
         known: Local tags of the elements of the robot that the dialect reads itself.
         plain: Makes the elements of a copy those of plain URDF.
         change: Makes each joint of the plain URDF that of the dialect.
@@ -125,7 +113,8 @@ def read_tree(
     Raises:
         CannotImport: The file has an error.
     """
-    inside(path, path.resolve(), finder.folders)
+    path, losses = given.path, given.losses
+    inside(path, path.resolve(), given.folders)
     root = read_root(path)
     diagnostics = Diagnostics()
     try:
@@ -146,45 +135,37 @@ def read_tree(
     for found in diagnostics:
         if found.code == "urdf-later-version" and "<capsule>" not in found.message:
             losses.add("import-later-version", found.message.partition(" ")[0].strip("'"), found.message)
-    copies = MeshCopies(finder.folders, losses)
-
-    def copied(shape: Shape) -> Shape:
-        if shape.texture:
-            losses.add("import-texture", shape.texture)
-        if shape.kind != "mesh":
-            return shape
-        file = finder.find(shape.filename)
-        if file is None:
-            losses.add("import-mesh", shape.filename)
-            return shape
-        try:
-            return replace(shape, filename=copies.file(Path(file)))
-        except RefusedFile as reason:
-            losses.add("import-mesh", shape.filename, f"is not copied, and its name is kept: {reason}")
-            return shape
-
-    bodies = tuple(
-        replace(body, visuals=tuple(map(copied, body.visuals)), collisions=tuple(map(copied, body.collisions)))
-        for body in mechanism.bodies
-    )
-    joints = map(_continuous, mechanism.joints)
-    mechanism = replace(mechanism, bodies=bodies, joints=tuple(joints if change is None else map(change, joints)))
+    bodies = []
+    for body in mechanism.bodies:
+        visuals, collisions = (
+            tuple(_with_copy(shape, given) for shape in shapes) for shapes in (body.visuals, body.collisions)
+        )
+        bodies.append(replace(body, visuals=visuals, collisions=collisions))
+    joints = map(continuous_if_unlimited, mechanism.joints)
+    joints = joints if change is None else map(change, joints)
+    mechanism = replace(mechanism, bodies=tuple(bodies), joints=tuple(joints))
     for element in root:
         if isinstance(element.tag, str) and local(element) not in (*_URDF, *known):
             losses.add("import-element", local(element))
     elements = Elements(path)
-    return UrdfTree(root, elements, _actuated(mechanism, root, elements, losses), copies)
+    return UrdfTree(root, elements, _actuated(mechanism, root, elements, losses), losses)
 
 
-_URDF = ("link", "joint", "material", "transmission")
-
-
-def _continuous(joint: Joint) -> Joint:
-    """The joint, continuous if it is revolute and has no position limits."""
-    limits = (*joint.properties.lower, *joint.properties.upper)
-    if joint.type is not JointType.REVOLUTE or any(map(math.isfinite, limits)):
-        return joint
-    return replace(joint, type=JointType.CONTINUOUS)
+def _with_copy(shape: Shape, given: ImportInput) -> Shape:
+    """A shape whose mesh, if it is one, is copied."""
+    if shape.texture:
+        given.losses.add("import-texture", shape.texture)
+    if shape.kind != "mesh":
+        return shape
+    file = given.finder.find(shape.filename)
+    if file is None:
+        given.losses.add("import-mesh", shape.filename)
+        return shape
+    try:
+        return replace(shape, filename=given.copy(file))
+    except RefusedFile as reason:
+        given.losses.add("import-mesh", shape.filename, f"is not copied, and its name is kept: {reason}")
+        return shape
 
 
 def _actuated(mechanism: Mechanism, root: etree._Element, elements: Elements, losses: Losses) -> Mechanism:
@@ -195,7 +176,7 @@ def _actuated(mechanism: Mechanism, root: etree._Element, elements: Elements, lo
         joint, actuator = transmission.find("joint"), transmission.find("actuator")
         name = "" if joint is None else joint.get("name", "")
         own = joints.get(name)
-        if own is None or own.type.is_fixed or own.mimic is not None or name in actuators:
+        if own is None or own.type is JointType.FIXED or own.mimic is not None or name in actuators:
             losses.add("import-actuator", name or transmission.get("name", ""))
             continue
         shown = name if actuator is None else actuator.get("name") or name

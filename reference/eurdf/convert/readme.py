@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from eurdf.convert.import_format import ImportFormat, RobotRead
 from eurdf.convert.losses import Loss
 from eurdf.diagnostics.visible import visible
-from eurdf.importing.robot_read import ImportFormat, RobotRead
 from eurdf.kinematics.opening import Opening
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mesh_files.folders import Folders

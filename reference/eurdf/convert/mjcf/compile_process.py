@@ -17,21 +17,33 @@ import numpy as np
 from eurdf.mesh_files.folders import Folders
 from eurdf.sandbox import bound_memory, bound_time, request_and_answers
 
-#: Arrays of the model that the importer needs, by the kind of element. Those of later releases may be missing.
-_ARRAYS = {
-    "body": "parentid pos quat mass ipos iquat inertia mocapid gravcomp",
-    "jnt": "type bodyid pos axis limited range stiffness qposadr dofadr actfrclimited actfrcrange stiffnesspoly",
-    "dof": "armature damping frictionloss dampingpoly",
-    "geom": "type bodyid contype conaffinity group size pos quat rgba matid dataid",
-    "mat": "rgba texid",
-    "mesh": "pos quat",
-    "site": "bodyid pos quat",
-    "eq": "type objtype obj1id obj2id active0 data",
-    "tendon": "adr num length0 limited stiffness damping frictionloss",
-    "wrap": "type objid prm",
-    "actuator": "trntype trnid gear ctrllimited ctrlrange ctrladr forcelimited forcerange gaintype gainprm biastype "
-    "dyntype",
-    "key": "qpos",
+#: Of each kind of element: its type, if it has names, and the arrays of the model that the importer needs. The first of
+#: them is in every release of MuJoCo.
+_ELEMENTS: dict[str, tuple[Any, str]] = {
+    "body": (
+        mujoco.mjtObj.mjOBJ_BODY,
+        "parentid pos quat mass ipos iquat inertia mocapid gravcomp",
+    ),
+    "jnt": (
+        mujoco.mjtObj.mjOBJ_JOINT,
+        "type bodyid pos axis limited range stiffness qposadr dofadr actfrclimited actfrcrange stiffnesspoly",
+    ),
+    "dof": (None, "armature damping frictionloss dampingpoly"),
+    "geom": (
+        mujoco.mjtObj.mjOBJ_GEOM,
+        "type bodyid contype conaffinity group size pos quat rgba matid dataid",
+    ),
+    "mat": (None, "rgba texid"),
+    "mesh": (mujoco.mjtObj.mjOBJ_MESH, "pos quat"),
+    "site": (mujoco.mjtObj.mjOBJ_SITE, "bodyid pos quat"),
+    "eq": (mujoco.mjtObj.mjOBJ_EQUALITY, "type objtype obj1id obj2id active0 data"),
+    "tendon": (mujoco.mjtObj.mjOBJ_TENDON, "adr num length0 limited stiffness damping frictionloss"),
+    "wrap": (None, "type objid prm"),
+    "actuator": (
+        mujoco.mjtObj.mjOBJ_ACTUATOR,
+        "trntype trnid gear ctrllimited ctrladr forcelimited forcerange gaintype gainprm biastype dyntype",
+    ),
+    "key": (mujoco.mjtObj.mjOBJ_KEY, "qpos"),
 }
 
 #: The arrays of names in a list of them.
@@ -49,28 +61,6 @@ _ENUMERATIONS = {
 
 #: Numbers of what a mechanism does not have.
 _COUNTS = ("nsensor", "ncam", "nlight", "npair", "nexclude", "nflex", "nskin", "nhfield", "nplugin")
-
-_NAMED = {
-    "body": mujoco.mjtObj.mjOBJ_BODY,
-    "joint": mujoco.mjtObj.mjOBJ_JOINT,
-    "geom": mujoco.mjtObj.mjOBJ_GEOM,
-    "site": mujoco.mjtObj.mjOBJ_SITE,
-    "mesh": mujoco.mjtObj.mjOBJ_MESH,
-    "equality": mujoco.mjtObj.mjOBJ_EQUALITY,
-    "tendon": mujoco.mjtObj.mjOBJ_TENDON,
-    "actuator": mujoco.mjtObj.mjOBJ_ACTUATOR,
-    "key": mujoco.mjtObj.mjOBJ_KEY,
-}
-_NUMBERS = {
-    "body": "nbody",
-    "joint": "njnt",
-    "geom": "ngeom",
-    "site": "nsite",
-    "mesh": "nmesh",
-    "equality": "neq",
-    "tendon": "ntendon",
-    "key": "nkey",
-}
 
 _GIT_LFS = b"version https://git-lfs"
 
@@ -116,32 +106,44 @@ def _compiled(path: str, bounds: _Bounds) -> dict[str, Any]:
         spec, more = _specification(path, bounds)
         left_out = _without_assets(spec, faults | more)
         model = spec.compile()
+    elements = {kind: _elements(model, kind) for kind in _ELEMENTS}
+    for mesh, element in zip(sorted(spec.meshes, key=lambda mesh: mesh.id), elements["mesh"], strict=True):
+        element |= _mesh(model, mesh)
+    full = {body.id: np.asarray(body.fullinertia) for body in spec.bodies}
+    for body in elements["body"]:
+        inertia = full.get(body["index"], np.array(math.nan))
+        body["fullinertia"] = inertia.tolist() if np.isfinite(inertia).all() else []
+    for actuator in elements["actuator"]:
+        at = actuator["index"] if actuator["ctrladr"] == [] else actuator["ctrladr"]
+        actuator["ctrlrange"] = model.actuator_ctrlrange[at].tolist() if actuator["ctrllimited"] else []
     return {
         "name": spec.modelname,
-        "degree": bool(spec.compiler.degree),
-        "arrays": _arrays(model),
-        "names": {kind: _names(model, kind) for kind in _NAMED},
+        "elements": elements,
+        "qpos0": model.qpos0.tolist(),
+        "qpos_spring": model.qpos_spring.tolist(),
         "counts": {name: int(getattr(model, name, 0)) for name in _COUNTS},
-        "meshes": [_mesh(model, mesh) for mesh in sorted(spec.meshes, key=lambda mesh: mesh.id)],
-        "fullinertia": {
-            int(body.id): np.asarray(body.fullinertia).tolist()
-            for body in spec.bodies
-            if np.isfinite(body.fullinertia).all()
-        },
         "left_out": left_out,
     }
 
 
-def _arrays(model: Any) -> dict[str, Any]:
-    names = [f"{kind}_{name}" for kind, ends in _ARRAYS.items() for name in ends.split()]
-    found = {
-        name: np.asarray(getattr(model, name)).tolist()
-        for name in (*names, "qpos0", "qpos_spring")
-        if hasattr(model, name)
-    }
-    for name, kind in _ENUMERATIONS.items():
-        found[name] = [kind(value).name.rpartition("_")[2].lower() for value in found[name]]
-    return found
+def _elements(model: Any, kind: str) -> list[dict[str, Any]]:
+    """The elements of a kind, with their values by name."""
+    type_, ends = _ELEMENTS[kind]
+    columns = {end: _column(model, f"{kind}_{end}") for end in ends.split()}
+    return [
+        {
+            "index": index,
+            "name": "" if type_ is None else mujoco.mj_id2name(model, type_, index) or "",
+            **{end: column[index] if column else [] for end, column in columns.items()},
+        }
+        for index in range(len(next(iter(columns.values()))))
+    ]
+
+
+def _column(model: Any, name: str) -> list[Any]:
+    values = np.asarray(getattr(model, name, ())).tolist()
+    kind = _ENUMERATIONS.get(name)
+    return values if kind is None else [kind(value).name.rpartition("_")[2].lower() for value in values]
 
 
 def _specification(path: str, bounds: _Bounds) -> tuple[Any, dict[str, str]]:
@@ -264,11 +266,6 @@ def _mesh(model: Any, mesh: Any) -> dict[str, Any]:
     lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices]
     lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in model.mesh_face[at : at + count].tolist()]
     return {"path": path, "scale": [1.0, 1.0, 1.0], "obj": "\n".join(lines) + "\n"}
-
-
-def _names(model: Any, kind: str) -> list[str]:
-    number = len(model.actuator_trntype) if kind == "actuator" else getattr(model, _NUMBERS[kind])
-    return [mujoco.mj_id2name(model, _NAMED[kind], index) or "" for index in range(number)]
 
 
 if __name__ == "__main__":

@@ -8,65 +8,55 @@ of a loop is ``<loop_constraint>`` with ``parent``, ``parent_origin``, ``child``
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 from lxml import etree
 
-from eurdf.convert.losses import Effect, Losses, LossKind
+from eurdf.convert.import_format import ImportFormat, ImportInput, RobotRead, loss_kinds
+from eurdf.convert.losses import dropped
 from eurdf.convert.names import UniqueNames
-from eurdf.importing.elements import named
-from eurdf.importing.robot_read import ImportFormat, RobotRead
-from eurdf.importing.urdf_tree import URDF_LOSSES, UrdfTree, loop_left_out, read_tree
+from eurdf.convert.urdf.read import URDF_LOSSES, UrdfTree, loop_left_out, read_tree
+from eurdf.convert.xml_elements import named
 from eurdf.mechanism.constraint import Closure, Coupling, FrameClosure, HingeClosure, PointClosure
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint_types import JointType
-from eurdf.reading.resource import FileFinder
 
-LOSSES = (
-    loop_left_out("loop"),
-    LossKind(
-        "import-independent",
-        "joint",
-        Effect.DROPPED,
-        "which coordinates are independent is left out",
-        "name the actuated joints in the description",
+_LOSSES = {
+    "loop": loop_left_out("loop"),
+    "independent": dropped(
+        "joint", "which coordinates are independent is left out", "name the actuated joints in the description"
     ),
-    *URDF_LOSSES,
-)
-
-_SCALAR = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
+    **URDF_LOSSES,
+}
 
 
-def read(path: Path, finder: FileFinder) -> RobotRead:
+def read(given: ImportInput) -> RobotRead:
     """Read a file of URDF+.
 
     Raises:
         CannotImport: It has an error.
     """
-    losses = Losses(LOSSES)
-    tree = read_tree(path, finder, losses, ("loop", "loop_constraint", "coupling"))
-    names = UniqueNames(losses, code="import-name")
+    tree = read_tree(given, ("loop", "loop_constraint", "coupling"))
+    names = tree.names()
     closures = [
         closure
         for element in tree.root.iterchildren("loop", "loop_constraint")
-        if (closure := _closure(element, tree, names, losses))
+        if (closure := _closure(element, tree, names))
     ]
     couplings = tuple(_coupling(element, tree, names) for element in tree.root.iterchildren("coupling"))
     for element in tree.root.iterchildren("joint"):
         if element.get("independent") is not None:
-            losses.add("import-independent", tree.mechanism.name)
+            tree.losses.add("import-independent", tree.mechanism.name)
     mechanism = replace(tree.mechanism, closures=tuple(closures), couplings=couplings)
-    return RobotRead(mechanism, losses.found, tree.copies.files, sources=(path,))
+    return RobotRead(mechanism, (given.path,))
 
 
-def _closure(element: etree._Element, tree: UrdfTree, names: UniqueNames, losses: Losses) -> Closure | None:
+def _closure(element: etree._Element, tree: UrdfTree, names: UniqueNames) -> Closure | None:
     elements = tree.elements
-    links = [body.name for body in tree.mechanism.bodies]
     ends = []
     for new, old in (("predecessor", "parent"), ("successor", "child")):
         end = elements.child(element, new, old)
         origin = end.find("origin") if end.tag == new else element.find(f"{old}_origin")
-        ends.append(Anchor(elements.link(element, end.get("link"), links), elements.pose(origin)))
+        ends.append(Anchor(tree.link(element, end.get("link")), elements.pose(origin)))
     a, b = ends
     name = names.new(element.get("name") or f"{a.body}_{b.body}")
     match element.get("type", "spherical"):
@@ -77,15 +67,14 @@ def _closure(element: etree._Element, tree: UrdfTree, names: UniqueNames, losses
         case "revolute" | "continuous":
             axis = elements.axis(elements.child(element, "axis"))
             return HingeClosure(name, a, b, (axis, axis))
-    losses.add("import-loop", name, f"is left out: it has the type '{element.get('type')}'")
+    tree.losses.add("import-loop", name, f"is left out: it has the type '{element.get('type')}'")
     return None
 
 
 def _coupling(element: etree._Element, tree: UrdfTree, names: UniqueNames) -> Coupling:
     elements = tree.elements
-    links = [body.name for body in tree.mechanism.bodies]
     chains = [
-        _joints_above(elements.link(element, elements.child(element, tag).get("link"), links), tree)
+        _joints_above(tree.link(element, elements.child(element, tag).get("link")), tree)
         for tag in ("predecessor", "successor")
     ]
     ratio = elements.attribute(elements.child(element, "ratio"), "value")
@@ -95,7 +84,7 @@ def _coupling(element: etree._Element, tree: UrdfTree, names: UniqueNames) -> Co
         for joint in chain:
             if joint in other or types[joint] is JointType.FIXED:
                 continue
-            if types[joint] not in _SCALAR:
+            if not types[joint].is_axial:
                 raise elements.refuse(element, f"{named(element)} couples joint '{joint}', which is {types[joint]}")
             coefficients[joint] = factor
     if len(coefficients) < 2 or not ratio:
@@ -113,4 +102,4 @@ def _joints_above(link: str, tree: UrdfTree) -> list[str]:
     return found
 
 
-FORMAT = ImportFormat("urdf-plus", read, LOSSES)
+FORMAT = ImportFormat("urdf-plus", read, loss_kinds(_LOSSES))

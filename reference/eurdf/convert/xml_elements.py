@@ -1,16 +1,116 @@
-"""Numbers, poses and names in the elements of an XML file."""
+"""The XML files of a robot: their format, and the numbers, poses and names of their elements."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+import os
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from lxml import etree
 
-from eurdf.diagnostics import did_you_mean
-from eurdf.importing.exceptions import CannotImport
+from eurdf.convert.exceptions import CannotImport
+from eurdf.diagnostics import Diagnostic, FileError, Place, did_you_mean
+from eurdf.format.version import VERSION_KEY
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
+from eurdf.mesh_files.folders import Folders
+from eurdf.reading.given import is_xml
+from eurdf.reading.other_formats import ROOTS, OtherFormat, of_element, of_mapping, of_root
+from eurdf.reading.source import read_source
+from eurdf.reading.xml_reader import read_xml
+from eurdf.reading.yaml_reader import read_yaml
+
+
+def read_root(path: Path) -> etree._Element:
+    """The root element of an XML file.
+
+    Raises:
+        CannotImport: It cannot be read, is not XML, is too large, or has entities.
+    """
+    try:
+        return read_xml(read_source(path)).root
+    except FileError as error:
+        raise _unreadable(path, error.diagnostic) from None
+
+
+def _unreadable(path: Path, found: Diagnostic) -> CannotImport:
+    where = f"{found.file}:{found.line}: " if found.line else ""
+    return CannotImport(path, "; ".join((where + found.message, *([found.hint] if found.hint else []))))
+
+
+def recognized(path: Path) -> str:
+    """The name of the format of a file.
+
+    Raises:
+        CannotImport: It is of no format that can be imported.
+    """
+    _refuse_yaml(path)
+    root = read_root(path)
+    found = _dialect(path, root) if root.tag == "robot" else of_root(str(root.tag))
+    if found is None:
+        expected = ", ".join(f"<{tag}>" for tag in ROOTS)
+        raise CannotImport(path, f"its root element is <{root.tag}>; it must be one of {expected}")
+    return found.importer
+
+
+def _refuse_yaml(path: Path) -> None:
+    """Refuse a file that describes loops in YAML, or is a description."""
+    try:
+        source = read_source(path)
+    except FileError as error:
+        raise _unreadable(path, error.diagnostic) from None
+    if is_xml(source):
+        return
+    try:
+        data = read_yaml(source).data
+    except FileError:
+        return  # what is wrong with it as XML is reported
+    if found := of_mapping(data):
+        raise CannotImport(path, found.hint)
+    if VERSION_KEY in data:
+        raise CannotImport(path, "it is a description; use it as it is: `eurdf check`")
+
+
+def _dialect(path: Path, root: etree._Element) -> OtherFormat:
+    found = [(element, dialect) for element in root if (dialect := of_element(element))]
+    if not found:
+        raise CannotImport(
+            path, "it is a URDF without loops of another dialect; use it as it is: `eurdf check`, `eurdf generate`"
+        )
+    element, dialect = next((each for each in found if each[1].importer), found[0])
+    if not dialect.importer:
+        raise CannotImport(path, f"{path.name}:{element.sourceline}: {dialect.hint}")
+    return dialect
+
+
+def inside(path: Path, file: Path, folders: Folders) -> None:
+    """Refuse a file that is outside the folders of the robot, with symbolic links followed.
+
+    Raises:
+        CannotImport: It is outside.
+    """
+    if not folders.admit(file):
+        raise CannotImport(
+            path,
+            f"it uses '{file}', which is outside the folder of the robot, {folders}; copy it there, or name a folder "
+            "that has both with --within (within= in Python); --allow-outside (allow_outside=True) reads files from "
+            "anywhere",
+        )
+
+
+def places_of_names(sources: Sequence[Path]) -> dict[str, Place]:
+    """The place of the first element of each name, in files that may be missing or have errors."""
+    found: dict[str, Place] = {}
+    for path in sources:
+        try:
+            root = read_root(path)
+        except CannotImport:
+            continue
+        for element in root.iter("*"):
+            name, line = element.get("name"), element.sourceline
+            if name and isinstance(line, int):
+                found.setdefault(name, Place(os.fspath(path), line))
+    return found
 
 
 class Elements:
