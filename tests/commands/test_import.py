@@ -14,7 +14,7 @@ import eurdf
 from benchmarks.fuzz.watched import Watched
 from eurdf.commands import import_robot as command
 from eurdf.commands.main import main
-from eurdf.commands.output_schema import output_schemas
+from eurdf.commands.output import output_schemas
 from eurdf.importing.formats import FORMATS
 from eurdf.importing.import_robot import COMMON
 from eurdf.importing.table import with_tables

@@ -16,7 +16,7 @@ from eurdf.diagnostics import FileError
 from eurdf.diagnostics.sarif import sarif_log
 from eurdf.diagnostics.text import report_lines
 from eurdf.reading import given
-from eurdf.reading.given import source_of
+from eurdf.reading.robot_source import source_of
 from support.arm import DESCRIPTION, URDF
 
 FOUR_BAR = Path(__file__).parents[2] / "robots" / "four_bar"

@@ -10,8 +10,8 @@ from eurdf.diagnostics import FileError
 from eurdf.format.version import VERSION_KEY
 from eurdf.importing.exceptions import CannotImport
 from eurdf.importing.xml_files import read_root, unreadable
-from eurdf.reading.given import is_xml
 from eurdf.reading.other_formats import ROOTS, OtherFormat, of_element, of_mapping, of_root
+from eurdf.reading.robot_source import is_xml
 from eurdf.reading.source import read_source
 from eurdf.reading.yaml_reader import read_yaml
 
