@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 
 from eurdf.mechanism.joint import Joint, JointProperties
@@ -33,6 +33,17 @@ class Step:
     joint: Joint
     velocities: tuple[int, ...]
     lead: float = 0.0
+
+    def of(self, coordinates: Sequence[float]) -> tuple[float, ...]:
+        """Its coordinates, of those of the joint that becomes it."""
+        if self.joint.type.quaternion is not None:
+            return tuple(coordinates[-len(self.joint.type.coordinates) :])
+        return tuple(coordinates[index] for index in self.velocities)
+
+
+def turn_type(joint: Joint, index: int = 0) -> JointType:
+    """The type of URDF for a turn of a joint, which a limit of its coordinate decides."""
+    return JointType.REVOLUTE if any(map(math.isfinite, joint.ranges[index])) else JointType.CONTINUOUS
 
 
 def is_skew(joint: Joint) -> bool:
@@ -84,7 +95,7 @@ def _elementary(joint: Joint, has_balls: bool) -> Iterator[Step]:
                 yield Step(_part(joint, f"{end}_{letter}", JointType.CONTINUOUS, (axis,), ()), ())
             continue
         axes = (joint.axes[motion.axis] if isinstance(motion.axis, int) else motion.axis,)
-        turn = JointType.REVOLUTE if any(map(math.isfinite, joint.ranges[index])) else JointType.CONTINUOUS
+        turn = turn_type(joint, index)
         if motion.kind == "screw":
             slide = _part(joint, end + SCREW_SLIDE, JointType.PRISMATIC, axes, ())
             yield Step(slide, (index,), joint.pitch / (2.0 * math.pi))
