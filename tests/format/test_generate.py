@@ -586,7 +586,7 @@ def test_command_replaces_file_only_with_force(leg: Path, capsys: pytest.Capture
     assert main(["generate", str(leg), "-o", str(out), "--force"]) == 0
     description = read_robot(out)
     assert description.mechanism is not None
-    assert description.extension is not None
+    assert description.yaml is not None
     assert description.extension.urdf == "../leg.urdf"
 
 
