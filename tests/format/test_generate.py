@@ -587,7 +587,7 @@ def test_command_replaces_file_only_with_force(leg: Path, capsys: pytest.Capture
     description = read_robot(out)
     assert description.mechanism is not None
     assert description.yaml is not None
-    assert description.extension.urdf == "../leg.urdf"
+    assert description.description.urdf == "../leg.urdf"
 
 
 def test_root_can_float(leg: Path, capsys: pytest.CaptureFixture[str]) -> None:
