@@ -9,7 +9,7 @@ import numpy as np
 from eurdf.diagnostics import Diagnostics
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.residual import residual
-from eurdf.linking.description import Described
+from eurdf.linking.robot_files import ReadRobot
 from eurdf.mechanism.mechanism import ROOT_JOINT, root_joint
 from eurdf.pinocchio.configuration import configuration_vector
 from eurdf.pinocchio.robot import Robot
@@ -32,16 +32,14 @@ def is_stated(robot: Robot, q: Vector, name: str = NAME) -> bool:
     return stated is not None and bool(np.abs(stated - q).max(initial=0.0) <= _SAME)
 
 
-def with_closed_configuration(
-    description: Described, robot: Robot, q: Vector, name: str = NAME
-) -> tuple[str, Diagnostics]:
+def with_closed_configuration(read: ReadRobot, robot: Robot, q: Vector, name: str = NAME) -> tuple[str, Diagnostics]:
     """The text of a description in which a named configuration is q.
 
     Joints at their neutral are left out, unless the file states them already. Numbers are rounded to 15 decimals where
     the loops stay as closed.
 
     Args:
-        description: Of version 2.
+        read: Of version 2.
         robot: The robot built from it, with its own root.
         q: Configuration (nq,).
         name: Name of the configuration; an existing one is replaced.
@@ -56,14 +54,14 @@ def with_closed_configuration(
     from eurdf.linking.rereading import reread
     from eurdf.writing.edit_configuration import with_configuration
 
-    document = description.extension.document
+    document = read.description.document
     exact = robot.coordinates(q)
     enough = max(CLOSED_IN_FULL, _largest_row(robot, q))
     rounded = {joint: tuple(round(value, _DECIMALS) for value in values) for joint, values in exact.items()}
     text, diagnostics = "", Diagnostics()
     for coordinates in (rounded, exact):
-        text = with_configuration(document, name, _to_state(description, robot, coordinates, name))
-        mechanism, diagnostics = reread(text, description.urdf, document.source.file)
+        text = with_configuration(document, name, _to_state(read, robot, coordinates, name))
+        mechanism, diagnostics = reread(text, read.urdf, document.source.file)
         if mechanism is None:
             break
         back = configuration_vector(robot.mechanism, robot.model, mechanism.configurations[name])
@@ -73,10 +71,10 @@ def with_closed_configuration(
 
 
 def _to_state(
-    description: Described, robot: Robot, coordinates: Mapping[str, Sequence[float]], configuration: str
+    read: ReadRobot, robot: Robot, coordinates: Mapping[str, Sequence[float]], configuration: str
 ) -> dict[str, Sequence[float]]:
     """The coordinates of the joints that a file has to state."""
-    entries = {entry.name: entry.joints for entry in description.extension.configurations}
+    entries = {entry.name: entry.joints for entry in read.description.configurations}
     stated = entries.get(configuration, {})
     neutral = {joint.name: joint.type.neutral for joint in robot.mechanism.joints}
     neutral[ROOT_JOINT] = root_joint("").type.neutral

@@ -7,9 +7,9 @@ from pathlib import Path
 
 from eurdf.exceptions import EurdfError
 from eurdf.kinematics.array import Vector
-from eurdf.linking.description import Described
+from eurdf.linking.robot_files import ReadRobot
 from eurdf.pinocchio.robot import Robot
-from eurdf.reading.given import Given
+from eurdf.reading.robot_source import RobotSource
 from eurdf.reading.source import BOM
 from eurdf.writing.assembled import NAME, is_stated, with_closed_configuration
 from eurdf.writing.atomic_file import write_atomically
@@ -24,20 +24,20 @@ class ConfigurationExists(CannotSave):
     """There is a different configuration of this name, which may be replaced if the user agrees."""
 
 
-def file_to_save_to(path: Given, description: Described) -> str:
+def file_to_save_to(path: RobotSource, read: ReadRobot) -> str:
     """The file of a description that configurations can be saved to.
 
     Args:
         path: What the user gave.
-        description: What was read from it.
+        read: What was read from it.
 
     Raises:
         CannotSave: There is none.
     """
-    source = description.extension.document.source
+    source = read.description.document.source
     if not source.is_file:
         raise CannotSave(f"saving needs a file, but the description came from {source.file}")
-    if description.extension.version == "1":
+    if read.description.version == "1":
         raise CannotSave(
             f"'{source.file}' has version 1, which has no configurations; `eurdf migrate` converts it to version 2"
         )
@@ -49,11 +49,11 @@ def file_to_save_to(path: Given, description: Described) -> str:
     return source.file
 
 
-def save_configuration(description: Described, robot: Robot, q: Vector, name: str = NAME, *, force: bool) -> bool:
+def save_configuration(read: ReadRobot, robot: Robot, q: Vector, name: str = NAME, *, force: bool) -> bool:
     """Save a configuration under a name.
 
     Args:
-        description: Of version 2, from a file.
+        read: Of version 2, from a file.
         robot: The robot built from it, with its own root.
         q: Closed configuration (nq,).
         name: Name of the configuration.
@@ -66,14 +66,14 @@ def save_configuration(description: Described, robot: Robot, q: Vector, name: st
         ConfigurationExists: There is a different one and `force` is False.
         CannotSave: The file cannot be changed without changing more, or it cannot be written.
     """
-    source = description.extension.document.source
+    source = read.description.document.source
     file = source.file
     if is_stated(robot, q, name):
         return False
     if name in robot.configurations and not force:
         raise ConfigurationExists(f"'{file}' already has a different configuration '{name}'")
     try:
-        text, diagnostics = with_closed_configuration(description, robot, q, name)
+        text, diagnostics = with_closed_configuration(read, robot, q, name)
     except NotEditable as reason:
         raise CannotSave(f"cannot write to '{file}': {reason}; edit the file by hand") from None
     if diagnostics.errors:
