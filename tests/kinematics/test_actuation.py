@@ -10,7 +10,7 @@ import pytest
 
 import eurdf
 from eurdf.commands.main import main
-from support.described import STAR_CONTENT, STAR, at, body, codes, load, written
+from support.described import STAR, STAR_CONTENT, at, body, codes, load, written
 from support.plain_urdf import joint_element, link_element, robot
 
 BALL = "joints: {d: spherical}\n"

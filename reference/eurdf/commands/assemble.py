@@ -125,7 +125,7 @@ def _start(robot: Robot, name: str | None) -> tuple[str, Vector]:
     import pinocchio as pin
 
     from eurdf.diagnostics import did_you_mean
-    from eurdf.writing.assembled import NAME
+    from eurdf.writing.saved_configuration import NAME
 
     if name is None:
         name = NAME if NAME in robot.configurations else _NEUTRAL
@@ -167,8 +167,7 @@ def _clipped(robot: Robot, q: Vector, hold: list[str]) -> Vector:
 
 def _write(description: Described, robot: Robot, q: Vector, force: bool) -> bool:
     """Write the configuration to the description; return whether the file changed."""
-    from eurdf.writing.assembled import NAME
-    from eurdf.writing.saved_configuration import CannotSave, save_configuration
+    from eurdf.writing.saved_configuration import NAME, CannotSave, save_configuration
 
     try:
         return save_configuration(description, robot, q, force=force)

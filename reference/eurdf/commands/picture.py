@@ -94,7 +94,7 @@ def _configuration(robot: Robot, name: str | None) -> Vector:
 
     from eurdf.diagnostics import did_you_mean
     from eurdf.kinematics.assembly import assemble
-    from eurdf.writing.assembled import NAME
+    from eurdf.writing.saved_configuration import NAME
 
     if name is not None and name in robot.configurations:
         return robot.configurations[name]
