@@ -1,8 +1,6 @@
 """The public names of the package, each with the module that defines it."""
 
 from eurdf import batch as batch
-from eurdf.checking.check import check as check
-from eurdf.checking.load import load as load
 from eurdf.collection import collection_names as collection_names
 from eurdf.convert.coordinates import Coordinates as Coordinates
 from eurdf.convert.exceptions import CannotExport as CannotExport
@@ -73,6 +71,8 @@ from eurdf.kinematics.springs import spring_force as spring_force
 from eurdf.kinematics.sweep import MotionPath as MotionPath
 from eurdf.kinematics.sweep import Sweep as Sweep
 from eurdf.kinematics.sweep import sweep as sweep
+from eurdf.loading import check as check
+from eurdf.loading import load as load
 from eurdf.mechanism.mechanism import Mechanism as Mechanism
 from eurdf.pinocchio.constraint import NoConstraintModel as NoConstraintModel
 from eurdf.pinocchio.robot import Robot as Robot

@@ -15,7 +15,7 @@ import pytest
 
 import eurdf
 from eurdf.commands.main import main
-from eurdf.commands.output_schema import output_schemas
+from eurdf.commands.output import output_schemas
 from support.processes import on_a_terminal
 
 DATA = Path(__file__).parents[1] / "data"

@@ -13,7 +13,7 @@ import pytest
 import eurdf
 from benchmarks.fuzz.watched import Watched
 from eurdf.commands.main import main
-from eurdf.commands.output_schema import output_schemas
+from eurdf.commands.output import output_schemas
 from eurdf.convert.formats import IMPORTS
 from eurdf.convert.import_format import import_format
 from eurdf.convert.import_robot import COMMON

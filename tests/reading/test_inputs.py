@@ -16,7 +16,7 @@ from eurdf.diagnostics import FileError
 from eurdf.diagnostics.sarif import sarif_log
 from eurdf.diagnostics.text import report_lines
 from eurdf.reading import given
-from eurdf.reading.given import source_of
+from eurdf.reading.robot_source import source_of
 from support.described import ARM as URDF
 from support.described import ARM_DESCRIPTION as DESCRIPTION
 

@@ -13,7 +13,7 @@ import pytest
 
 import eurdf
 from eurdf.commands.main import main
-from eurdf.commands.output_schema import output_schemas
+from eurdf.commands.output import output_schemas
 from eurdf.convert.formats import EXPORTS
 from eurdf.convert.verification import verify as module
 from eurdf.exceptions import MissingExtra

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import reduce
 from operator import mul
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
+from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import Pose, Quaternion
 from eurdf.writing.xml_text import rpy_of
 
@@ -85,6 +87,31 @@ class Part:
     rotation: Literal["quaternion", "xyz", "rpy"] = "quaternion"
     orientation_first: bool = False
     circular: tuple[int, ...] = ()
+
+    @classmethod
+    def of(
+        cls,
+        joint: Joint,
+        names: Sequence[str],
+        ratios: Iterable[tuple[int, float, float]],
+        mimic: Mimic | None = None,
+        **more: Any,
+    ) -> Part:
+        """A joint in the exported model.
+
+        Args:
+            joint: The joint.
+            names: As for the part.
+            ratios: As for the part, if its velocities are the rates of its coordinates.
+            mimic: The leader of a mimic joint.
+            **more: Other attributes of the part, if they are not.
+        """
+        if mimic is not None:
+            ratio = (0, mimic.multiplier, mimic.offset)
+            return cls(tuple(names), mimic.joint, joint.type, (ratio,), mimics=True)
+        if joint.type.moving_frame:
+            return cls(tuple(names), joint.name, joint.type, **more)
+        return cls(tuple(names), joint.name, joint.type, tuple(ratios))
 
     @property
     def nq(self) -> int:

@@ -14,7 +14,6 @@ from types import MappingProxyType
 
 import numpy as np
 
-from eurdf.checking.check import check
 from eurdf.convert.exceptions import CannotImport
 from eurdf.convert.formats import IMPORTS
 from eurdf.convert.import_format import ImportFormat, ImportInput, RobotRead, import_format, loss_kinds
@@ -31,7 +30,8 @@ from eurdf.kinematics.opening import CLOSED, Opening
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.residual import closure_openings, residual
 from eurdf.linking.configurations import beyond_limits
-from eurdf.linking.description import Unlinked, describe
+from eurdf.linking.robot_files import read_robot
+from eurdf.loading import check
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.spanning_tree import rigid_poses
 from eurdf.pinocchio.robot import build_robot
@@ -310,8 +310,8 @@ def _description(
         written = describe_mechanism(mechanism, schema=f"./{FILES[schema]}", comments=(comment,))
     except NotWritable as reason:
         raise CannotImport(path, str(reason)) from None
-    found = describe(written.yaml, urdf=written.urdf.decode())
-    if isinstance(found, Unlinked):
+    found = read_robot(written.yaml, urdf=written.urdf.decode())
+    if found.linked is None:
         message = found.diagnostics.errors[0].message
         where = _where(read, re.findall("'([^']*)'", message))
         raise CannotImport(path, f"{where}it has no valid description: {message}")

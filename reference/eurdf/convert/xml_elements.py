@@ -14,8 +14,8 @@ from eurdf.diagnostics import Diagnostic, FileError, Place, did_you_mean
 from eurdf.format.version import VERSION_KEY
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 from eurdf.mesh_files.folders import Folders
-from eurdf.reading.given import is_xml
 from eurdf.reading.other_formats import ROOTS, OtherFormat, of_element, of_mapping, of_root
+from eurdf.reading.robot_source import is_xml
 from eurdf.reading.source import read_source
 from eurdf.reading.xml_reader import read_xml
 from eurdf.reading.yaml_reader import read_yaml

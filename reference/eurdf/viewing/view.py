@@ -8,14 +8,14 @@ from typing import Any
 
 from eurdf.kinematics.array import Vector
 from eurdf.pinocchio.robot import Robot
-from eurdf.reading.given import Given
+from eurdf.reading.robot_source import RobotSource
 from eurdf.viewing.files import RobotOnDisk
 from eurdf.viewing.server import LOOPBACK
 from eurdf.viewing.viewer import Viewer
 
 
 def view(
-    robot: Given | Robot,
+    robot: RobotSource | Robot,
     q: Vector | None = None,
     *,
     host: str = LOOPBACK,

@@ -33,6 +33,12 @@ TOLERANCE = 1e-15
 #: Time constant (s) and damping ratio, and impedances, of closures, couplings and mimic joints.
 SOLREF, SOLIMP = (2.0 * TIMESTEP, 1.0), (0.9999, 0.9999, 0.001, 0.5, 2.0)
 
+#: The bound of a side without limit, where the other side has one: rad or m.
+UNLIMITED = 1e10
+
+#: The element that holds a closure.
+CLOSURES = {"3d": "connect", "6d": "weld", "hinge": "connect", "distance": "tendon"}
+
 #: Joints and closures that are as in the description.
 EXACT = tuple(
     f"{kind} joint"
@@ -125,8 +131,8 @@ ROWS = (
         "leave out the armature of planar and floating joints",
         code="export-turning-armature",
         error="up to armature · (joint velocity)² in the force; none at rest",
-        only="planar and floating joints",
-        where=by_writer,
+        types=("planar", "floating"),
+        where=lambda joint: any(joint.properties.armature[: len(joint.type.steps) - 1]),  # slides come first
     ),
     exact(
         "gear ratio",

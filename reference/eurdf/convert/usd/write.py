@@ -16,14 +16,13 @@ from itertools import combinations, permutations
 import numpy as np
 import numpy.typing as npt
 
-from eurdf.convert.contacts import neighbours
+from eurdf.convert.conventions import neighbours, position_gain
 from eurdf.convert.coordinates import Coordinates, Part
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format
 from eurdf.convert.inertia import about_centre, accepted_inertia, has_inertia
 from eurdf.convert.losses import Losses
 from eurdf.convert.mesh_file import mesh_names, report_unread
 from eurdf.convert.names import UniqueNames
-from eurdf.convert.servo import position_gain
 from eurdf.convert.steps import is_skew
 from eurdf.convert.usd.facts import CLOSURES, DAMPING_TIME, EXACT, LEAST, LEAST_MOMENT, ROWS
 from eurdf.diagnostics.extras import install_command

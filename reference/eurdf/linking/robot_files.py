@@ -7,11 +7,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Literal, NamedTuple
+from typing import Any, Literal, TypeVar
 
 from eurdf.collection import find_robot
-from eurdf.diagnostics import Diagnostics, FileError, Place, quoted
-from eurdf.exceptions import CannotExpand
+from eurdf.diagnostics import Diagnostics, FileError, Place
+from eurdf.exceptions import CannotExpand, InvalidRobot
 from eurdf.format.extension import ClosureEntry, CouplingEntry, Extension
 from eurdf.format.read_extension import read_extension, version_of
 from eurdf.format.urdf.data import Urdf
@@ -20,12 +20,14 @@ from eurdf.linking.inertia import check_inertias, check_leaves
 from eurdf.linking.link import link
 from eurdf.mechanism.mechanism import Mechanism, Root
 from eurdf.mesh_files.folders import Folders
-from eurdf.reading.given import Given, shown, source_of
-from eurdf.reading.resource import HINT, FileFinder
+from eurdf.reading.resource import FileFinder
+from eurdf.reading.robot_source import RobotSource, display_name, source_of
 from eurdf.reading.source import Source, read_bytes, read_source
 from eurdf.reading.xacro import expand, is_xacro
 from eurdf.reading.xml_reader import read_xml
 from eurdf.reading.yaml_reader import YamlDocument, read_yaml
+
+_Part = TypeVar("_Part")
 
 _NO_XACRO = "only a .xacro file accepts arguments; give one as the robot or as its URDF, or name one under 'urdf'"
 
@@ -34,60 +36,68 @@ _MimicErrors = Literal["refused", "kept", "ignored"]
 
 
 @dataclass(frozen=True, slots=True)
-class Unlinked:
-    """The files of a robot in which an error leaves no mechanism.
+class ReadRobot:
+    """The files of a robot as read, and what they describe.
 
     Attributes:
         path: As the caller gave it.
         diagnostics: Found by all phases but the last, that of closures.
-        urdf: None if it has an error itself, or was not read.
+        tree: The URDF; None if it has an error itself, or was not read.
+        linked: What the files describe; None if an error leaves nothing to build.
+        yaml: The content of the description; None for a bare URDF, and if an error leaves nothing to build.
     """
 
     path: str
     diagnostics: Diagnostics
-    urdf: Urdf | None = None
+    tree: Urdf | None = None
+    linked: Mechanism | None = None
+    yaml: Extension | None = None
 
+    @property
+    def urdf(self) -> Urdf:
+        """The URDF of a robot that can be built."""
+        return self._of_valid(self.tree)
 
-@dataclass(frozen=True, slots=True)
-class Linked:
-    """A robot as read and linked; of a bare URDF, unless it is a `Described`.
+    @property
+    def mechanism(self) -> Mechanism:
+        """What the files of a robot that can be built describe."""
+        return self._of_valid(self.linked)
 
-    Attributes:
-        path: As the caller gave it.
-        diagnostics: Found by all phases but the last, that of closures.
-        urdf: The URDF.
-        mechanism: What the files describe.
-    """
+    @property
+    def description(self) -> Extension:
+        """The content of the description of a robot that has one."""
+        return self._of_valid(self.yaml)
 
-    path: str
-    diagnostics: Diagnostics
-    urdf: Urdf
-    mechanism: Mechanism
-
-
-@dataclass(frozen=True, slots=True)
-class Described(Linked):
-    """A robot with a description as read and linked.
-
-    Attributes:
-        extension: The description.
-    """
-
-    extension: Extension
+    def _of_valid(self, part: _Part | None) -> _Part:
+        if part is None:
+            raise InvalidRobot(self.path, tuple(self.diagnostics))
+        return part
 
     def place_of_constraint(self, name: str) -> Place:
         """Where a closure or a coupling is stated."""
-        entries: tuple[ClosureEntry | CouplingEntry, ...] = (*self.extension.closures, *self.extension.couplings)
-        return self.extension.document.place(next(entry for entry in entries if entry.name == name).pointer)
+        entries: tuple[ClosureEntry | CouplingEntry, ...] = (*self.description.closures, *self.description.couplings)
+        return self.description.document.place(next(entry for entry in entries if entry.name == name).pointer)
 
     def place_of_configuration(self, name: str) -> Place:
         """Where a configuration is stated."""
-        return self.extension.document.place(("configurations", name), True)
+        return self.description.document.place(("configurations", name), True)
 
 
-def describe(
-    path: Given,
-    urdf: Given | None = None,
+def read_valid(path: RobotSource, **options: Any) -> ReadRobot:
+    """Read and link the files of a robot, as `read_robot` does.
+
+    Raises:
+        InvalidRobot: It cannot be built without guessing.
+    """
+    read = read_robot(path, **options)
+    if read.linked is None or read.diagnostics.refused:
+        raise InvalidRobot(read.path, tuple(read.diagnostics))
+    return read
+
+
+def read_robot(
+    path: RobotSource,
+    urdf: RobotSource | None = None,
     root: Root | None = None,
     *,
     geometry: bool = True,
@@ -97,7 +107,7 @@ def describe(
     confined: bool = False,
     allow_outside: bool = False,
     inertias: bool = True,
-) -> Unlinked | Linked:
+) -> ReadRobot:
     """Read and link the files of a robot, and check its inertias.
 
     EU-DIA-002: what needs a file that has an error is not checked, so that no consequence of that error is reported.
@@ -124,13 +134,13 @@ def describe(
     if confined and allow_outside:
         raise ValueError("confined and allow_outside exclude each other; choose one of them")
     diagnostics = Diagnostics()
-    name = shown(path)
+    name = display_name(path)
     try:
         files = find_robot(path, urdf)
         given = files.urdf and _expanded(files.urdf, name, diagnostics, package_dirs, xacro_args)
     except FileError as error:
         diagnostics.add(error.diagnostic)
-        return Unlinked(name, diagnostics)
+        return ReadRobot(name, diagnostics)
     if files.description is None:
         assert given is not None
         read, extension = partial(_own_source, given, confined), None
@@ -145,12 +155,12 @@ def describe(
             named = _named_urdf(folder, extension, document)
             is_inside = _is_inside(named, folder)
             if not _may_read(named, is_inside, files.description, extension, diagnostics, confined):
-                return Unlinked(name, diagnostics)
+                return ReadRobot(name, diagnostics)
             # Another file that the description names may be anyone's: no line of it is shown.
             read = partial(read_source, named, is_quoted=is_inside)
             if is_xacro(named):
                 if extension is None:
-                    return Unlinked(name, diagnostics)
+                    return ReadRobot(name, diagnostics)
                 real = Path(os.path.realpath(named)).parent
                 finder = FileFinder(named.parent, package_dirs, real_folder=real, allow_outside=allow_outside)
                 folders = None if confined else finder.folders
@@ -162,24 +172,22 @@ def describe(
         mimic_errors = "ignored" if version in (None, "1") else "refused" if mimic else "kept"
     tree = _read_urdf(read, diagnostics, geometry, mimic_errors)
     if tree is None:
-        return Unlinked(name, diagnostics)
+        return ReadRobot(name, diagnostics)
     mechanism = None
     if extension is not None or files.description is None:
         mechanism = link(tree, extension, diagnostics, root, mimic=mimic)
     if mechanism is None:
         check_inertias(tree, diagnostics)
-        return Unlinked(name, diagnostics, tree)
+        return ReadRobot(name, diagnostics, tree)
     if inertias:
         _check_inertias_and_leaves(tree, mechanism, diagnostics)
-    if extension is None:
-        return Linked(name, diagnostics, tree, mechanism)
-    return Described(name, diagnostics, tree, mechanism, extension)
+    return ReadRobot(name, diagnostics, tree, mechanism, extension)
 
 
-def inertia_diagnostics(description: Linked) -> Diagnostics:
-    """What is wrong with the inertias of a robot that `describe` did not check."""
+def inertia_diagnostics(read: ReadRobot) -> Diagnostics:
+    """What is wrong with the inertias of a robot that `read_robot` did not check."""
     diagnostics = Diagnostics()
-    _check_inertias_and_leaves(description.urdf, description.mechanism, diagnostics)
+    _check_inertias_and_leaves(read.urdf, read.mechanism, diagnostics)
     return diagnostics
 
 
@@ -188,11 +196,11 @@ def _check_inertias_and_leaves(urdf: Urdf, mechanism: Mechanism, diagnostics: Di
 
 
 def read_urdf_alone(
-    path: Given,
+    path: RobotSource,
     diagnostics: Diagnostics,
     package_dirs: Sequence[str | os.PathLike[str]] = (),
     xacro_args: Mapping[str, str] | None = None,
-) -> Urdf | None:
+) -> Urdf:
     """Read what is given as a URDF, without looking for a description.
 
     Args:
@@ -201,21 +209,23 @@ def read_urdf_alone(
         package_dirs: Folders to look for packages in, which a xacro finds files in.
         xacro_args: Values of the arguments of a xacro.
 
-    Returns:
-        The URDF, or None where an error was added to `diagnostics`.
-
     Raises:
+        InvalidRobot: It has an error.
         CannotExpand: A xacro has an error, or arguments are given for what is no xacro.
         MissingExtra: A xacro is given, and the extra ``xacro`` is not installed.
     """
     try:
         text = source_of(path)
-        file = Path(shown(path)) if text is None else text
-        urdf = _expanded(file, shown(path), diagnostics, package_dirs, xacro_args)
+        file = Path(display_name(path)) if text is None else text
+        given = _expanded(file, display_name(path), diagnostics, package_dirs, xacro_args)
     except FileError as error:
         diagnostics.add(error.diagnostic)
-        return None
-    return _read_urdf(partial(_own_source, urdf), diagnostics, geometry=True, mimic_errors="refused")
+        urdf = None
+    else:
+        urdf = _read_urdf(partial(_own_source, given), diagnostics, geometry=True, mimic_errors="refused")
+    if urdf is None:
+        raise InvalidRobot(display_name(path), tuple(diagnostics))
+    return urdf
 
 
 def _expanded(
@@ -432,103 +442,3 @@ def _files_near(path: Path, home: Path, suffix: str) -> list[str]:
         if files:
             return [Path(os.path.relpath(other, home)).as_posix() for other in files]
     return []
-
-
-class FoundFiles(NamedTuple):
-    """The mesh and texture files of a URDF.
-
-    Attributes:
-        paths: Path of each file that may be read, by URI.
-        diagnostics: About files that are missing, or outside the robot's folder.
-        folders: Where the files may be, and those that they name.
-        outside: URIs of files that exist and are outside, so that they are not read.
-    """
-
-    paths: dict[str, str]
-    diagnostics: Diagnostics
-    folders: Folders
-    outside: tuple[str, ...]
-
-
-def find_meshes(
-    urdf: Urdf,
-    package_dirs: Sequence[str | os.PathLike[str]] = (),
-    *,
-    confined: bool = False,
-    allow_outside: bool = False,
-) -> FoundFiles:
-    """EU-URD-028, EU-URD-033: look every mesh and every texture up.
-
-    Args:
-        urdf: The URDF.
-        package_dirs: Folders to look for packages in.
-        confined: Whether a mesh outside the robot's folder and the packages is an error.
-        allow_outside: Whether such a mesh is read.
-
-    Returns:
-        The files, with one diagnostic for all meshes, one for all textures of a kind.
-    """
-    source = urdf.document.source
-    real = Path(os.path.realpath(source.files[0])).parent if source.files and not confined else source.folder
-    finder = FileFinder(source.folder, package_dirs, real_folder=real, allow_outside=allow_outside)
-    shapes = [shape for link_ in urdf.links.values() for shape in (*link_.visuals, *link_.collisions)]
-    paths: dict[str, str] = {}
-    diagnostics = Diagnostics()
-    refused: list[str] = []
-    for tag, uris in (
-        ("mesh", dict.fromkeys(shape.filename for shape in shapes if shape.filename)),
-        ("texture", dict.fromkeys(shape.texture for shape in shapes if shape.texture)),
-    ):
-        found = {uri: finder.find(uri) for uri in uris}
-        outside = [uri for uri, path in found.items() if path is not None and not finder.folders.contains(path)]
-        if not allow_outside:
-            refused += outside
-        paths |= {uri: path for uri, path in found.items() if path is not None and uri not in refused}
-        if missing := [uri for uri, path in found.items() if path is None]:
-            diagnostics.report(
-                f"urdf-{tag}-missing",
-                f"{_files(tag, missing)} not found: {quoted(missing)}",
-                partial(place_of_file, urdf, tag, missing[0]),
-                HINT,
-            )
-        if outside:
-            _report_outside(urdf, tag, outside, finder.folders, confined, diagnostics)
-    return FoundFiles(paths, diagnostics, finder.folders, tuple(refused))
-
-
-def _report_outside(
-    urdf: Urdf, tag: str, uris: list[str], folders: Folders, confined: bool, diagnostics: Diagnostics
-) -> None:
-    """Report the files of a kind that are outside the robot's folder."""
-    hint = (
-        "copy them there, or give the folder of their package with --package-dir (package_dirs= in Python); "
-        "--allow-outside (allow_outside=True) reads files from anywhere"
-    )
-    if confined and tag == "mesh":
-        for uri in uris:
-            diagnostics.report(
-                "urdf-mesh-unreadable",
-                f"mesh '{uri}' cannot be read: it is outside the folder of the robot, {folders}, and files are "
-                "confined to it",
-                partial(place_of_file, urdf, tag, uri),
-                "copy it there, or give the folder of its package with --package-dir (package_dirs= in Python)",
-            )
-        return
-    is_read = "are read all the same" if folders.allow_outside else "are not read"
-    diagnostics.report(
-        "x-file-outside-folder",
-        f"{_files(tag, uris)} outside the folder of the robot, {folders}, and {is_read}: {quoted(uris)}",
-        partial(place_of_file, urdf, tag, uris[0]),
-        "copy them there" if folders.allow_outside else hint,
-    )
-
-
-def _files(tag: str, uris: Sequence[str]) -> str:
-    return f"1 {tag} file is" if len(uris) == 1 else f"{len(uris)} {tag} files are"
-
-
-def place_of_file(urdf: Urdf, tag: str, uri: str) -> Place:
-    """Where the URDF first names a mesh or a texture."""
-    document = urdf.document
-    element = next(element for element in document.root.iter(tag) if element.get("filename") == uri)
-    return document.place(element, "filename")

@@ -1,11 +1,28 @@
-"""Which bodies must not collide, though no simulator excludes them by itself."""
+"""What exports choose alike: gains of position actuators, points on hinges, and bodies that do not collide."""
 
 from __future__ import annotations
 
 from itertools import combinations, product
 
 from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.pose import Vector3
 from eurdf.mechanism.spanning_tree import rigid_roots
+
+#: Error at which a position actuator reaches the effort limit, rad or m; and its gain without such a limit.
+FULL_EFFORT_AT, GAIN = 0.1, 100.0
+
+#: Distance of the points that hold a hinge, or a frame, where a format has constraints of points alone, m.
+WIDTH = 0.1
+
+
+def position_gain(effort: float) -> float:
+    """Of a joint with an effort limit, N·m/rad or N/m; 0 and infinity are no limit."""
+    return effort / FULL_EFFORT_AT if 0.0 < effort < float("inf") else GAIN
+
+
+def point_on(unit: Vector3) -> Vector3:
+    """The point at `WIDTH` on an axis."""
+    return WIDTH * unit[0], WIDTH * unit[1], WIDTH * unit[2]
 
 
 def neighbours(mechanism: Mechanism, least: float) -> list[tuple[str, str]]:

@@ -15,7 +15,7 @@ from eurdf.mechanism.mechanism import ROOT_JOINT
 
 if TYPE_CHECKING:
     from eurdf.diagnostics import Diagnostics
-    from eurdf.linking.description import Described
+    from eurdf.linking.robot_files import ReadRobot
     from eurdf.pinocchio.robot import Robot
 
 # How far from the closed configuration the joints are moved for a second look, rad and characteristic lengths: what is
@@ -29,7 +29,7 @@ _NOTHING = 1e-4
 _REACH = 1e-4
 
 
-def advise_on_massless_links(description: Described, robot: Robot, q: Vector, diagnostics: Diagnostics) -> None:
+def advise_on_massless_links(read: ReadRobot, robot: Robot, q: Vector, diagnostics: Diagnostics) -> None:
     """Report links of loops without mass, unless they only part the axes of a joint of several, such as a ball.
 
     A link that reaches to another place than its joint is a part whose mass was forgotten. Any link that can move while
@@ -37,7 +37,7 @@ def advise_on_massless_links(description: Described, robot: Robot, q: Vector, di
     reported of a link whose joint has an armature.
 
     Args:
-        description: The robot as read; it has closures.
+        read: The robot as read; it has closures.
         robot: The robot built from it.
         q: A closed configuration (nq,).
         diagnostics: Gets what is found.
@@ -73,9 +73,7 @@ def advise_on_massless_links(description: Described, robot: Robot, q: Vector, di
             moving = dict.fromkeys(joint for joint, moves in zip(columns, fast, strict=True) if moves)
             names = " and ".join(f"'{model.names[joint]}'" for joint in moving)
             why = f"and can move by {names} without moving any mass: the mass matrix is singular"
-            _report(
-                description, [child_of[model.names[joint]] for joint in moving if joint in massless], why, diagnostics
-            )
+            _report(read, [child_of[model.names[joint]] for joint in moving if joint in massless], why, diagnostics)
             continue
         for joint in joints:
             if joint not in massless or joint not in looped or _has_armature(model, joint):
@@ -83,12 +81,12 @@ def advise_on_massless_links(description: Described, robot: Robot, q: Vector, di
             reach = _reach(model, joint, children, anchors)
             if reach > _REACH:
                 why = f"but extends {reach:.3g} m from its joint: its mass is missing from the dynamics"
-                _report(description, [child_of[model.names[joint]]], why, diagnostics)
+                _report(read, [child_of[model.names[joint]]], why, diagnostics)
 
 
-def _report(description: Described, links: list[str], why: str, diagnostics: Diagnostics) -> None:
+def _report(read: ReadRobot, links: list[str], why: str, diagnostics: Diagnostics) -> None:
     """Report the first of the links that the URDF has."""
-    urdf = description.urdf
+    urdf = read.urdf
     known = next((urdf.links[link] for link in links if link in urdf.links), None)
     if known is not None:
         diagnostics.report(

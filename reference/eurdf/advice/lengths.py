@@ -7,7 +7,8 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from typing import TYPE_CHECKING
 
-from eurdf.linking.description import Described, Linked, place_of_file
+from eurdf.linking.mesh_files import place_of_file
+from eurdf.linking.robot_files import ReadRobot
 
 if TYPE_CHECKING:
     from eurdf.diagnostics import Diagnostics, Place
@@ -30,15 +31,15 @@ _HEAVY = 10.0
 _Found = tuple[float, str, Callable[[], "Place"]]
 
 
-def advise_on_lengths(description: Linked, meshes: Mapping[str, Mesh], diagnostics: Diagnostics) -> None:
+def advise_on_lengths(read: ReadRobot, meshes: Mapping[str, Mesh], diagnostics: Diagnostics) -> None:
     """Report lengths that are likely in millimetres: of the whole robot, or else single ones far beyond the others.
 
     Args:
-        description: The robot as read.
+        read: The robot as read.
         meshes: Each mesh that was read, by its URI.
         diagnostics: Gets what is found.
     """
-    urdf = description.urdf
+    urdf = read.urdf
     joints = [found for found in _between_joints(urdf) if found[0] > 0.0]
     if not joints:
         return
@@ -55,7 +56,7 @@ def advise_on_lengths(description: Linked, meshes: Mapping[str, Mesh], diagnosti
         return
     in_urdf, in_extension = (
         [*joints, *_centres_of_mass(urdf)],
-        list(_of_extension(description)),
+        list(_of_extension(read)),
     )
     in_meshes = list(_of_meshes(urdf, meshes))
     for of_a_kind in (in_urdf, in_extension, in_meshes):
@@ -98,13 +99,13 @@ def _centres_of_mass(urdf: Urdf) -> Iterator[_Found]:
             )
 
 
-def _of_extension(description: Linked) -> Iterator[_Found]:
+def _of_extension(read: ReadRobot) -> Iterator[_Found]:
     """The positions of the frames that the description gives."""
-    if not isinstance(description, Described):
+    if read.yaml is None:
         return
-    for reference in description.extension.references:
+    for reference in read.description.references:
         if any(reference.xyz):
-            place = partial(description.extension.document.place, (*reference.pointer, "xyz"))
+            place = partial(read.description.document.place, (*reference.pointer, "xyz"))
             yield math.hypot(*reference.xyz), "the distance of a frame from its link or joint", place
 
 

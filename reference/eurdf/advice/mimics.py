@@ -9,20 +9,20 @@ from eurdf.diagnostics import quoted
 
 if TYPE_CHECKING:
     from eurdf.diagnostics import Diagnostics
-    from eurdf.linking.description import Linked
+    from eurdf.linking.robot_files import ReadRobot
 
 
-def advise_on_mimics(description: Linked, diagnostics: Diagnostics) -> None:
+def advise_on_mimics(read: ReadRobot, diagnostics: Diagnostics) -> None:
     """Report mimic joints that a description of version 1 leaves free (EU-ONE-009) and that no motor moves.
 
     One that is actuated, locked or replaced is meant to be a joint of its own. A description without actuators leaves
     open which joints move by themselves.
 
     Args:
-        description: The robot as read.
+        read: The robot as read.
         diagnostics: Gets what is found.
     """
-    urdf, mechanism = description.urdf, description.mechanism
+    urdf, mechanism = read.urdf, read.mechanism
     if mechanism.version != "1" or not mechanism.actuators:
         return
     free = {joint.name for joint in mechanism.joints if joint.type.is_axial} - set(mechanism.actuators)

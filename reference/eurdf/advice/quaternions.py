@@ -9,7 +9,7 @@ from eurdf.mechanism.mechanism import ROOT_JOINT
 
 if TYPE_CHECKING:
     from eurdf.diagnostics import Diagnostics
-    from eurdf.linking.description import Described
+    from eurdf.linking.robot_files import ReadRobot
     from eurdf.mechanism.mechanism import Mechanism
     from eurdf.pinocchio.robot import Robot
 
@@ -19,18 +19,18 @@ _SAME = 1e-6
 _Coordinates = Mapping[str, tuple[float, ...]]
 
 
-def advise_on_quaternions(description: Described, robot: Robot | None, diagnostics: Diagnostics) -> None:
+def advise_on_quaternions(read: ReadRobot, robot: Robot | None, diagnostics: Diagnostics) -> None:
     """Report the quaternions of named configurations that are likely w x y z, in place of x y z w.
 
     They are so where the loops close by them in that order alone; or where they are the identity in that order,
     ``[1, 0, 0, 0]``, and no loop closes by half a turn about x, which that is in the order of the format.
 
     Args:
-        description: The robot as read.
+        read: The robot as read.
         robot: The robot built from it, where it has closures.
         diagnostics: Gets what is found.
     """
-    mechanism, extension = description.mechanism, description.extension
+    mechanism, extension = read.mechanism, read.description
     entries = {entry.name: entry for entry in extension.configurations}
     for name, coordinates in mechanism.configurations.items():
         turned = w_first(mechanism, coordinates)

@@ -14,21 +14,21 @@ from eurdf.linking.configurations import BeyondLimit, beyond_limits
 if TYPE_CHECKING:
     from eurdf.diagnostics import Diagnostics
     from eurdf.kinematics.array import Vector
-    from eurdf.linking.description import Described
+    from eurdf.linking.robot_files import ReadRobot
     from eurdf.pinocchio.robot import Robot
 
 # Joints that a hint lists.
 _JOINTS_LISTED = 4
 
 
-def advise_on_limits(description: Described, robot: Robot, q: Vector, diagnostics: Diagnostics) -> None:
+def advise_on_limits(read: ReadRobot, robot: Robot, q: Vector, diagnostics: Diagnostics) -> None:
     """Report loops for which no closed configuration was found within the limits of their joints.
 
     It costs nothing where the closed configuration is within them. Where it is not, configurations within are searched
     for from the start of `assemble`, from q, and from the middle of each range.
 
     Args:
-        description: The robot as read; it has closures.
+        read: The robot as read; it has closures.
         robot: The robot built from it.
         q: A closed configuration (nq,).
         diagnostics: Gets what is found.
@@ -52,7 +52,7 @@ def advise_on_limits(description: Described, robot: Robot, q: Vector, diagnostic
     diagnostics.report(
         "x-closes-beyond-limits",
         f"no configuration was found that closes the loops within the limits of their joints; least open: {widest}",
-        description.place_of_constraint(widest.name),
+        read.place_of_constraint(widest.name),
         f"they close with {listed}: correct these limits, or the frames of the closure",
     )
 

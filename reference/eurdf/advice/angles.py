@@ -8,7 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from eurdf.format.extension import Extension
-from eurdf.linking.description import Described, Linked
+from eurdf.linking.robot_files import ReadRobot
 from eurdf.mechanism.joint_types import JointType
 from eurdf.reading.yaml_node import Pointer
 
@@ -38,16 +38,16 @@ _Place = Callable[[], "Place"]
 _Found = tuple[float, str, _Place]
 
 
-def advise_on_angles(description: Linked, diagnostics: Diagnostics) -> None:
+def advise_on_angles(read: ReadRobot, diagnostics: Diagnostics) -> None:
     """Report the angles of each file that are likely in degrees, at the first of them.
 
     Args:
-        description: The robot as read.
+        read: The robot as read.
         diagnostics: Gets what is found.
     """
-    _report([*_in_urdf(description.urdf)], diagnostics)
-    if isinstance(description, Described):
-        _report([*_in_extension(description.extension, description.mechanism)], diagnostics)
+    _report([*_in_urdf(read.urdf)], diagnostics)
+    if read.yaml is not None:
+        _report([*_in_extension(read.description, read.mechanism)], diagnostics)
 
 
 def _report(found: list[_Found], diagnostics: Diagnostics) -> None:

@@ -7,8 +7,8 @@ from dataclasses import replace
 from itertools import zip_longest
 from typing import TYPE_CHECKING
 
-from eurdf.checking.advice.hinges import LikelyHinge, likely_hinge
-from eurdf.checking.advice.passive import PassiveMotions
+from eurdf.advice.hinges import LikelyHinge, likely_hinge
+from eurdf.advice.passive import PassiveMotions
 from eurdf.diagnostics import quoted
 from eurdf.kinematics.analysis import Analysis, LoopAnalysis, analyze
 from eurdf.pinocchio.robot import build_robot
@@ -16,7 +16,7 @@ from eurdf.pinocchio.robot import build_robot
 if TYPE_CHECKING:
     from eurdf.diagnostics import Diagnostics, Place
     from eurdf.kinematics.array import Vector
-    from eurdf.linking.description import Described
+    from eurdf.linking.robot_files import ReadRobot
     from eurdf.mechanism.mechanism import Mechanism
     from eurdf.pinocchio.robot import Robot
 
@@ -31,19 +31,19 @@ _NAMES_LISTED = 6
 _MOTIONS_LISTED = 3
 
 
-def advise_on_actuation(description: Described, robot: Robot, q: Vector, diagnostics: Diagnostics) -> None:
+def advise_on_actuation(read: ReadRobot, robot: Robot, q: Vector, diagnostics: Diagnostics) -> None:
     """Report loops without an actuator; else actuators that depend on one another, and motions left uncontrolled.
 
     Nothing is reported where an earlier warning may be the reason: a misspelt key, or a closure that is left out.
 
     Args:
-        description: The robot as read; it has closures.
+        read: The robot as read; it has closures.
         robot: The robot built from it.
         q: A closed configuration (nq,).
         diagnostics: Gets what is found.
     """
     mechanism = robot.mechanism
-    if any(found.code in _REASONS for found in description.diagnostics):
+    if any(found.code in _REASONS for found in read.diagnostics):
         return
     if not mechanism.actuators:
         key = _closures_key(mechanism)
@@ -51,41 +51,41 @@ def advise_on_actuation(description: Described, robot: Robot, q: Vector, diagnos
         diagnostics.report(
             "x-no-actuator",
             f"the robot has {count} {noun if count == 1 else noun + 's'} and no actuator",
-            _place_of_key(description, key),
+            _place_of_key(read, key),
             f"list the joints that its motors drive under '{_actuators_key(mechanism)}'",
         )
         return
     analysis = analyze(robot, q)
     if analysis.left_out:
-        place = _place_of_key(description, _closures_key(mechanism))
+        place = _place_of_key(read, _closures_key(mechanism))
         diagnostics.report("x-loops-not-checked", analysis.left_out, place, "analyze parts of the robot separately")
         return
     shaky = [loop for loop in analysis.loops if loop.mobility and loop.finite_mobility == 0]
     if shaky:  # what actuators do there says little about another configuration
         for loop in shaky:
-            _report_shaky(description, robot, loop, diagnostics)
+            _report_shaky(read, robot, loop, diagnostics)
         return
     dependent = [loop for loop in analysis.loops if loop.dependent_actuators]
     if dependent:
         for loop, locking in zip(dependent, _locking(robot, analysis.q, dependent), strict=True):
             hinge = None if locking else likely_hinge(robot, analysis.q, loop, _frees(robot, loop))
-            _report_dependent(description, robot, loop, locking, hinge, diagnostics)
-    _report_uncontrolled(description, robot, analysis, diagnostics)
+            _report_dependent(read, robot, loop, locking, hinge, diagnostics)
+    _report_uncontrolled(read, robot, analysis, diagnostics)
 
 
-def _report_shaky(description: Described, robot: Robot, loop: LoopAnalysis, diagnostics: Diagnostics) -> None:
+def _report_shaky(read: ReadRobot, robot: Robot, loop: LoopAnalysis, diagnostics: Diagnostics) -> None:
     """Report loops that are rigid although their rank leaves motions."""
     count = f"{loop.mobility} {'motion' if loop.mobility == 1 else 'motions'}"
     diagnostics.report(
         "x-shaky-loops",
         f"the loops of {_constraints(robot.mechanism, loop)} have {count} to first order, but are rigid",
-        description.place_of_constraint(loop.closures[0]),
+        read.place_of_constraint(loop.closures[0]),
         "check the lengths at this configuration, or state another one as 'assembled'",
     )
 
 
 def _report_dependent(
-    description: Described,
+    read: ReadRobot,
     robot: Robot,
     loop: LoopAnalysis,
     locking: Sequence[str],
@@ -102,16 +102,16 @@ def _report_dependent(
         f"{'locked' if locked else 'coupled'} by {_constraints(robot.mechanism, loop)}"
     )
     if locking:
-        place = description.place_of_constraint(locking[0])
+        place = read.place_of_constraint(locking[0])
         hint = (
             f"type 3d for {_counted('closure', locking)} frees the actuators; use it for a ball joint, or for a pin "
             "of a planar loop"
         )
     elif hinge is not None:
-        place = description.place_of_constraint(hinge.closure)
+        place = read.place_of_constraint(hinge.closure)
         hint = f"if closure '{hinge.closure}' is a pin, {hinge} frees the actuators"
     else:
-        place = _place_of_last_actuator(description, dependent)
+        place = _place_of_last_actuator(read, dependent)
         hint = f"list only actuators that can move{'' if locked else ' independently'}, or correct the closures"
     diagnostics.report("x-dependent-actuators", message, place, hint)
 
@@ -176,7 +176,7 @@ def _trials(names: Sequence[str]) -> list[tuple[str, ...]]:
     return [*alone, tuple(names)] if len(names) > 1 else alone
 
 
-def _report_uncontrolled(description: Described, robot: Robot, analysis: Analysis, diagnostics: Diagnostics) -> None:
+def _report_uncontrolled(read: ReadRobot, robot: Robot, analysis: Analysis, diagnostics: Diagnostics) -> None:
     """Report the motions that are possible with every actuator held, except those that need no actuator."""
     if not analysis.motions:
         return
@@ -198,7 +198,7 @@ def _report_uncontrolled(description: Described, robot: Robot, analysis: Analysi
         diagnostics.report(
             "x-uncontrolled-motion",
             f"{count} {'motion remains' if count == 1 else 'motions remain'} when every actuator is held: {shown}",
-            _place_of_key(description, _actuators_key(robot.mechanism)),
+            _place_of_key(read, _actuators_key(robot.mechanism)),
             hint,
         )
 
@@ -213,14 +213,14 @@ def _actuators_key(mechanism: Mechanism) -> str:
     return "name_mot" if mechanism.version == "1" else "actuators"
 
 
-def _place_of_key(description: Described, key: str) -> Place:
-    return description.extension.document.place((key,), True)
+def _place_of_key(read: ReadRobot, key: str) -> Place:
+    return read.description.document.place((key,), True)
 
 
-def _place_of_last_actuator(description: Described, joints: Sequence[str]) -> Place:
+def _place_of_last_actuator(read: ReadRobot, joints: Sequence[str]) -> Place:
     """Of several actuators the one that is listed last, as what was added most likely."""
-    entry = next(entry for entry in reversed(description.extension.actuators) if entry.joint in joints)
-    return description.extension.document.place(entry.pointer)
+    entry = next(entry for entry in reversed(read.description.actuators) if entry.joint in joints)
+    return read.description.document.place(entry.pointer)
 
 
 def _constraints(mechanism: Mechanism, loop: LoopAnalysis) -> str:

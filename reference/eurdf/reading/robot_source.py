@@ -1,6 +1,6 @@
-"""What a caller may give in place of the path of a file: a text, standard input, a pipe.
+"""What a caller names a robot by: the path of a file, a text, standard input, a pipe.
 
-Only a caller can: a path that a file names is that of a regular file (EU-FIL-001).
+Only a caller can give a text or a stream: a path that a file names is that of a regular file (EU-FIL-001).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from eurdf.reading.source import BOM, FILE_LIMIT, Source, decoded, too_large
 from eurdf.regular_file import open_now
 
 #: What is given: a path, ``-`` for standard input, or the text itself.
-Given = str | bytes | os.PathLike[str]
+RobotSource = str | bytes | os.PathLike[str]
 
 #: The path that means standard input.
 STDIN = "-"
@@ -30,14 +30,14 @@ _CHUNK = 1 << 16
 _SPACE = " \t\r\n"
 
 
-def is_stream(given: Given) -> bool:
+def is_stream(given: RobotSource) -> bool:
     """Whether it can be read only once: standard input, or a pipe."""
     if isinstance(given, bytes):
         return False
     return given == STDIN or _is_pipe(given)
 
 
-def is_text(given: Given) -> bool:
+def is_text(given: RobotSource) -> bool:
     """Whether it is a text and no path: bytes, or a string that begins with ``<`` or has several lines."""
     if isinstance(given, bytes):
         return True
@@ -47,14 +47,14 @@ def is_text(given: Given) -> bool:
     return ("\n" in text or text.startswith("<")) and not os.path.lexists(given)
 
 
-def shown(given: Given) -> str:
+def display_name(given: RobotSource) -> str:
     """What a report calls it: a path as it is."""
     if is_text(given):
         return "<text>"
     return "<stdin>" if given == STDIN else os.fsdecode(given)
 
 
-def source_of(given: Given, limit: int = FILE_LIMIT) -> Source | None:
+def source_of(given: RobotSource, limit: int = FILE_LIMIT) -> Source | None:
     """The source of a text, or of what a stream holds; None for the path of anything else.
 
     Relative paths in it start from the working directory.
