@@ -18,8 +18,7 @@ from eurdf.convert.names import UniqueNames
 from eurdf.convert.urdf.tree import PlainTree
 from eurdf.mechanism.constraint import Closure, HingeClosure
 from eurdf.mechanism.pose import Pose, Quaternion, Vector3, direction
-from eurdf.writing.angles import rpy_of
-from eurdf.writing.xml_text import file_content, numbers
+from eurdf.writing.xml_text import file_content, numbers, rpy_of
 
 _X: Vector3 = (1.0, 0.0, 0.0)
 
