@@ -104,7 +104,7 @@ from eurdf.transmissions.workspace import BoundaryPoint as BoundaryPoint
 from eurdf.transmissions.workspace import Workspace as Workspace
 from eurdf.transmissions.workspace import workspace as workspace
 from eurdf.viewing.shown import ShownRobot as ShownRobot
-from eurdf.viewing.view import view as view
 from eurdf.viewing.viewer import Viewer as Viewer
+from eurdf.viewing.viewer import view as view
 
 __version__: str

@@ -586,8 +586,8 @@ def test_command_replaces_file_only_with_force(leg: Path, capsys: pytest.Capture
     assert main(["generate", str(leg), "-o", str(out), "--force"]) == 0
     description = read_robot(out)
     assert description.mechanism is not None
-    assert description.extension is not None
-    assert description.extension.urdf == "../leg.urdf"
+    assert description.yaml is not None
+    assert description.description.urdf == "../leg.urdf"
 
 
 def test_root_can_float(leg: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -312,7 +312,7 @@ def test_no_comment_is_lost_or_duplicated(data: st.DataObject) -> None:
         migration = migrate(description)
     except NotMigratable:
         return
-    before = sorted(comment.text for comment in comments_of(description.extension.document.source))
+    before = sorted(comment.text for comment in comments_of(description.description.document.source))
     source = Source("", migration.text, migration.text.encode())
     after = [comment.text for comment in comments_of(source)]
     assert sorted(piece for comment in after for piece in pieces(comment)) == before
@@ -386,12 +386,16 @@ x-masses:
 
 def test_comments_and_user_data_are_kept() -> None:
     description = described(COMMENTED)
-    assert migrate(description, schema=schema_named(description.extension.document, description.urdf)).text == MIGRATED
+    assert (
+        migrate(description, schema=schema_named(description.description.document, description.urdf)).text == MIGRATED
+    )
 
 
 def test_windows_line_ends_change_nothing() -> None:
     description = described(COMMENTED.replace("\n", "\r\n"))
-    assert migrate(description, schema=schema_named(description.extension.document, description.urdf)).text == MIGRATED
+    assert (
+        migrate(description, schema=schema_named(description.description.document, description.urdf)).text == MIGRATED
+    )
 
 
 def test_changes_are_listed() -> None:
@@ -642,6 +646,6 @@ def test_version_2_0_is_written_where_it_suffices() -> None:
 def test_first_line_names_the_schema_of_the_version_written() -> None:
     text = "# yaml-language-server: $schema=../schema/extended-urdf-1.schema.json\nname_mot: [follow]\n"
     description = with_mimics(text)
-    named = schema_named(description.extension.document, description.urdf)
+    named = schema_named(description.description.document, description.urdf)
     assert named == "../schema/extended-urdf-2.1.schema.json"
-    assert schema_named(description.extension.document, URDF) == "../schema/extended-urdf-2.0.schema.json"
+    assert schema_named(description.description.document, URDF) == "../schema/extended-urdf-2.0.schema.json"

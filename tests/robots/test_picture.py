@@ -134,7 +134,7 @@ def test_distance_is_no_open_closure():
 
 def test_palette_keeps_colours_and_transparency():
     pytest.importorskip("PIL", reason="Pillow is not installed: pip install -e '.[pictures]'")
-    from eurdf.viewing.palette import with_palette
+    from eurdf.viewing.picture import with_palette
 
     rng = np.random.default_rng(0)
     few = np.r_[rng.integers(0, 256, (200, 4)), [[0, 0, 0, 0]]].astype(np.uint8)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import os
 from typing import Any
 
+from eurdf.exceptions import InvalidRobot
 from eurdf.kinematics.residual import closure_openings
-from eurdf.linking.robot_files import ReadRobot, read_robot
+from eurdf.linking.robot_files import ReadRobot, read_robot, read_valid
 from eurdf.loading import load
 from eurdf.pinocchio.robot import Robot, build_robot
 from eurdf.reading.robot_source import RobotSource, is_stream, is_text
@@ -81,10 +82,10 @@ class RobotOnDisk:
             CannotSave: The loops are open, or the file cannot be changed.
         """
         # The root may have been chosen for the page alone.
-        read = read_robot(self.path, **{**self.options, "root": None})
-        if read.linked is None or read.diagnostics.refused:
-            raise CannotSave("the files have errors; nothing was written")
-        assert read.yaml is not None
+        try:
+            read = read_valid(self.path, **{**self.options, "root": None})
+        except InvalidRobot:
+            raise CannotSave("the files have errors; nothing was written") from None
         if not name.strip():
             raise CannotSave("the configuration needs a name")
         robot = build_robot(read.mechanism, geometry=False)
