@@ -26,7 +26,7 @@ from eurdf.mesh_files.kinds import (
     listed,
     suffix_of,
 )
-from eurdf.regular_file import open_regular
+from eurdf.regular_file import open_regular, reason_of
 
 #: Bytes that the mesh files of a robot may have together, with the files that they name.
 BYTES_LIMIT = 1 << 30
@@ -168,7 +168,7 @@ class MeshReader:
             head = stream.read(HEAD)
             stream.seek(0)
         except OSError as error:
-            raise RefusedFile((error.strerror or str(error)).lower()) from None
+            raise RefusedFile(reason_of(error)) from None
         if head.startswith(GIT_LFS):
             reason = "it is a pointer of Git LFS; fetch the file with `git lfs pull`"
         elif not size:
@@ -200,7 +200,7 @@ class MeshReader:
             try:
                 return stream.read(size)
             except OSError as error:
-                raise RefusedFile((error.strerror or str(error)).lower()) from None
+                raise RefusedFile(reason_of(error)) from None
 
     def _spend(self, size: int) -> None:
         if size > self._left:
