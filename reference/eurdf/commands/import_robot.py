@@ -15,7 +15,7 @@ from eurdf.commands.conversion_lines import loss_lines
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import writing
 from eurdf.commands.terminal import write_lines, write_notes, write_reports
-from eurdf.convert.formats import IMPORTS
+from eurdf.reading.other_formats import IMPORTED
 
 if TYPE_CHECKING:
     from eurdf.convert.import_robot import Import
@@ -38,9 +38,9 @@ What was written is checked, as by `eurdf check`.
     option(
         "--from",
         dest="format_",
-        choices=IMPORTS,
+        choices=IMPORTED,
         metavar="FORMAT",
-        help=f"{', '.join(IMPORTS)}; default: recognized by the content",
+        help=f"{', '.join(IMPORTED)}; default: recognized by the content",
     ),
     option(
         "--within",
