@@ -210,7 +210,7 @@ class _SdfWriter:
             mimic = replace(mimic, offset=mimic.offset - at[0])
         zero = () if at == joint.type.neutral else at
         ratios = ((index, 1.0, -value) for index, value in enumerate(at))
-        self.parts.append(Part.of(joint, names, ratios, mimic, zero=zero, turn=joint.offset.quaternion))
+        self.parts.append(Part.of(joint, names, ratios, mimic, zero=zero))
 
     # -- relations --------------------------------------------------------------------------------------------------
 
