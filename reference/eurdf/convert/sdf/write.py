@@ -15,13 +15,14 @@ from dataclasses import replace
 
 from lxml import etree
 
-from eurdf.convert.coordinates import Coordinates, Part
+from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.exceptions import CannotExport
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format, coordinates_at
 from eurdf.convert.inertia import accepted_inertia
 from eurdf.convert.losses import Losses
-from eurdf.convert.mesh_file import MeshFiles
+from eurdf.convert.meshes import MeshFiles
 from eurdf.convert.names import UniqueNames
+from eurdf.convert.parts import Part
 from eurdf.convert.sdf.facts import CLOSURES, EXACT, LEAST, ROWS, VERSION
 from eurdf.convert.steps import AXES, in_series, turn_type
 from eurdf.mechanism.body import Body, Inertia, Shape
