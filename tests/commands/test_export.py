@@ -12,7 +12,7 @@ import pytest
 
 import eurdf
 from eurdf.commands.main import main
-from eurdf.commands.output_schema import output_schemas
+from eurdf.commands.output import output_schemas
 from eurdf.convert.export_format import export_format
 from eurdf.convert.formats import EXPORTS
 from eurdf.convert.losses import ELEMENTS, Effect

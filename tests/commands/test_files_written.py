@@ -14,8 +14,8 @@ from pathlib import Path
 import pytest
 
 import eurdf
-from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.output_file import write_new
+from eurdf.exceptions import CannotRun
 from eurdf.writing.atomic_file import write_atomically, write_together
 from eurdf.writing.output_folder import write_files
 

@@ -18,7 +18,7 @@ from eurdf.format.urdf.data import Urdf
 from eurdf.format.urdf.read import read_urdf
 from eurdf.format.yaml_text import flow, lines_of, lines_of_item, scalar
 from eurdf.kinematics.analysis import analyze
-from eurdf.linking.description import describe
+from eurdf.linking.robot_files import read_robot
 from eurdf.mechanism.same_model import differences
 from eurdf.pinocchio.robot import build_robot
 from eurdf.reading.source import Source, read_source
@@ -584,10 +584,10 @@ def test_command_replaces_file_only_with_force(leg: Path, capsys: pytest.Capture
     assert "--force" in capsys.readouterr().err
     assert out.read_text(encoding="utf-8") == "mine"
     assert main(["generate", str(leg), "-o", str(out), "--force"]) == 0
-    description = describe(out)
+    description = read_robot(out)
     assert description.mechanism is not None
-    assert description.extension is not None
-    assert description.extension.urdf == "../leg.urdf"
+    assert description.yaml is not None
+    assert description.description.urdf == "../leg.urdf"
 
 
 def test_root_can_float(leg: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from eurdf.commands.main import main
 from eurdf.format.schema import FILES, json_schema, schema_text
-from eurdf.linking.description import describe
+from eurdf.linking.robot_files import read_robot
 
 ROBOT = Path(__file__).parents[2] / "robots" / "four_bar"
 
@@ -134,7 +134,7 @@ def test_standard_output_names_no_schema(folder: Path, argv: list[str], capsys: 
     assert "$schema" not in out
     assert "-o FILE" in err
     (folder / "new.yaml").write_text(out, encoding="utf-8")
-    assert describe("new.yaml").mechanism is not None
+    assert read_robot("new.yaml").mechanism is not None
     assert main([*argv, "--schema", "none"]) == 0
     assert "-o FILE" not in capsys.readouterr().err
 

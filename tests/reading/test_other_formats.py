@@ -8,8 +8,8 @@ import pytest
 
 import eurdf
 from eurdf.commands.main import main
-from eurdf.importing.formats import FORMATS
-from eurdf.importing.recognition import recognized
+from eurdf.convert.formats import IMPORTS
+from eurdf.convert.xml_elements import recognized
 from eurdf.reading.other_formats import IMPORTED
 
 LINKS = (
@@ -112,4 +112,4 @@ def test_long_preamble_takes_no_time(tmp_path: Path) -> None:
 
 
 def test_table_has_every_format_that_is_imported() -> None:
-    assert list(IMPORTED) == list(FORMATS)
+    assert list(IMPORTED) == list(IMPORTS)

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 import eurdf
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import Robot
-from eurdf.writing.angles import rpy_of
+from eurdf.writing.xml_text import rpy_of
 from support.exported import random_robot
 from support.plain_urdf import pinocchios_own, trees
 

@@ -17,7 +17,7 @@ from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Root
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand
-from support.closed_tree import closed_tree
+from support.mechanisms import closed_tree
 from support.plain_urdf import pinocchios_own
 
 

@@ -18,10 +18,9 @@ from eurdf.commands.main import main
 from eurdf.viewing.live_robot import SCRIPTS, live_robot, live_view
 from eurdf.viewing.scene import Scene
 from eurdf.viewing.session import Session
-from support.closed_tree import closed_tree
-from support.described import load
+from support.described import load, strut
 from support.linkage import described, n_bar
-from support.strut import strut
+from support.mechanisms import closed_tree
 
 NODE = shutil.which("node")
 PROGRAM = Path(__file__).parents[1] / "support/live_robot.js"

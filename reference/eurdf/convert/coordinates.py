@@ -14,7 +14,7 @@ import numpy.typing as npt
 from eurdf.convert.parts import UPRIGHT, OwnVectors, Part
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import Pose, Quaternion
-from eurdf.writing.angles import rpy_of
+from eurdf.writing.xml_text import rpy_of
 
 Vector = npt.NDArray[np.float64]
 Matrix = npt.NDArray[np.float64]

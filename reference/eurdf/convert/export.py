@@ -32,13 +32,14 @@ from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.linking.configurations import beyond_limits
-from eurdf.linking.description import Linked, Unlinked, describe, find_meshes
+from eurdf.linking.mesh_files import find_meshes
+from eurdf.linking.robot_files import ReadRobot, read_robot
 from eurdf.mechanism.mechanism import ROOT_JOINT, Root
 from eurdf.mesh_files.folders import Folders, folders_of_files
 from eurdf.mesh_files.reader import MeshReader
 from eurdf.pinocchio.meshes import read_meshes
 from eurdf.pinocchio.robot import Robot, build_robot
-from eurdf.reading.given import Given
+from eurdf.reading.robot_source import RobotSource
 from eurdf.writing.output_folder import write_files
 
 #: The configuration to start from, unless another one is asked for.
@@ -124,10 +125,10 @@ class Export:
 
 
 def export(
-    robot: Given | Robot,
+    robot: RobotSource | Robot,
     to: str,
     *,
-    urdf: Given | None = None,
+    urdf: RobotSource | None = None,
     root: Root | None = None,
     configuration: str = ASSEMBLED,
     actuators: Actuators = "motor",
@@ -179,7 +180,7 @@ def export(
     if isinstance(robot, Robot):
         meshes = files_of_meshes(robot)
         return _export(robot, meshes, {}, folders_of_files(meshes.values(), allow_outside=allow_outside), choices)
-    description = describe(
+    read = read_robot(
         robot,
         urdf,
         root,
@@ -188,24 +189,24 @@ def export(
         confined=confined,
         allow_outside=allow_outside,
     )
-    if isinstance(description, Unlinked) or description.diagnostics.refused:
-        raise InvalidRobot(description.path, tuple(description.diagnostics))
-    return export_linked(description, choices, package_dirs, allow_outside=allow_outside)
+    if read.linked is None or read.diagnostics.refused:
+        raise InvalidRobot(read.path, tuple(read.diagnostics))
+    return export_linked(read, choices, package_dirs, allow_outside=allow_outside)
 
 
 def export_linked(
-    description: Linked,
+    read: ReadRobot,
     choices: Choices,
     package_dirs: Sequence[str | os.PathLike[str]],
     *,
     allow_outside: bool = False,
 ) -> Export:
     """Export a robot that was read; see `export`."""
-    files = find_meshes(description.urdf, package_dirs, allow_outside=allow_outside)
-    bodies = description.mechanism.bodies
+    files = find_meshes(read.urdf, package_dirs, allow_outside=allow_outside)
+    bodies = read.mechanism.bodies
     uris = {shape.filename for body in bodies for shape in (*body.visuals, *body.collisions)}
     meshes = {uri: Path(path) for uri, path in files.paths.items() if uri in uris}
-    robot = build_robot(description.mechanism, geometry=False)
+    robot = build_robot(read.mechanism, geometry=False)
     refused = dict.fromkeys(files.outside, str(files.folders))
     return _export(robot, meshes, refused, files.folders, choices)
 

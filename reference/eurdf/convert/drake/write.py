@@ -30,9 +30,8 @@ from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.mechanism.pose import IDENTITY, Vector3, direction
-from eurdf.writing.angles import rpy_of
 from eurdf.writing.urdf_elements import add_dynamics, add_joint
-from eurdf.writing.xml_text import file_content, numbers
+from eurdf.writing.xml_text import file_content, numbers, rpy_of
 
 _ORIGIN: Vector3 = (0.0, 0.0, 0.0)
 _NAMESPACE = "http://drake.mit.edu"

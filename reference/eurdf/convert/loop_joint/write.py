@@ -17,8 +17,7 @@ from eurdf.convert.urdf.facts import EXACT, PLAIN_ROWS
 from eurdf.convert.urdf.write import PlainTree
 from eurdf.mechanism.constraint import Closure, HingeClosure
 from eurdf.mechanism.pose import Pose, turn_from_x
-from eurdf.writing.angles import rpy_of
-from eurdf.writing.xml_text import numbers
+from eurdf.writing.xml_text import numbers, rpy_of
 
 #: The type of the loop joint that a closure is.
 CLOSURES = {"3d": "spherical", "6d": "fixed", "hinge": "revolute"}

@@ -1,0 +1,28 @@
+"""What the JSON Schema of a result says of a value beside its type; it is generated from the fields of the result."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Any
+
+
+class Keywords:
+    """Keywords of JSON Schema, in the annotation of a field; None removes one."""
+
+    def __init__(self, **keywords: Any) -> None:
+        self.keywords = keywords
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Callable[[Any], dict[str, Any]]) -> dict[str, Any]:
+        """Pydantic asks for them; an annotation with its own would import it, which a command does without."""
+        keywords = {**handler(schema), **self.keywords}
+        return {name: value for name, value in keywords.items() if value is not None}
+
+
+#: The metadata of a field that is left out of JSON.
+HIDDEN = {"exclude": True}
+
+#: A number of things.
+Count = Annotated[int, Keywords(minimum=0)]
+
+#: A number that is null in JSON where it is not finite.
+NullIfInfinite = Annotated[float, Keywords(type=None, anyOf=[{"type": "number"}, {"type": "null"}])]
