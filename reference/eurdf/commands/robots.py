@@ -47,13 +47,12 @@ class Collection:
 
 
 @command(
-    JSON,
     summary="list the robots of the collection",
     description="List the robots of this package. All commands and eurdf.load accept their names.",
     exit_codes="0 listed, 1 a robot cannot be built, 2 the command cannot run.",
     examples=("eurdf robots --json",),
 )
-def robots(json: bool) -> int:
+def robots(json: bool = JSON) -> int:
     """List them."""
     import eurdf
 

@@ -8,7 +8,16 @@ import os
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from eurdf.commands.command import FORCE, OUTPUT_FOLDER, ROBOT, SERIAL_JOINTS, cannot_run, command, option
+from eurdf.commands.command import (
+    FORCE,
+    OUTPUT_FOLDER,
+    ROBOT,
+    SERIAL_JOINTS,
+    SERIAL_MOTORS,
+    cannot_run,
+    command,
+    option,
+)
 from eurdf.commands.output_file import writing
 from eurdf.commands.terminal import cell, new_table, write_notes, write_rendered
 
@@ -36,27 +45,6 @@ def _value(text: str) -> tuple[str, float]:
 
 
 @command(
-    ROBOT,
-    SERIAL_JOINTS,
-    OUTPUT_FOLDER,
-    option(
-        "--limits",
-        choices=("conservative", "fitted"),
-        default="conservative",
-        help="conservative: limits that the motors can always keep, and the largest armature; fitted: means; default: "
-        "conservative",
-    ),
-    option(
-        "--armature",
-        nargs="+",
-        default=(),
-        metavar="MOTOR=VALUE",
-        type=_value,
-        help="inertia of a motor after its gear, kg·m² or kg, in place of that of the description",
-    ),
-    option("--grid", type=int, metavar="N", help="number of positions of each joint in the workspace"),
-    option("--degree", type=int, default=8, metavar="N", help="degree of the polynomials; default: 8"),
-    FORCE,
     summary="write the serial robot that stands for one with rods, and show what it neglects",
     description=_DESCRIPTION,
     exit_codes="0 written, 1 the robot has errors, 2 the command cannot run.",
@@ -66,16 +54,27 @@ def _value(text: str) -> tuple[str, float]:
     ),
 )
 def serial(
-    path: str,
     options: dict[str, Any],
-    joints: list[str],
-    motors: list[str] | None,
-    output: str,
-    limits: Choice,
-    armature: list[tuple[str, float]],
-    grid: int | None,
-    degree: int,
-    force: bool,
+    path: str = ROBOT,
+    joints: list[str] = SERIAL_JOINTS,
+    motors: list[str] | None = SERIAL_MOTORS,
+    output: str = OUTPUT_FOLDER,
+    limits: Choice = option(
+        "conservative: limits that the motors can always keep, and the largest armature; fitted: means; default: "
+        "conservative",
+        choices=("conservative", "fitted"),
+        default="conservative",
+    ),
+    armature: list[tuple[str, float]] = option(
+        "inertia of a motor after its gear, kg·m² or kg, in place of that of the description",
+        nargs="+",
+        default=(),
+        metavar="MOTOR=VALUE",
+        type=_value,
+    ),
+    grid: int | None = option("number of positions of each joint in the workspace", type=int, metavar="N"),
+    degree: int = option("degree of the polynomials; default: 8", type=int, default=8, metavar="N"),
+    force: bool = FORCE,
 ) -> int:
     """Write the serial robot, and show what it neglects."""
     import eurdf
