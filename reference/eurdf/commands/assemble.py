@@ -249,7 +249,7 @@ def _messages(info: AssemblyInfo, assembly: Assembly, beyond: list[BeyondLimit])
 def _show(info: AssemblyInfo) -> None:
     from rich.text import Text
 
-    from eurdf.diagnostics.visible import visible
+    from eurdf.diagnostics.wording import visible
 
     word, style = ("closed", "green") if info.closes else ("open", "red")
     residual = f", residual {info.residual:.1e}" if math.isfinite(info.residual) else ""

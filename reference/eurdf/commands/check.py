@@ -50,7 +50,7 @@ def check(
     """Check, and write the diagnostics."""
     import eurdf
     from eurdf.diagnostics import quoted
-    from eurdf.diagnostics.visible import visible
+    from eurdf.diagnostics.wording import visible
 
     skipped = without_robot(paths)
     robots = select([path for path in paths if path not in skipped], allow_none)

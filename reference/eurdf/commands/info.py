@@ -73,7 +73,7 @@ def _show(info: RobotInfo) -> None:
 def _heading(info: RobotInfo) -> Text:
     from rich.text import Text
 
-    from eurdf.diagnostics.visible import visible
+    from eurdf.diagnostics.wording import visible
 
     format_name = f"Extended URDF {info.version}" if info.version else "URDF"
     mass = f", {info.mass:.6g} kg" if math.isfinite(info.mass) else ""

@@ -18,7 +18,8 @@ from pkgutil import resolve_name
 from typing import Any, cast, get_args, get_type_hints
 
 from eurdf.commands.terminal import write_json
-from eurdf.diagnostics.report import encodable, report_schema
+from eurdf.diagnostics.report import report_schema
+from eurdf.diagnostics.wording import encodable
 
 #: The results by the names of their schemas: the module and the class of each.
 RESULTS = {

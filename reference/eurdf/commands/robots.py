@@ -87,7 +87,7 @@ def _collected(name: str) -> CollectedRobot:
 
 
 def _show(collection: Collection) -> None:
-    from eurdf.diagnostics.visible import visible
+    from eurdf.diagnostics.wording import visible
 
     counts = ("nv", "closures", "nc", "mobility", "actuated", "uncontrolled")
     described = not is_terminal(sys.stdout) or columns() >= _WIDE

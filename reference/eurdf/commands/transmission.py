@@ -228,7 +228,7 @@ def _has_rotors(pose: PoseInfo) -> bool:
 def _show(info: TransmissionInfo) -> None:
     from rich.text import Text
 
-    from eurdf.diagnostics.visible import visible
+    from eurdf.diagnostics.wording import visible
 
     names = (", ".join(axis.name for axis in axes) for axes in (info.motors, info.joints))
     motors, joints = map(visible, names)

@@ -14,7 +14,7 @@ from typing import Any, Literal, cast
 
 from lxml import etree
 
-from eurdf.diagnostics.visible import visible
+from eurdf.diagnostics.wording import visible
 from eurdf.format.own_key import is_own_key
 from eurdf.format.yaml_text import Entry, Value, item_of_mapping, lines_of, lines_of_item, modeline, section, text_of
 from eurdf.mechanism.body import Body
