@@ -14,7 +14,7 @@ import eurdf
 from eurdf.linking.configurations import beyond_limits
 from eurdf.linking.robot_files import read_robot
 from eurdf.pinocchio.robot import build_robot
-from eurdf.writing.assembled import CLOSED_IN_FULL, with_closed_configuration
+from eurdf.writing.saved_configuration import CLOSED_IN_FULL, with_closed_configuration
 from support.described import STAR, written
 
 ROBOTS = Path(__file__).parents[2] / "robots"

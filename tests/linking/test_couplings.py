@@ -13,7 +13,6 @@ import pytest
 import eurdf
 from eurdf.commands.main import main
 from eurdf.mechanism.constraint import Coupling
-from eurdf.pinocchio.constraint import NoConstraintModel
 from support.described import body
 from support.plain_urdf import joint_element
 from support.plain_urdf import robot as urdf
@@ -48,30 +47,11 @@ def belt(tmp_path: Path) -> eurdf.Robot:
     return eurdf.load(written(tmp_path))
 
 
-@pytest.fixture
-def mimic(tmp_path: Path) -> eurdf.Robot:
-    text = arm('<mimic joint="j0" multiplier="0.5" offset="0.2"/>')
-    return eurdf.load(written(tmp_path / "mimic", 'extended_urdf: "2.0"\nactuators: [j0]\n', text))
-
-
 @pytest.mark.parametrize("angle", [0.3, 9.0, -20.0])
 def test_whole_turns_of_a_coupled_joint_count(belt: eurdf.Robot, angle: float) -> None:
     q = at(belt, angle)
     np.testing.assert_allclose(q, [angle, 0.5 * angle + 0.2], atol=1e-9)
     assert np.abs(eurdf.residual(belt, q)).max() < 1e-9
-
-
-def test_coupled_dynamics_are_those_of_a_mimic_joint(belt: eurdf.Robot, mimic: eurdf.Robot) -> None:
-    v = np.array([1.5, 0.75])
-    one = eurdf.forward_dynamics(belt, at(belt, 0.7), v, np.array([0.3]))
-    other = eurdf.forward_dynamics(mimic, np.array([0.7]), v[:1], np.array([0.3]))
-    np.testing.assert_allclose(one.a, [other.a[0], 0.5 * other.a[0]], atol=1e-9)
-
-
-def test_coupled_energy_is_kept(belt: eurdf.Robot) -> None:
-    found = eurdf.simulate(belt, at(belt, 0.7), duration=0.2)
-    assert np.abs(eurdf.residual(belt, found.q[-1])).max() < 1e-8
-    assert abs(found.q[-1][0] - 0.7) > 1e-3
 
 
 def test_locked_joint_moves_into_the_offset(belt: eurdf.Robot) -> None:
@@ -98,11 +78,6 @@ def test_leader_of_an_earlier_mimic_joint_can_be_coupled(tmp_path: Path) -> None
     pin.framesForwardKinematics(robot.model, robot.data, q)
     heights = [robot.data.oMf[robot.model.getFrameId(name)].translation[2] for name in ("finger", "thumb")]
     np.testing.assert_allclose(heights, [0.2, -0.2], atol=1e-9)
-
-
-def test_coupling_has_no_constraint_model_of_pinocchio(belt: eurdf.Robot) -> None:
-    with pytest.raises(NoConstraintModel, match="coupling"):
-        _ = belt.constraint_models
 
 
 def test_check_reports_contradicting_couplings(tmp_path: Path) -> None:

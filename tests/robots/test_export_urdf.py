@@ -17,7 +17,7 @@ import eurdf
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import Robot, build_robot
-from eurdf.writing.angles import rpy_of
+from eurdf.writing.xml_text import rpy_of
 from support import by_hand
 from support.exported import random_robot
 from support.plain_urdf import inertial, joint_element, link_element, pinocchios_own, trees

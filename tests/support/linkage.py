@@ -251,6 +251,10 @@ def ball_ended(kind: str) -> Linkage:
     return loop(pairs, "3d", end)
 
 
+#: Mechanisms of textbooks that move, whose arguments all have defaults.
+MOVING = (slider_crank, three_rrr, stewart, sarrus, bennett, spherical_four_bar)
+
+
 def weighted(linkage: Linkage, seed: int = 0, size: float = 1.0) -> Linkage:
     """With some inertia at every joint, a factor on its lengths, and armature at the motors."""
     random, model = np.random.default_rng(seed), linkage.model

@@ -132,8 +132,7 @@ def assemble(
     from eurdf.linking.configurations import beyond_limits
     from eurdf.linking.robot_files import read_valid
     from eurdf.pinocchio.robot import build_robot
-    from eurdf.writing.assembled import NAME
-    from eurdf.writing.saved_configuration import CannotSave, file_to_save_to, save_configuration
+    from eurdf.writing.saved_configuration import NAME, CannotSave, file_to_save_to, save_configuration
 
     if force and not write:
         raise CannotRun("--force has no effect without --write; add --write")

@@ -48,7 +48,7 @@ def picture(
     import eurdf
     from eurdf.viewing import picture as drawing
     from eurdf.viewing.graph import save_graph
-    from eurdf.writing.assembled import NAME
+    from eurdf.writing.saved_configuration import NAME
 
     with cannot_run(ValueError, by=f"'{path}': "):
         robot = eurdf.load(path, **options)

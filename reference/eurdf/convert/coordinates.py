@@ -16,7 +16,7 @@ from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import Pose, Quaternion
-from eurdf.writing.angles import rpy_of
+from eurdf.writing.xml_text import rpy_of
 
 Vector = npt.NDArray[np.float64]
 Matrix = npt.NDArray[np.float64]

@@ -10,13 +10,13 @@ from pathlib import Path
 from types import MappingProxyType
 
 from eurdf.convert.losses import Losses, LossKind, dropped, exact
+from eurdf.convert.names import FileNames
 from eurdf.mechanism.joint import Joint, JointProperties, is_no_range
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mesh_files.reader import MeshReader
 from eurdf.reading.other_formats import IMPORTED
 from eurdf.reading.resource import FileFinder
-from eurdf.writing.file_names import FileNames
 
 
 class ImportInput:

@@ -36,10 +36,10 @@ from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.spanning_tree import rigid_poses
 from eurdf.pinocchio.robot import build_robot
 from eurdf.reading.resource import FileFinder
-from eurdf.writing.assembled import NAME as ASSEMBLED
 from eurdf.writing.description import DescriptionFiles, NotWritable, describe_mechanism, version_needed
 from eurdf.writing.joined_closures import join_points
 from eurdf.writing.output_folder import write_files
+from eurdf.writing.saved_configuration import NAME as ASSEMBLED
 
 #: Losses of every format.
 COMMON = loss_kinds(

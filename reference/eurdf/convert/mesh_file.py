@@ -8,8 +8,8 @@ from pathlib import Path
 
 from eurdf.convert.export_format import ExportInput, Triangles
 from eurdf.convert.losses import Losses
+from eurdf.convert.names import FileNames
 from eurdf.mesh_files.reader import RefusedFile
-from eurdf.writing.file_names import FileNames
 from eurdf.writing.xml_text import numbers
 
 

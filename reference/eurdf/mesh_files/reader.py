@@ -51,7 +51,8 @@ _GEOMETRY = (
 #: Files that a mesh may name.
 REFERENCES_LIMIT = 1_000
 
-_GIT_LFS = b"version https://git-lfs"
+#: How a pointer of Git LFS begins, which is there where the file was not fetched.
+GIT_LFS = b"version https://git-lfs"
 
 
 class RefusedFile(Exception):  # noqa: N818 - named like InvalidRobot
@@ -172,7 +173,7 @@ class MeshReader:
         except OSError as error:
             raise RefusedFile((error.strerror or str(error)).lower()) from None
         name, matches = KINDS[suffix]
-        if head.startswith(_GIT_LFS):
+        if head.startswith(GIT_LFS):
             reason = "it is a pointer of Git LFS; fetch the file with `git lfs pull`"
         elif not size:
             reason = "it is empty"

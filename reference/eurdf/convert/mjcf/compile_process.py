@@ -9,12 +9,13 @@ from __future__ import annotations
 import json
 import math
 import os
-from typing import Any, NamedTuple
+from typing import Any
 
 import mujoco
 import numpy as np
 
 from eurdf.mesh_files.folders import Folders
+from eurdf.mesh_files.reader import BYTES_LIMIT, GIT_LFS
 from eurdf.sandbox import bound_memory, bound_time, request_and_answers
 
 #: Of each kind of element: its type, if it has names, and the arrays of the model that the importer needs. The first of
@@ -62,15 +63,6 @@ _ENUMERATIONS = {
 #: Numbers of what a mechanism does not have.
 _COUNTS = ("nsensor", "ncam", "nlight", "npair", "nexclude", "nflex", "nskin", "nhfield", "nplugin")
 
-_GIT_LFS = b"version https://git-lfs"
-
-
-class _Bounds(NamedTuple):
-    """Where the files of meshes may be, and their largest size in bytes."""
-
-    folders: Folders
-    bytes: int
-
 
 class Refused(Exception):  # noqa: N818 - the answer to the request
     """The file cannot be compiled; the text says why."""
@@ -82,7 +74,7 @@ def main() -> None:
     bound_time(2 * request["seconds"], request["seconds"])
     bound_memory(request["memory"])
     try:
-        answer = _compiled(request["path"], _Bounds(Folders(request["folders"]), request["bytes"]))
+        answer = _compiled(request["path"], Folders(request["folders"]))
     except Refused as reason:
         answer = {"error": str(reason)}
     except MemoryError:
@@ -93,8 +85,8 @@ def main() -> None:
     answers.flush()
 
 
-def _compiled(path: str, bounds: _Bounds) -> dict[str, Any]:
-    spec, faults = _specification(path, bounds)
+def _compiled(path: str, folders: Folders) -> dict[str, Any]:
+    spec, faults = _specification(path, folders)
     left_out = _without_assets(spec, faults)
     try:
         model = spec.compile()
@@ -103,7 +95,7 @@ def _compiled(path: str, bounds: _Bounds) -> dict[str, Any]:
         faults = {mesh.name: reason for mesh in spec.meshes if (reason := _compile_error(mesh))}
         if not faults:
             raise
-        spec, more = _specification(path, bounds)
+        spec, more = _specification(path, folders)
         left_out = _without_assets(spec, faults | more)
         model = spec.compile()
     elements = {kind: _elements(model, kind) for kind in _ELEMENTS}
@@ -146,7 +138,7 @@ def _column(model: Any, name: str) -> list[Any]:
     return values if kind is None else [kind(value).name.rpartition("_")[2].lower() for value in values]
 
 
-def _specification(path: str, bounds: _Bounds) -> tuple[Any, dict[str, str]]:
+def _specification(path: str, folders: Folders) -> tuple[Any, dict[str, str]]:
     """What the file says; and by name of a mesh, why its file is not read.
 
     Each mesh names its file by an absolute path afterwards, so that MuJoCo opens the file that was looked at here.
@@ -159,7 +151,7 @@ def _specification(path: str, bounds: _Bounds) -> tuple[Any, dict[str, str]]:
     for mesh in spec.meshes:
         if mesh.file:
             file = _path(spec, mesh)
-            if reason := _fault(mesh.file, file, bounds):
+            if reason := _fault(mesh.file, file, folders):
                 faults[mesh.name] = reason
             mesh.file = file
     spec.strippath = False
@@ -216,24 +208,24 @@ def _path(spec: Any, mesh: Any) -> str:
     return os.path.abspath(os.path.join(spec.modelfiledir, compiler.meshdir or "", name))
 
 
-def _fault(name: str, path: str, bounds: _Bounds) -> str:
+def _fault(name: str, path: str, folders: Folders) -> str:
     """Why the file of a mesh is not read; empty if it is, as far as can be seen.
 
     Args:
         name: As the MJCF file writes it.
         path: Its absolute path.
-        bounds: What bounds it.
+        folders: Where it may be.
     """
     if not os.path.isfile(path):
         return f"its file '{name}' was not found"
-    if not bounds.folders.contains(path):
+    if not folders.contains(path):
         return f"its file '{name}' is outside the folder of the robot"
     size = os.path.getsize(path)
-    if size > bounds.bytes:
-        return f"its file '{name}' has {size:,} bytes, and at most {bounds.bytes:,} are read"
+    if size > BYTES_LIMIT:
+        return f"its file '{name}' has {size:,} bytes, and at most {BYTES_LIMIT:,} are read"
     with open(path, "rb") as stream:
         head = stream.read(84)
-    if head.startswith(_GIT_LFS):
+    if head.startswith(GIT_LFS):
         return f"its file '{name}' is a pointer of Git LFS; fetch the file with `git lfs pull`"
     if path.lower().endswith(".stl") and (len(head) < 84 or size != 84 + 50 * int.from_bytes(head[80:84], "little")):
         return f"its file '{name}' is not a binary STL"

@@ -19,7 +19,6 @@ from eurdf.convert.exceptions import CannotImport
 from eurdf.convert.xml_elements import inside, read_root
 from eurdf.exceptions import MissingExtra
 from eurdf.mesh_files.folders import Folders
-from eurdf.mesh_files.reader import BYTES_LIMIT
 from eurdf.reading.source import FILE_LIMIT, begin_of_file
 from eurdf.sandbox import run
 
@@ -93,7 +92,6 @@ def compile_mjcf(path: Path, folders: Folders) -> MjcfModel:
     request = {
         "path": os.path.abspath(path),
         "folders": ["/"] if folders.allow_outside else folders.real,
-        "bytes": BYTES_LIMIT,
         "seconds": SECONDS,
         "memory": MEMORY,
     }

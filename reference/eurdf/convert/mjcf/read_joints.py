@@ -9,6 +9,7 @@ from typing import cast
 
 from eurdf.convert.mjcf.compiled import Element
 from eurdf.convert.mjcf.reading import MjcfReading, Step, flat, usable, vector, xyzw
+from eurdf.convert.steps import SCREW_SLIDE, suffixes
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
@@ -20,17 +21,19 @@ _SAME = 1e-9
 #: A bound beyond this is none, rad or m.
 UNLIMITED = 1e10
 
-#: The joints that an export splits a joint into: their types, and the ends of their names.
-_EXPORTED: Mapping[JointType, Mapping[str, str]] = {
-    JointType.CYLINDRICAL: {"_slide": "slide", "_turn": "hinge"},
-    JointType.HELICAL: {"_slide": "slide", "": "hinge"},
-    JointType.UNIVERSAL: {"_1": "hinge", "_2": "hinge"},
-    JointType.PLANAR: {"_x": "slide", "_y": "slide", "_angle": "hinge"},
-    JointType.FLOATING: {"_x": "slide", "_y": "slide", "_z": "slide", "_ball": "ball"},
-}
+#: MuJoCo's types of joints, by the motions of ours.
+_TYPES = {"slide": "slide", "turn": "hinge", "ball": "ball"}
 
-#: Types whose motion MuJoCo's limits and springs are not about.
-_FREE = (JointType.SPHERICAL, JointType.FLOATING, JointType.PLANAR)
+
+def _parts(kind: JointType) -> dict[str, str]:
+    return dict(zip(suffixes(kind), (_TYPES[step.kind] for step in kind.steps), strict=True))
+
+
+#: The joints of MuJoCo that an export makes of one joint: the ends of their names, and their types.
+_EXPORTED: Mapping[JointType, Mapping[str, str]] = {
+    **{kind: _parts(kind) for kind in JointType if len(kind.steps) > 1},
+    JointType.HELICAL: {SCREW_SLIDE: "slide", "": "hinge"},
+}
 
 
 def read_joints(reading: MjcfReading, body: int) -> None:
@@ -67,7 +70,7 @@ def read_joints(reading: MjcfReading, body: int) -> None:
 
 def _reference(reading: MjcfReading, step: Step) -> Pose:
     """How far a joint has moved its child at qpos0."""
-    if step.type in (JointType.FLOATING, JointType.SPHERICAL):
+    if step.type.quaternion is not None:
         return IDENTITY
     coordinates = coordinates_at(step, reading.model.qpos0)
     bare = Joint(step.name, step.type, "", "", axes=step.axes, pitch=step.pitch)
@@ -83,7 +86,7 @@ def coordinates_at(step: Step, qpos: Sequence[float]) -> tuple[float, ...]:
             found += qpos[at : at + 3]
             at += 3
         found += xyzw(qpos[at : at + 4]) if joint.type in ("free", "ball") else (float(qpos[at]),)
-    if step.type in (JointType.FLOATING, JointType.SPHERICAL) and step.turn is not IDENTITY:
+    if step.type.quaternion is not None and step.turn is not IDENTITY:
         turned = step.turn.inverse() * Pose(quaternion=cast(Quaternion, tuple(found[-4:]))) * step.turn
         found[-4:] = turned.quaternion
     return tuple(found)
@@ -162,7 +165,7 @@ def _is_one(reading: MjcfReading, joints: Sequence[Element], kind: JointType) ->
         return False
     acted_on = {joint.index for each in model["actuator"] if (joint := reading.driven(each))}
     driven = [joint.index in acted_on for joint in joints[: 3 if kind is JointType.FLOATING else None]]
-    is_sprung = kind in _FREE and any(joint.stiffness for joint in joints)
+    is_sprung = kind.moving_frame and any(joint.stiffness for joint in joints)
     return all(driven) == any(driven) and not is_sprung
 
 
@@ -220,7 +223,7 @@ def _properties(reading: MjcfReading, step: Step) -> JointProperties:
     if any(any(flat(joint.stiffnesspoly)) for joint in step.joints) or any(any(flat(dof.dampingpoly)) for dof in dofs):
         reading.losses.add("import-nonlinear-spring", step.name)
     springs = {}
-    if step.type in _FREE:
+    if step.type.moving_frame:
         if any(joint.stiffness for joint in joints):
             reading.losses.add("import-ball-spring", step.name)
         if any(joint.limited for joint in joints):

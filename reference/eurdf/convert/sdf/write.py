@@ -32,8 +32,7 @@ from eurdf.mechanism.joint_types import ROTARY, JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
-from eurdf.writing.angles import rpy_of
-from eurdf.writing.xml_text import file_content, representable
+from eurdf.writing.xml_text import file_content, representable, rpy_of
 
 #: Largest opening, m or rad, of a loop that counts as closed (EU-CLO-005).
 CLOSED = 1e-6
