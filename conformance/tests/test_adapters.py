@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -13,8 +14,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from eurdf_conformance import adapters
 from eurdf_conformance.adapters import example
 from eurdf_conformance.adapters.reference import Reference
+from eurdf_conformance.certificate.certificate import read_certificate
 from eurdf_conformance.comparison.canonical import canonical_differences
 from eurdf_conformance.level import Level
 from eurdf_conformance.oracle import read
@@ -35,9 +38,10 @@ from eurdf_conformance.runner.answer import read_answer
 from eurdf_conformance.runner.outcome import Answered, Malformed, Misplaced, Outcome
 from eurdf_conformance.runner.session import Session
 from support.every_joint import ARMATURES, CONFIGURATION, MASSES, VELOCITIES, moved, write_every_joint
-from support.node_packages import MODULES, why_not_installed
 from support.plain_urdf import inertial, joint_element, link_element
 from support.plain_urdf import robot as urdf_of
+from support.processes import MODULES, why_not_installed
+from support.session import SharedRun
 
 ROOT = Path(__file__).parents[2]
 ROBOTS = ROOT / "robots"
@@ -503,3 +507,31 @@ def test_the_conversation_on_the_page_keeps_the_protocol() -> None:
         request = REQUEST.validate_json(asked.removeprefix("→ "))
         found = read_answer(answered.removeprefix("← ").encode(), request)
         assert not isinstance(found, Malformed | Misplaced), str(found)
+
+
+PARSER = Path(adapters.__file__).with_name("javascript")
+MISSING = why_not_installed("yaml", "saxes")
+LEVELS = ("accept", "structure", "kinematics", "dynamics")
+
+
+def test_the_tests_install_what_the_parser_declares() -> None:
+    declared = json.loads((PARSER / "package.json").read_text(encoding="utf-8"))["dependencies"]
+    installed = json.loads((MODULES.parent / "package.json").read_text(encoding="utf-8"))["dependencies"]
+    assert declared.items() <= installed.items()
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(bool(MISSING), reason=MISSING)
+def test_the_javascript_parser_is_certified_at_the_levels_it_claims(
+    tmp_path: Path, shared_run: Callable[..., SharedRun]
+) -> None:
+    folder = tmp_path / "extended-urdf"
+    shutil.copytree(PARSER, folder, ignore=shutil.ignore_patterns("node_modules"))
+    (folder / "node_modules").symlink_to(MODULES)
+    # The newest version, which has few cases; the workflow of the repository certifies it for all of them.
+    done = shared_run("--parser", f"cmd:node {folder / 'main.mjs'}", "--seed", "0", "--format-version", "2.1")
+    assert done.returncode == 0, done.stdout + done.stderr
+    certificate = read_certificate(Path(done.certificate))
+    assert certificate.failures == ()
+    certified = {(level.version, level.level) for level in certificate.levels if level.certified}
+    assert certified == {("2.1", level) for level in LEVELS}

@@ -31,8 +31,8 @@ from eurdf_conformance.suite.item import planned_items
 from eurdf_conformance.suite.smoke import smoke_lines
 from parsers.sessions import fake
 from suite_runs import INVALID, PLANNED, VALID, item, result, run
+from support.processes import on_a_terminal
 from support.session import SharedRun
-from support.terminal import on_a_terminal
 from support.warm import run_module
 
 Run = Callable[..., SharedRun]

@@ -1,20 +1,45 @@
 """Mutants test the suite: in each version, a case that cites the clause they violate catches each of them."""
 
+from __future__ import annotations
+
+from functools import cache
+
 import pytest
 
 from eurdf_conformance.adapters.reference import Reference
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.coverage import said_in
 from eurdf_conformance.corpus.protocol_rule import RULES
-from eurdf_conformance.corpus.read import all_cases
+from eurdf_conformance.corpus.read import CorpusCase, all_cases
+from eurdf_conformance.judging.conversation import Conversation
+from eurdf_conformance.judging.judge import judge
 from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import VERSIONS, Level, Version
+from eurdf_conformance.runner.in_process import InProcess
 from eurdf_conformance.runner.session import Session
 from eurdf_conformance.suite.protocol_check import Setup, check
 from eurdf_conformance.suite.smoke import SMOKE, smoke_case
 from mutants import MUTANTS, PROTOCOL_MUTANTS, UNBROKEN, Mutant
-from mutants.catching import catching
 from parsers.oracle import OracleParser
+
+
+def catching(mutant: Mutant, version: Version) -> CorpusCase | None:
+    """The first case of a version that cites the mutant's clause and that the mutant fails at its level."""
+    conversation = Conversation(InProcess(mutant.parser()))
+    for case in _citing().get((mutant.clause, version), ()):
+        if mutant.level in case.levels and judge(case, mutant.level, conversation).verdict in mutant.verdicts:
+            return case
+    return None
+
+
+@cache
+def _citing() -> dict[tuple[str, Version], list[CorpusCase]]:
+    """The cases by clause and version. First those that cite few clauses: a mutant of a clause fails them soonest."""
+    found: dict[tuple[str, Version], list[CorpusCase]] = {}
+    for case in sorted(all_cases(), key=lambda case: len(case.case.clauses)):
+        for clause in case.case.clauses:
+            found.setdefault((clause, case.case.version), []).append(case)
+    return found
 
 
 @pytest.mark.parametrize("breaks", MUTANTS)

@@ -70,24 +70,6 @@ def test_joint_velocities_are_in_the_child_frame(
     assert found.velocities == [("j", i) for i in range(len(columns))]
 
 
-def test_joint_origin_turns_by_roll_pitch_yaw() -> None:
-    found = robot(chain(joint("j", "prismatic", "base", "end", (1, 0, 0), (1, 2, 3), (pi / 2, 0, pi / 2))))
-    # Rz(90°) Rx(90°): x is y, y is z, z is x.
-    np.testing.assert_allclose(
-        pose(found, {"j": [4]}, "end"), [[0, 0, 1, 1], [1, 0, 0, 6], [0, 1, 0, 3]], rtol=0, atol=1e-12
-    )
-
-
-def test_locked_joint_welds_its_child_at_zero() -> None:
-    found = robot(
-        chain(joint("j", "prismatic", "base", "end", xyz=(1, 0, 0)), joint("k", "revolute", "end", "tip", Z)),
-        two("joints: {j: fixed}"),
-    )
-    np.testing.assert_allclose(origin(found, {}, "end"), [1, 0, 0])
-    assert found.velocities == [("k", 0)]
-    assert found.bodies == [["base", "end"], ["tip"]]
-
-
 def test_a_chain_of_mimic_joints_moves_with_its_first_leader() -> None:
     found = robot(
         chain(
@@ -161,12 +143,6 @@ def test_a_floating_root_has_the_total_inertia_in_its_frame() -> None:
     assert found.velocities == [("root_joint", i) for i in range(6)]
 
 
-def test_a_massless_robot_has_no_centre_of_mass() -> None:
-    assert robot([link("body")]).evaluate({}, [], ["mass", "center_of_mass"]).model_dump(exclude_none=True) == {
-        "mass": 0
-    }
-
-
 def test_ambiguous_frame_name_is_refused() -> None:
     elements = chain(joint("end", "revolute", "base", "end"), joint("base", "revolute", "end", "tip", xyz=(1, 0, 0)))
     found = robot(elements)
@@ -182,14 +158,6 @@ def test_the_robot_size_is_the_largest_distance_between_frames() -> None:
     )
     assert found.size({"root_joint": [9, 9, 9, 0, 0, 0, 1]}) == pytest.approx(5.0)
     assert found.size({"j": [12.0]}) == pytest.approx(13.0)
-
-
-def test_user_defined_closure_is_left_out() -> None:
-    found = robot(
-        chain(joint("j", "prismatic", "base", "end")),
-        two("closures: [{name: belt, type: x-belt, frames: [base, end]}, {name: pin, type: 3d, frames: [base, end]}]"),
-    )
-    assert list(found.residuals({})) == ["pin"]
 
 
 @pytest.mark.parametrize(
@@ -208,10 +176,3 @@ def test_a_mechanism_has_the_dimensions_of_the_textbook(name: str, known: tuple[
     found = read(ROBOTS / name / "robot.yaml", ROBOTS / name / "robot.urdf")
     closed = found.closed(found.description.configurations["assembled"])
     assert tuple(vars(found.dimensions(closed)).values()) == known
-
-
-def test_a_robot_without_moving_joints_has_no_velocities() -> None:
-    found = robot(chain(joint("j", "fixed", "base", "end", xyz=(1, 0, 0))))
-    assert found.velocities == []
-    assert found.mass_matrix({}).shape == (0, 0)
-    assert found.dimensions({}).mobility == 0

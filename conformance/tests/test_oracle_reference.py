@@ -10,7 +10,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 
 import eurdf
-from eurdf.linking.description import Linked, describe
+from eurdf.linking.robot_files import read_robot
 from eurdf.pinocchio.robot import build_robot
 from eurdf_conformance.adapters.reference import PARSER, Reference
 from eurdf_conformance.adapters.reference_canonical import canonical_robot
@@ -30,7 +30,7 @@ from eurdf_conformance.properties.strategies.mechanisms import mechanisms
 from eurdf_conformance.properties.truth import truth
 from eurdf_conformance.protocol.message import Accepted, Quantity, Values
 from eurdf_conformance.runner.in_process import InProcess
-from support.watchdog import watchdog
+from support.processes import watchdog
 from support.wild import FACTS, WILD
 
 QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
@@ -86,8 +86,8 @@ def assert_close(one: Any, other: Any, near: float) -> None:
 
 @pytest.mark.parametrize("path", COLLECTION, ids=lambda path: f"{path.parent.name}-{path.stem}")
 def test_oracle_and_reference_agree_on_a_robot_of_the_collection(path: Path) -> None:
-    found = describe(path, None)  # with shapes, whose meshes nothing needs
-    assert isinstance(found, Linked)
+    found = read_robot(path, None)  # with shapes, whose meshes nothing needs
+    assert found.linked is not None
     assert_agreement(read(path, path.parent / "robot.urdf"), build_robot(found.mechanism, geometry=False))
 
 

@@ -471,15 +471,6 @@ def test_printed_command_reproduces_a_failure() -> None:
 
 
 @pytest.mark.slow
-def test_a_lenient_parser_fails_accept_and_diagnose() -> None:
-    code, out = suite("-k", FEW, parser="Lenient")
-    assert code == 1
-    assert "2 failed, 5 passed" in out
-    assert "the parser accepts an invalid description: unknown-frame" in out
-    assert "this looks odd" in out
-
-
-@pytest.mark.slow
 def test_a_crash_is_not_a_rejection() -> None:
     code, out = suite("-k", FEW, parser="Crashing")
     assert code == 1
@@ -566,25 +557,6 @@ def test_impossible_requests_of_the_user_are_reported(tmp_path: Path) -> None:
         code, out = suite(*arguments, parser="Right")
         assert code == pytest.ExitCode.USAGE_ERROR
         assert why in out
-
-
-@pytest.mark.slow
-def test_smoke_distinguishes_wrong_adapter_from_wrong_parser() -> None:
-    code, out = suite("--smoke", parser="Right")
-    assert code == 0
-    assert "your adapter works so far" in out
-    assert "your parser works so far" in out
-    assert "21 passed" in out
-    code, out = suite("--smoke", parser="Lenient")
-    assert code == 1
-    assert "your adapter works so far" in out
-    assert "your parser fails:\n  protocol/goes-on-2/accept: failed: the parser accepts an invalid description" in out
-    code, out = suite("--smoke", "--parser=cmd:no-such-program-anywhere")
-    assert code == 1
-    assert "cmd:no-such-program-anywhere could not be started: program 'no-such-program-anywhere' is not in PATH" in out
-    assert "your adapter fails:\n" in out
-    assert out.count("and so do 20 more: protocol/start-1/accept, ") == 1
-    assert "your parser was not tested: fix the adapter first" in out
 
 
 @pytest.mark.slow

@@ -12,7 +12,7 @@ import pytest
 
 import eurdf
 from eurdf.commands.main import main
-from eurdf.commands.output_schema import output_schemas
+from eurdf.commands.output import output_schemas
 from eurdf.convert.export_format import export_format
 from eurdf.convert.formats import EXPORTS
 from eurdf.convert.losses import ELEMENTS, Effect
@@ -62,18 +62,6 @@ def test_json_lists_every_loss_with_its_place(capsys: pytest.CaptureFixture[str]
         if each["concept"] in ("velocity limit", "actuator"):
             joint = motors.get(each["name"], each["name"])
             assert f'<joint name="{joint}"' in Path(each["file"]).read_text().splitlines()[each["line"] - 1]
-
-
-def test_existing_file_is_kept_without_force(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (here / "out").mkdir()
-    (here / "out" / "robot.xml").write_text("mine")
-    arguments = ["export", "four_bar", "--to", "mjcf", "-o", "out"]
-    assert main(arguments) == 2
-    assert "already exists; --force replaces it" in capsys.readouterr().err
-    assert (here / "out" / "robot.xml").read_text() == "mine"
-    assert main([*arguments, "--force"]) == 0
-    assert (here / "out" / "robot.xml").read_bytes() == eurdf.export("four_bar", "mjcf").main
-    assert os.listdir(here / "out") == ["robot.xml"]
 
 
 def test_strict_refuses_losses(here: Path, capsys: pytest.CaptureFixture[str]) -> None:

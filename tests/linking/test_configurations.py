@@ -17,8 +17,7 @@ from eurdf.mechanism.mechanism import Root
 from eurdf.pinocchio.configuration import configuration_vector
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand
-from support.described import at, codes, load, written
-from support.star import STAR
+from support.described import STAR, at, codes, load, written
 
 WORKBENCH = Path(__file__).parents[1] / "data" / "workbench.yaml"
 

@@ -6,7 +6,7 @@ import pytest
 
 import eurdf
 from eurdf.convert.formats import EXPORTS
-from support.foreign import INVALID, PACKAGE_DIRS, ROBOTS
+from support.wild import INVALID, PACKAGE_DIRS, ROBOTS
 
 pytestmark = pytest.mark.slow
 

@@ -16,7 +16,7 @@ import eurdf
 from eurdf.commands.main import main
 from eurdf.convert.formats import EXPORTS
 from support.hostile_meshes import CARRIERS, ENDLESS, FORMS, SECRETS, Place
-from support.watchdog import watchdog
+from support.processes import watchdog
 
 #: References in a robot: one process reads all of its meshes.
 AT_ONCE = 20

@@ -13,7 +13,7 @@ import pytest
 
 import eurdf
 from eurdf.commands.main import main
-from eurdf.commands.output_schema import output_schemas
+from eurdf.commands.output import output_schemas
 from eurdf.convert.formats import EXPORTS
 from eurdf.convert.verification import verify as module
 from eurdf.exceptions import MissingExtra
@@ -22,7 +22,7 @@ from eurdf.pinocchio.robot import Robot, build_robot
 from support.exported import random_robot
 from support.plain_urdf import inertial, joint_element, link_element
 from support.plain_urdf import robot as robot_element
-from support.terminal import on_a_terminal
+from support.processes import on_a_terminal
 
 PACKAGES = {"mjcf": "mujoco", "drake": "pydrake", "sdf": "pydrake", "usd": "pxr"}
 

@@ -15,7 +15,7 @@ import eurdf
 from eurdf.mechanism.joint import JointProperties
 from eurdf.pinocchio.robot import build_robot
 from support.compiled import NOT_CLOSED, NOT_FINITE, OK, SINGULAR, TOO_FAR, Compiled
-from support.one_loop import one_loop
+from support.mechanisms import one_loop
 from support.transmissions import DRIVEN
 
 ANKLE = ("free_pitch", "free_roll")

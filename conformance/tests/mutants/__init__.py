@@ -9,7 +9,6 @@ parser reads other files than it is given (`reads_…`), gives them another mean
 from mutants import (  # noqa: F401  each adds its own
     answering,
     closures,
-    couplings,
     frames,
     inertias,
     joint_properties,
@@ -21,7 +20,6 @@ from mutants import (  # noqa: F401  each adds its own
     reading_urdf,
     reading_yaml,
     reporting,
-    shapes,
 )
 from mutants.mutant import MUTANTS, Mutant
 from mutants.protocol import PROTOCOL_MUTANTS

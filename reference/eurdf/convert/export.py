@@ -10,7 +10,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from eurdf.convert.common_losses import BEYOND_LIMITS, UNKNOWN
-from eurdf.convert.coordinates import Coordinates, OwnVectors, Place
+from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.exceptions import CannotExport
 from eurdf.convert.export_format import ExportInput, Triangles, export_format
 from eurdf.convert.formats import (
@@ -24,6 +24,7 @@ from eurdf.convert.formats import (
 )
 from eurdf.convert.hinges import with_hinges
 from eurdf.convert.losses import Effect, Loss, Losses
+from eurdf.convert.parts import OwnVectors, VectorPlace
 from eurdf.convert.verification.verify import Verification, verify
 from eurdf.diagnostics import did_you_mean
 from eurdf.exceptions import InvalidRobot
@@ -31,13 +32,14 @@ from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.linking.configurations import beyond_limits
-from eurdf.linking.description import Linked, Unlinked, describe, find_meshes
+from eurdf.linking.mesh_files import find_meshes
+from eurdf.linking.robot_files import ReadRobot, read_robot
 from eurdf.mechanism.mechanism import ROOT_JOINT, Root
 from eurdf.mesh_files.folders import Folders, folders_of_files
 from eurdf.mesh_files.reader import MeshReader
 from eurdf.pinocchio.meshes import read_meshes
 from eurdf.pinocchio.robot import Robot, build_robot
-from eurdf.reading.given import Given
+from eurdf.reading.robot_source import RobotSource
 from eurdf.writing.output_folder import write_files
 
 #: The configuration to start from, unless another one is asked for.
@@ -123,10 +125,10 @@ class Export:
 
 
 def export(
-    robot: Given | Robot,
+    robot: RobotSource | Robot,
     to: str,
     *,
-    urdf: Given | None = None,
+    urdf: RobotSource | None = None,
     root: Root | None = None,
     configuration: str = ASSEMBLED,
     actuators: Actuators = "motor",
@@ -178,7 +180,7 @@ def export(
     if isinstance(robot, Robot):
         meshes = files_of_meshes(robot)
         return _export(robot, meshes, {}, folders_of_files(meshes.values(), allow_outside=allow_outside), choices)
-    description = describe(
+    read = read_robot(
         robot,
         urdf,
         root,
@@ -187,24 +189,24 @@ def export(
         confined=confined,
         allow_outside=allow_outside,
     )
-    if isinstance(description, Unlinked) or description.diagnostics.refused:
-        raise InvalidRobot(description.path, tuple(description.diagnostics))
-    return export_linked(description, choices, package_dirs, allow_outside=allow_outside)
+    if read.linked is None or read.diagnostics.refused:
+        raise InvalidRobot(read.path, tuple(read.diagnostics))
+    return export_linked(read, choices, package_dirs, allow_outside=allow_outside)
 
 
 def export_linked(
-    description: Linked,
+    read: ReadRobot,
     choices: Choices,
     package_dirs: Sequence[str | os.PathLike[str]],
     *,
     allow_outside: bool = False,
 ) -> Export:
     """Export a robot that was read; see `export`."""
-    files = find_meshes(description.urdf, package_dirs, allow_outside=allow_outside)
-    bodies = description.mechanism.bodies
+    files = find_meshes(read.urdf, package_dirs, allow_outside=allow_outside)
+    bodies = read.mechanism.bodies
     uris = {shape.filename for body in bodies for shape in (*body.visuals, *body.collisions)}
     meshes = {uri: Path(path) for uri, path in files.paths.items() if uri in uris}
-    robot = build_robot(description.mechanism, geometry=False)
+    robot = build_robot(read.mechanism, geometry=False)
     refused = dict.fromkeys(files.outside, str(files.folders))
     return _export(robot, meshes, refused, files.folders, choices)
 
@@ -267,9 +269,9 @@ def _triangles(folders: Folders, path: Path) -> Triangles | None:
 
 
 def _own_vectors(robot: Robot) -> OwnVectors:
-    places = {name: Place(slot.idx_q, slot.nq, slot.idx_v) for name, slot in robot.slots.items()}
+    places = {name: VectorPlace(slot.idx_q, slot.nq, slot.idx_v) for name, slot in robot.slots.items()}
     if robot.mechanism.root == "floating":
-        places[ROOT_JOINT] = Place(0, 7, 0)
+        places[ROOT_JOINT] = VectorPlace(0, 7, 0)
     return OwnVectors(robot.model.nq, robot.model.nv, MappingProxyType(places))
 
 

@@ -11,10 +11,13 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from eurdf.convert.coordinates import Coordinates, OwnVectors
+from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.formats import Actuators, MeshFileChoice
 from eurdf.convert.losses import Losses, LossKind
+from eurdf.convert.parts import OwnVectors
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.mimic import Mimic, drivers
 from eurdf.mesh_files.folders import Folders
 from eurdf.mesh_files.reader import MeshReader
 
@@ -58,6 +61,26 @@ class ExportInput:
     actuators: Actuators = "motor"
     mesh_files: MeshFileChoice = "copy"
     read_mesh: Callable[[Path], Triangles | None] = _unread
+
+    @property
+    def start(self) -> Mapping[str, tuple[float, ...]]:
+        """The configuration to start from; empty, where all coordinates are neutral, if none is known."""
+        return next(iter(self.configurations.values()), {})
+
+    @property
+    def mimics(self) -> dict[str, Mimic]:
+        """For each mimic joint, the joint at the end of its chain of leaders, and the relation between the two."""
+        return drivers({joint.name: joint.mimic for joint in self.mechanism.joints if joint.mimic is not None})
+
+
+def coordinates_at(
+    configuration: Mapping[str, tuple[float, ...]], joint: Joint, mimic: Mimic | None
+) -> tuple[float, ...]:
+    """The coordinates of a joint, which may mimic, at a configuration as files have it."""
+    if mimic is None:
+        return tuple(configuration.get(joint.name, joint.type.neutral))
+    (leader,) = configuration.get(mimic.joint, (0.0,))
+    return (mimic.multiplier * leader + mimic.offset,)
 
 
 @dataclass(frozen=True, slots=True)

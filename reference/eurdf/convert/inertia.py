@@ -13,7 +13,7 @@ from eurdf.convert.exceptions import CannotExport
 from eurdf.convert.losses import Losses
 from eurdf.mechanism.body import Body, Inertia
 from eurdf.mechanism.pose import IDENTITY, Pose
-from eurdf.writing.angles import angles_with_yaw
+from eurdf.writing.xml_text import angles_with_yaw
 
 Matrix = npt.NDArray[np.float64]
 

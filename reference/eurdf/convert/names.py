@@ -1,7 +1,8 @@
-"""Names of the elements of a file, unique and representable in its format."""
+"""Names of the elements of a file, unique and representable in its format; and of files beside it."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
 from eurdf.convert.losses import Losses
@@ -30,3 +31,23 @@ class UniqueNames:
         if found != name:
             self._losses.add(self._code, name, f"becomes '{found}'")
         return found
+
+
+_ODD = re.compile(r"[^A-Za-z0-9._-]")
+
+
+class FileNames:
+    """Names of files in one folder, each different from the others, also where case does not count."""
+
+    def __init__(self) -> None:
+        self._used: set[str] = set()
+
+    def new(self, stem: str, suffix: str) -> str:
+        """A name of letters, digits, ``.``, ``_`` and ``-`` alone; its ending is in lower case."""
+        stem, suffix = _ODD.sub("_", stem).lstrip(".") or "mesh", _ODD.sub("_", suffix).lower()
+        name, count = stem + suffix, 1
+        while name.lower() in self._used:
+            count += 1
+            name = f"{stem}_{count}{suffix}"
+        self._used.add(name.lower())
+        return name

@@ -1,7 +1,7 @@
 """The tables of losses in the documentation and on the site: what each format can say of each concept.
 
 Run as ``python -m eurdf.convert.table docs`` to write them to the pages of a folder: the overview to ``export.md``,
-the losses of a format to the page of the format.
+the losses of a format to export to to its page, those of imports to ``import.md``.
 """
 
 from __future__ import annotations
@@ -13,7 +13,10 @@ from pathlib import Path
 
 from eurdf.convert.export_format import export_format
 from eurdf.convert.formats import EXPORTS
+from eurdf.convert.import_format import import_format
+from eurdf.convert.import_robot import COMMON
 from eurdf.convert.losses import ELEMENTS, Effect, LossKind
+from eurdf.reading.other_formats import IMPORTED
 
 _PLACE = re.compile(r"(<!-- table: [^\n]*-->\n).*?(<!-- end of table -->)", re.DOTALL)
 
@@ -44,6 +47,21 @@ def details(name: str) -> str:
     return "\n".join(lines) + "\n"
 
 
+def imports() -> str:
+    """Tables in Markdown of the losses of imports: one for each format, and one for what all share."""
+    formats = [import_format(name) for name in IMPORTED]
+    parts = [(each.title, each.losses) for each in formats] + [("Every format", COMMON)]
+    return "\n".join(_of_imports(title, losses) for title, losses in parts)
+
+
+def _of_imports(title: str, losses: Sequence[LossKind]) -> str:
+    lines = [f"### {title}", "", "| element | effect | what happens | code |", "| --- | --- | --- | --- |"]
+    for kind in losses:
+        error = f" ({kind.error})" if kind.error else ""
+        lines.append(f"| {kind.concept} | {kind.effect} | {kind.title}{error} | `{kind.code}` |")
+    return "\n".join(lines) + "\n"
+
+
 def _effect(kind: LossKind) -> str:
     return "impossible" if kind.effect is Effect.DROPPED and not kind.sayable else str(kind.effect)
 
@@ -60,7 +78,7 @@ def written(folder: Path) -> dict[Path, str]:
         FileNotFoundError: A format has no page.
         ValueError: A page has no place for its table.
     """
-    tables = {"export.md": overview()} | {page_of(name): details(name) for name in EXPORTS}
+    tables = {"export.md": overview(), "import.md": imports()} | {page_of(name): details(name) for name in EXPORTS}
     return {folder / page: _with_table(folder / page, table) for page, table in tables.items()}
 
 

@@ -6,7 +6,7 @@ import math
 
 from eurdf.convert.common_losses import CONVERSION, impossible_inertia, unequal
 from eurdf.convert.losses import Motor, approximate, by_writer, dropped, exact
-from eurdf.convert.urdf.facts import EXACT as EXACT
+from eurdf.convert.urdf.facts import EXACT as URDF_EXACT
 from eurdf.convert.urdf.facts import URDF_ROWS
 from eurdf.mechanism.constraint import DistanceClosure
 from eurdf.mechanism.joint import Joint
@@ -18,6 +18,12 @@ STIFFNESS = 1e12
 #: kg and kg·m² that links without mass get where Drake needs some: far below any of a robot.
 LEAST = 1e-13
 
+#: The closures that are written.
+CLOSURES = ("3d", "6d", "hinge")
+
+#: Joints that are as in the description.
+EXACT = (*URDF_EXACT, "helical joint")
+
 _SAP = "less than 1e-3 m or rad in 1 s under gravity, on the robots of the tests; continuous time ignores it"
 _DISCRETE = "simulate in discrete time, with the SAP solver"
 _GIMBAL = "none in poses and dynamics; rates of coordinates are singular where the pitch is ±π/2"
@@ -27,20 +33,19 @@ _AWAY = "keep the joint away from where its pitch is ±π/2, or choose its zero 
 _WHOLE = ("spherical", "planar", "floating")
 
 
-def is_screw(joint: Joint) -> bool:
-    """Whether a joint is a screw of Drake, which has a pitch."""
-    return joint.type == "helical" and joint.pitch != 0.0
-
-
 def can_have_actuator(joint: Joint) -> bool:
     """Whether Drake has actuators of a joint: those of freedoms of their own, with an effort limit above 0."""
     return joint.type not in _WHOLE and min(joint.properties.effort, default=math.inf) > 0.0
 
 
+def has_one_acceleration(joint: Joint) -> bool:
+    """Whether the limits of acceleration and deceleration of a joint are equal: Drake has one number."""
+    return joint.properties.rates.get("acceleration") == joint.properties.rates.get("deceleration")
+
+
 def _lacks_rates(joint: Joint) -> bool:
-    rates = joint.properties.rates
-    one = rates.get("acceleration") == rates.get("deceleration") and "jerk" not in rates
-    return joint.type in _WHOLE or is_screw(joint) or not one
+    is_limited = not (joint.type in _WHOLE or joint.type == "helical")
+    return not (is_limited and has_one_acceleration(joint) and "jerk" not in joint.properties.rates)
 
 
 def _rod(closure: DistanceClosure) -> str:
@@ -92,14 +97,14 @@ ROWS = (
         "limit the motion in the controller",
         code="export-limits",
         only="planar and helical joints",
-        where=lambda joint: is_screw(joint) and any(map(math.isfinite, joint.ranges[0])),
+        types=("helical",),
+        where=lambda joint: any(map(math.isfinite, joint.ranges[0])),
     ),
     dropped(
         "velocity limit",
         "is left out: Drake has none for this type of joint",
         "limit velocities in the controller",
-        only="spherical, planar, floating and helical joints",
-        where=lambda joint: joint.type in _WHOLE or is_screw(joint),
+        types=(*_WHOLE, "helical"),
     ),
     dropped(
         "acceleration limit",

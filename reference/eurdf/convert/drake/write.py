@@ -15,29 +15,30 @@ from pathlib import PurePosixPath
 
 from lxml import etree
 
-from eurdf.convert.coordinates import Coordinates, Part
-from eurdf.convert.drake.facts import EXACT, LEAST, ROWS, STIFFNESS, can_have_actuator, is_screw
+from eurdf.convert.conventions import point_on
+from eurdf.convert.coordinates import Coordinates
+from eurdf.convert.drake.facts import CLOSURES, EXACT, LEAST, ROWS, STIFFNESS, can_have_actuator, has_one_acceleration
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format
 from eurdf.convert.inertia import accepted_inertia, has_inertia
 from eurdf.convert.losses import Losses
-from eurdf.convert.urdf.tree import AXES, Step, UrdfTree, plain_steps
+from eurdf.convert.parts import Part
+from eurdf.convert.steps import AXES, ExportedJoint
+from eurdf.convert.urdf.tree import UrdfTree
 from eurdf.mechanism.body import Body, Inertia
-from eurdf.mechanism.constraint import Closure, Coupling, FrameClosure, HingeClosure, PointClosure
+from eurdf.mechanism.constraint import Closure, Coupling, FrameClosure, HingeClosure
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
-from eurdf.mechanism.mimic import drivers
 from eurdf.mechanism.pose import IDENTITY, Vector3, direction
-from eurdf.writing.angles import rpy_of
 from eurdf.writing.urdf_elements import add_dynamics, add_joint
-from eurdf.writing.xml_text import file_content, numbers
+from eurdf.writing.xml_text import file_content, numbers, rpy_of
 
 _ORIGIN: Vector3 = (0.0, 0.0, 0.0)
 _NAMESPACE = "http://drake.mit.edu"
 _WORLD = "world"
 
-#: Distance of the points that hold a frame or a hinge, m.
-WIDTH = 0.1
+#: The types of joint that URDF lacks, or Drake has in its own element.
+_KINDS = {JointType.SPHERICAL: "ball", JointType.PLANAR: "planar", JointType.HELICAL: "screw"}
 
 
 def write(given: ExportInput, losses: Losses) -> ExportOutput:
@@ -46,7 +47,7 @@ def write(given: ExportInput, losses: Losses) -> ExportOutput:
     Raises:
         CannotExport: A link has a negative mass.
     """
-    tree = _Tree(given, losses)
+    tree = _DrakeTree(given, losses)
     tree.write()
     files = {"robot.urdf": file_content(tree.root), **tree.meshes.files}
     return ExportOutput(files, Coordinates(tuple(tree.parts), given.own, "wxyz"))
@@ -68,8 +69,10 @@ def _tag(name: str) -> str:
     return f"{{{_NAMESPACE}}}{name}"
 
 
-class _Tree(UrdfTree):
+class _DrakeTree(UrdfTree):
     """A file while it is written."""
+
+    whole = tuple(_KINDS)
 
     def __init__(self, given: ExportInput, losses: Losses) -> None:
         super().__init__(given, losses, lambda name, _: PurePosixPath(name).suffix in (".obj", ".gltf", ".vtk"))
@@ -79,7 +82,7 @@ class _Tree(UrdfTree):
         if _WORLD in self.links and not (mechanism.root == "fixed" and self.base == _WORLD):
             self.links[_WORLD] = self.names.new(_WORLD)
         self.without_mass = _moved_without_mass(mechanism)
-        self.mimics = drivers({joint.name: joint.mimic for joint in mechanism.joints if joint.mimic is not None})
+        self.mimics = given.mimics
 
     def write(self) -> None:
         mechanism = self.mechanism
@@ -96,7 +99,8 @@ class _Tree(UrdfTree):
         for joint in mechanism.joints:
             self._motor(joint)
         for closure in mechanism.closures:
-            self._closure(closure)
+            if closure.type in CLOSURES:
+                self._closure(closure)
         for coupling in mechanism.couplings:
             self._coupling(coupling)
 
@@ -107,65 +111,30 @@ class _Tree(UrdfTree):
 
     # -- joints -----------------------------------------------------------------------------------------------------
 
-    def steps(self, joint: Joint) -> Sequence[Step]:
-        match joint.type:
-            case JointType.SPHERICAL:
-                return [Step("", joint.type, None, tag=_tag("joint"), type_name="ball")]
-            case JointType.PLANAR:
-                return [Step("", joint.type, AXES[2][1], tag=_tag("joint"), type_name="planar")]
-            case JointType.HELICAL if is_screw(joint):
-                return [Step("", joint.type, joint.axes[0], 0, tag=_tag("joint"), type_name="screw")]
-            case JointType.HELICAL:
-                return [Step("", JointType.CONTINUOUS, joint.axes[0], 0)]
-            case JointType.FLOATING:
-                slides = [Step(suffix, JointType.PRISMATIC, axis, i) for i, (suffix, axis) in enumerate(AXES)]
-                return [*slides, Step("_ball", JointType.SPHERICAL, None, tag=_tag("joint"), type_name="ball")]
-        return plain_steps(joint)
+    def add_part(self, joint: Joint, names: Sequence[str], steps: Sequence[ExportedJoint]) -> None:
+        ratios = ((step.velocities[0], 1.0, 0.0) for step in steps)
+        rotation = "quaternion" if joint.type is JointType.PLANAR else "rpy"
+        self.parts.append(Part.of(joint, names, ratios, self.mimics.get(joint.name), rotation=rotation))
 
-    def part(self, joint: Joint, names: Sequence[str], steps: Sequence[Step]) -> Part:
-        if joint.type in (JointType.SPHERICAL, JointType.FLOATING):
-            return Part(tuple(names), joint.name, joint.type, rotation="rpy")
-        return super().part(joint, names, steps)
-
-    def add_part(self, joint: Joint, names: Sequence[str], steps: Sequence[Step]) -> None:
-        mimic = self.mimics.get(joint.name)
-        if mimic is None:
-            self.parts.append(self.part(joint, names, steps))
-            return
-        ratio = (0, mimic.multiplier, mimic.offset)
-        self.parts.append(Part(tuple(names), mimic.joint, joint.type, (ratio,), mimics=True))
-
-    def add_properties(self, joint: Joint, step: Step, element: etree._Element) -> None:
-        properties = joint.properties
-        if joint.type.is_fixed:
-            return
-        if step.type_name == "screw":
+    def add_properties(self, joint: Joint, step: ExportedJoint, element: etree._Element) -> None:
+        kind, properties = step.joint.type, step.joint.properties
+        if kind in self.whole:
+            element.tag, element.attrib["type"] = _tag("joint"), _KINDS[kind]
+        if kind is JointType.HELICAL:
             etree.SubElement(element, _tag("screw_thread_pitch"), value=numbers((joint.pitch,)))
-        own = _velocities(joint, step)
-        limited = step.type in (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
-        lower, upper = zip(*joint.ranges, strict=True)
-        finite = {
-            name: values[step.index]
-            for name, values in (
-                ("lower", lower),
-                ("upper", upper),
-                ("velocity", properties.velocity),
-                ("effort", properties.effort),
-            )
-            if step.index is not None and step.index < len(values) and math.isfinite(values[step.index])
-        }
-        if not limited:
-            finite = {name: value for name, value in finite.items() if name == "effort"}
-        rates = dict(properties.rates)
-        if limited and step.index is not None and rates.get("acceleration") == rates.get("deceleration"):
-            rates.pop("deceleration", None)
-            accelerations = rates.pop("acceleration", ())
-            finite |= {_tag("acceleration"): value for value in accelerations[step.index : step.index + 1]}
+        limits: dict[str, Sequence[float]] = {}
+        if kind.is_axial:
+            limits = dict(zip(("lower", "upper"), zip(*step.joint.ranges, strict=True), strict=True))
+            limits["velocity"] = properties.velocity
+        if kind.nv == 1:
+            limits["effort"] = properties.effort
+        if kind.is_axial and has_one_acceleration(joint):
+            limits[_tag("acceleration")] = properties.acceleration
+        finite = {name: numbers(values) for name, values in limits.items() if any(map(math.isfinite, values))}
         if finite:
-            attributes = {name: numbers((value,)) for name, value in finite.items()}
-            etree.SubElement(element, "limit", attributes)
-        damping = [properties.damping[index] for index in own] if properties.damping else []
-        if step.type is JointType.PLANAR and any(damping):
+            etree.SubElement(element, "limit", finite)
+        damping = properties.damping
+        if kind is JointType.PLANAR and any(damping):
             etree.SubElement(element, "dynamics", damping=numbers(damping))
         elif damping:
             if len(set(damping)) > 1:
@@ -208,17 +177,13 @@ class _Tree(UrdfTree):
     # -- constraints ------------------------------------------------------------------------------------------------
 
     def _closure(self, closure: Closure) -> None:
-        match closure:
-            case PointClosure():
-                self._balls(closure, [(_ORIGIN, _ORIGIN)])
-            case FrameClosure():
-                points = [_ORIGIN, *(_scaled(WIDTH, axis) for _, axis in AXES[:2])]
-                self._balls(closure, [(point, point) for point in points])
-            case HingeClosure():
-                one, other = (_scaled(WIDTH, direction(axis)) for axis in closure.axes)
-                self._balls(closure, [(_ORIGIN, _ORIGIN), (one, other)])
-            case _:
-                return
+        points = [(_ORIGIN, _ORIGIN)]
+        if isinstance(closure, HingeClosure):
+            one, other = (point_on(direction(axis)) for axis in closure.axes)
+            points.append((one, other))
+        elif isinstance(closure, FrameClosure):
+            points += [(point_on(axis), point_on(axis)) for axis in AXES[:2]]
+        self._balls(closure, points)
         a, b = (self.links[end.body] for end in closure.anchors)
         if a != b:
             # Links that a joint connects are apart already.
@@ -250,15 +215,4 @@ class _Tree(UrdfTree):
             etree.SubElement(tendon, _tag(f"tendon_constraint_{what}"), value=numbers((value,)))
 
 
-def _velocities(joint: Joint, step: Step) -> Sequence[int]:
-    """Indices of the velocities of a joint that a step has."""
-    if step.index is not None:
-        return (step.index,)
-    return (3, 4, 5) if joint.type is JointType.FLOATING else (0, 1, 2)
-
-
-def _scaled(length: float, unit: Vector3) -> Vector3:
-    return length * unit[0], length * unit[1], length * unit[2]
-
-
-FORMAT = Format("drake", "URDF with the joints and constraints of Drake", write, ROWS, (*EXACT, "helical joint"))
+FORMAT = Format("drake", "URDF with the joints and constraints of Drake", write, ROWS, EXACT)

@@ -9,65 +9,43 @@ MuJoCo computes these moments from a full matrix; no moment exceeds the sum of t
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import PurePosixPath
 
 from lxml import etree
 
-from eurdf.convert.contacts import neighbours
-from eurdf.convert.coordinates import Coordinates, Part
+from eurdf.convert.conventions import neighbours, point_on, position_gain
+from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format
 from eurdf.convert.inertia import accepted_inertia, along_principal_axes, has_inertia
 from eurdf.convert.losses import Losses
-from eurdf.convert.mesh_file import MeshFiles
-from eurdf.convert.mjcf.facts import EXACT, LEAST, ROWS, SOLIMP, SOLREF, TIMESTEP, TOLERANCE
-from eurdf.convert.names import UniqueNames
-from eurdf.convert.servo import position_gain
-from eurdf.mechanism.body import Body, Shape
-from eurdf.mechanism.constraint import (
-    Closure,
-    Coupling,
-    DistanceClosure,
-    FrameClosure,
-    HingeClosure,
-    PointClosure,
+from eurdf.convert.meshes import MeshFiles
+from eurdf.convert.mjcf.facts import (
+    CLOSURES,
+    EXACT,
+    KINDS,
+    LEAST,
+    ROWS,
+    SOLIMP,
+    SOLREF,
+    TIMESTEP,
+    TOLERANCE,
+    UNLIMITED,
+    WHOLE,
+    is_readable,
 )
+from eurdf.convert.names import UniqueNames
+from eurdf.convert.parts import Part
+from eurdf.convert.steps import AXES, ExportedJoint, in_series
+from eurdf.mechanism.body import Body, Shape
+from eurdf.mechanism.constraint import Closure, Coupling, DistanceClosure, HingeClosure
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
-from eurdf.mechanism.mimic import Mimic, drivers
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.writing.xml_text import file_content, numbers, representable
 
-#: Distance of the two points that hold a hinge, m.
-HINGE_WIDTH = 0.1
-
-#: The bound of a side without limit, where the other side has one: rad or m.
-_UNLIMITED = 1e10
-
-_X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 _WORLD = "world"
-
-
-@dataclass(frozen=True, slots=True)
-class _Piece:
-    """A joint of MuJoCo: one of those, in order, that a joint of the mechanism is.
-
-    Attributes:
-        name: Its name.
-        kind: ``hinge``, ``slide`` or ``ball``.
-        axis: In the frame of the joint at rest; of a ball the z axis, without effect.
-        velocities: Indices of the velocities of the joint that it has.
-        coordinate: Index of the coordinate of the joint that it has, if it is an angle or a length.
-    """
-
-    name: str
-    kind: str
-    axis: Vector3
-    velocities: tuple[int, ...]
-    coordinate: int | None = None
 
 
 def write(given: ExportInput, losses: Losses) -> ExportOutput:
@@ -76,37 +54,30 @@ def write(given: ExportInput, losses: Losses) -> ExportOutput:
     Raises:
         CannotExport: A link has a negative mass.
     """
-    return _Writer(given, losses).write()
+    return _MjcfWriter(given, losses).write()
 
 
-class _Writer:
+class _MjcfWriter:
     """A file while it is written."""
 
     def __init__(self, given: ExportInput, losses: Losses) -> None:
-        self.given, self.mechanism = given, given.mechanism
-        self.losses = losses
-        self.bodies = UniqueNames(self.losses, _WORLD)
-        self.joints, self.sites, self.equalities, self.tendons, self.actuators = (
-            UniqueNames(self.losses) for _ in range(5)
-        )
+        self.given, self.mechanism, self.losses = given, given.mechanism, losses
+        self.bodies = UniqueNames(losses, _WORLD)
+        self.joints, self.sites, self.equalities, self.tendons, self.actuators = (UniqueNames(losses) for _ in range(5))
         self.root = etree.Element("mujoco", model=representable(self.mechanism.name))
         self._head()
-        self.asset = etree.SubElement(self.root, "asset")
-        self.world = etree.SubElement(self.root, "worldbody")
+        self.asset, self.world, self.contact, self.tendon, self.equality, self.actuator, self.keyframe = (
+            etree.SubElement(self.root, tag)
+            for tag in ("asset", "worldbody", "contact", "tendon", "equality", "actuator", "keyframe")
+        )
         #: For each link, the element that has it, and its pose there.
         self.hosts: dict[str, tuple[etree._Element, Pose]] = {}
-        #: The MuJoCo joints of each joint.
-        self.pieces: dict[str, tuple[_Piece, ...]] = {}
+        #: The MuJoCo joints of each joint, by their names.
+        self.steps: dict[str, dict[str, ExportedJoint]] = {}
         self.parts: list[Part] = []
-        self.meshes = MeshFiles(given, self.losses, _is_readable)
+        self.meshes = MeshFiles(given, losses, is_readable)
         self.used_meshes: dict[tuple[str, tuple[float, ...]], str] = {}
-        self.mimics = drivers(
-            {
-                joint.name: joint.mimic
-                for joint in self.mechanism.joints
-                if joint.mimic is not None and joint.type.is_axial
-            }
-        )
+        self.mimics = given.mimics
 
     def write(self) -> ExportOutput:
         mechanism = self.mechanism
@@ -116,24 +87,21 @@ class _Writer:
         for frame in mechanism.frames:
             self._site(frame.body, frame.pose, frame.name)
         self._exclusions()
-        tendon = etree.SubElement(self.root, "tendon")
-        equality = etree.SubElement(self.root, "equality")
         for closure in mechanism.closures:
-            self._closure(closure, tendon, equality)
+            if closure.type in CLOSURES:
+                self._closure(closure)
         for coupling in mechanism.couplings:
-            self._coupling(coupling, tendon, equality)
+            self._coupling(coupling)
         for joint in mechanism.joints:
-            self._joint_equalities(joint, equality)
-        actuator = etree.SubElement(self.root, "actuator")
-        for name in mechanism.actuators:
-            self._actuator(name, actuator)
+            self._joint_equalities(joint)
+        named = {joint.name: joint for joint in mechanism.joints}
+        for name in mechanism.actuators if self.given.actuators != "none" else ():
+            self._actuator(named[name])
         coordinates = Coordinates(tuple(self.parts), self.given.own, "wxyz")
-        keyframe = etree.SubElement(self.root, "keyframe")
         keys = UniqueNames(self.losses)
         for name, configuration in self.given.configurations.items():
-            etree.SubElement(
-                keyframe, "key", name=keys.new(name), qpos=numbers(coordinates.from_files(configuration).tolist())
-            )
+            qpos = numbers(coordinates.from_files(configuration).tolist())
+            etree.SubElement(self.keyframe, "key", name=keys.new(name), qpos=qpos)
         for section in [each for each in self.root if len(each) == 0 and each.tag not in ("compiler", "option")]:
             self.root.remove(section)
         return ExportOutput({"robot.xml": file_content(self.root), **self.meshes.files}, coordinates)
@@ -152,7 +120,7 @@ class _Writer:
         collision = etree.SubElement(default, "default", {"class": "collision"})
         etree.SubElement(collision, "geom", group="3")
 
-    # -- bodies and joints ------------------------------------------------------------------------------------------
+    # -- bodies -----------------------------------------------------------------------------------------------------
 
     def _root_body(self, body: Body) -> None:
         if self.mechanism.root == "fixed":
@@ -162,155 +130,70 @@ class _Writer:
         name = self.joints.new(ROOT_JOINT)
         etree.SubElement(element, "freejoint", name=name)
         self.parts.append(Part((name,), ROOT_JOINT, JointType.FLOATING))
-        self._inertial(body, element, LEAST)
-        self._content(body, element, IDENTITY)
+        self._content(body, element, LEAST)
 
     def _body(self, joint: Joint, body: Body) -> None:
         host, pose = self.hosts[joint.parent]
-        pose = pose * joint.placement
+        pose = pose * joint.placement * joint.offset
         if joint.type.is_fixed:
-            self._fixed(body, host, pose * joint.offset)
+            self._fixed(body, host, pose)
             return
-        element = etree.SubElement(host, "body", {"name": self.bodies.new(body.name), **_placed(pose * joint.offset)})
+        element = etree.SubElement(host, "body", {"name": self.bodies.new(body.name), **_placed(pose)})
         back = joint.offset.inverse()
-        pieces = tuple(self._pieces(joint))
-        self.pieces[joint.name] = pieces
-        for piece in pieces:
-            attributes = {"name": piece.name, "type": piece.kind}
+        self.steps[joint.name] = found = {self.joints.new(step.joint.name): step for step in in_series(joint, WHOLE)}
+        for name, step in found.items():
+            attributes = {"name": name, "type": KINDS[step.joint.type]}
             if joint.offset is not IDENTITY and any(back.xyz):
                 attributes["pos"] = numbers(back.xyz)
-            if piece.kind != "ball":
-                attributes["axis"] = numbers(back.rotate(direction(piece.axis)))
-            attributes |= self._properties(joint, piece)
+            if step.joint.axes:
+                attributes["axis"] = numbers(back.rotate(direction(step.joint.axes[0])))
+            attributes |= self._properties(joint, step)
             etree.SubElement(element, "joint", attributes)
-        self.parts.append(self._part(joint, pieces))
-        self._inertial(body, element, LEAST)
-        self._content(body, element, IDENTITY)
+        ratios = ((step.velocities[0], step.lead or 1.0, 0.0) for step in found.values())
+        mimic = self.mimics.get(joint.name)
+        self.parts.append(Part.of(joint, tuple(found), ratios, mimic, turn=joint.offset.quaternion))
+        self._content(body, element, LEAST)
 
     def _fixed(self, body: Body, host: etree._Element, pose: Pose) -> None:
         """A link that is fixed to its host: a body, or a site if it has no mass."""
         # Of what is below the world, Pinocchio reads one body alone: a base that carries several is a body.
         if not has_inertia(body) and not (host is self.world and self._branches > 1):
-            self._content(body, host, pose)
+            self._shapes(body, host, pose)
             if not body.virtual:
                 self._site(body.name, IDENTITY, body.name)
             return
         element = etree.SubElement(host, "body", {"name": self.bodies.new(body.name), **_placed(pose)})
-        self._inertial(body, element, 0.0)
-        self._content(body, element, IDENTITY)
+        self._content(body, element, 0.0)
 
     @cached_property
     def _branches(self) -> int:
         """Number of bodies on the base and on the links without mass that are fixed to it."""
-        base, number = {self.mechanism.bodies[0].name}, 0
-        for joint, body in zip(self.mechanism.joints, self.mechanism.bodies[1:], strict=True):
-            if joint.parent in base:
-                if joint.type.is_fixed and not has_inertia(body):
-                    base.add(body.name)
-                else:
-                    number += 1
-        return number
+        base, joints = {self.mechanism.bodies[0].name}, self.mechanism.joints
+        for joint, body in zip(joints, self.mechanism.bodies[1:], strict=True):
+            if joint.parent in base and joint.type.is_fixed and not has_inertia(body):
+                base.add(body.name)
+        return sum(joint.parent in base and joint.child not in base for joint in joints)
 
-    def _content(self, body: Body, element: etree._Element, pose: Pose) -> None:
-        """The shapes of a link, which is at a pose in the element."""
-        self.hosts[body.name] = (element, pose)
-        for shape in body.visuals:
-            self._geom(body, shape, element, pose, "visual")
-        for shape in body.collisions:
-            self._geom(body, shape, element, pose, "collision")
-
-    def _inertial(self, body: Body, element: etree._Element, least: float) -> None:
-        """The inertia of a link; mass and principal moments are at least ``least``."""
+    def _content(self, body: Body, element: etree._Element, least: float) -> None:
+        """Inertia and shapes of a link, which the element is; mass and principal moments are at least ``least``."""
         # From a full matrix, MuJoCo leaves out turns to the principal axes by less than 1e-6 rad.
         inertia = along_principal_axes(accepted_inertia(body, self.losses, least, least))
         xx, _, _, yy, _, zz = inertia.moments
         attributes = {"pos": numbers(inertia.pose.xyz), **_placed(Pose(quaternion=inertia.pose.quaternion))}
         attributes |= {"mass": numbers((inertia.mass,)), "diaginertia": numbers((xx, yy, zz))}
         etree.SubElement(element, "inertial", attributes)
-
-    def _pieces(self, joint: Joint) -> Iterator[_Piece]:
-        def new(suffix: str, kind: str, axis: Vector3, velocity: int | None) -> _Piece:
-            name = self.joints.new(joint.name + suffix)
-            return _Piece(name, kind, axis, () if velocity is None else (velocity,), velocity)
-
-        match joint.type:
-            case JointType.REVOLUTE | JointType.CONTINUOUS:
-                yield new("", "hinge", joint.axes[0], 0)
-            case JointType.PRISMATIC:
-                yield new("", "slide", joint.axes[0], 0)
-            case JointType.HELICAL:
-                yield new("_slide", "slide", joint.axes[0], None)
-                yield new("", "hinge", joint.axes[0], 0)
-            case JointType.CYLINDRICAL:
-                yield new("_slide", "slide", joint.axes[0], 0)
-                yield new("_turn", "hinge", joint.axes[0], 1)
-            case JointType.UNIVERSAL:
-                yield new("_1", "hinge", joint.axes[0], 0)
-                yield new("_2", "hinge", joint.axes[1], 1)
-            case JointType.PLANAR:
-                yield new("_x", "slide", _X, 0)
-                yield new("_y", "slide", _Y, 1)
-                yield new("_angle", "hinge", _Z, 2)
-            case JointType.SPHERICAL:
-                yield _Piece(self.joints.new(joint.name), "ball", _Z, (0, 1, 2))
-            case JointType.FLOATING:
-                for index, (suffix, axis) in enumerate((("_x", _X), ("_y", _Y), ("_z", _Z))):
-                    yield new(suffix, "slide", axis, index)
-                yield _Piece(self.joints.new(f"{joint.name}_ball"), "ball", _Z, (3, 4, 5))
-
-    def _part(self, joint: Joint, pieces: Sequence[_Piece]) -> Part:
-        names = tuple(piece.name for piece in pieces)
-        mimic = self.mimics.get(joint.name)
-        if mimic is not None:
-            return Part(names, mimic.joint, joint.type, ((0, mimic.multiplier, mimic.offset),), mimics=True)
-        if joint.type in (JointType.PLANAR, JointType.SPHERICAL, JointType.FLOATING):
-            return Part(names, joint.name, joint.type, turn=joint.offset.quaternion)
-        if joint.type is JointType.HELICAL:
-            return Part(names, joint.name, joint.type, ((0, _advance(joint), 0.0), (0, 1.0, 0.0)))
-        return Part(names, joint.name, joint.type, tuple((index, 1.0, 0.0) for index in range(len(pieces))))
-
-    def _properties(self, joint: Joint, piece: _Piece) -> dict[str, str]:
-        properties, found = joint.properties, {}
-        for attribute, values in (
-            ("armature", properties.armature),
-            ("damping", properties.damping),
-            ("friction", properties.friction),
-        ):
-            mine = [values[index] for index in piece.velocities] if values else []
-            together = [values[i] for i in _sharing(joint, piece)] if values else []
-            if any(together):
-                if len(set(together)) > 1:
-                    shown = ", ".join(f"{value:g}" for value in together)
-                    self.losses.add(
-                        f"export-unequal-{attribute}", joint.name, f"{attribute} {shown}: the mean is written"
-                    )
-                    mine = together
-                if attribute == "armature" and piece.kind == "slide" and len(together) > 1:
-                    self.losses.add("export-turning-armature", joint.name)
-                found["frictionloss" if attribute == "friction" else attribute] = numbers(
-                    (math.fsum(mine) / len(mine),)
-                )
-        for index in piece.velocities:
-            effort = properties.effort[index] if properties.effort else math.inf
-            if math.isfinite(effort):
-                if piece.kind == "ball" or effort == 0.0:
-                    if piece.kind == "ball" or joint.name in self.mechanism.actuators:
-                        self.losses.add("export-effort-limit", joint.name)
-                else:
-                    found["actuatorfrcrange"] = numbers((-effort, effort))
-        if piece.coordinate is None:
-            return found
-        if properties.stiffness and properties.stiffness[piece.coordinate]:
-            found["stiffness"] = numbers((properties.stiffness[piece.coordinate],))
-            found["springref"] = numbers((properties.rest[piece.coordinate],))
-        lower, upper = joint.ranges[piece.coordinate]
-        if (math.isfinite(lower) or math.isfinite(upper)) and lower < upper:
-            found["range"] = numbers((max(lower, -_UNLIMITED), min(upper, _UNLIMITED)))
-        return found
+        self._shapes(body, element, IDENTITY)
 
     # -- shapes and sites -------------------------------------------------------------------------------------------
 
-    def _geom(self, body: Body, shape: Shape, element: etree._Element, pose: Pose, use: str) -> None:
+    def _shapes(self, body: Body, element: etree._Element, pose: Pose) -> None:
+        """The shapes of a link, which is at a pose in the element."""
+        self.hosts[body.name] = (element, pose)
+        for use, shapes in (("visual", body.visuals), ("collision", body.collisions)):
+            for shape in shapes:
+                self._geom(shape, element, pose, use)
+
+    def _geom(self, shape: Shape, element: etree._Element, pose: Pose, use: str) -> None:
         attributes = {"class": use, "type": shape.kind}
         size = shape.size
         match shape.kind:
@@ -356,134 +239,152 @@ class _Writer:
         MuJoCo itself excludes a body and its parent, unless the parent is fixed to the world.
         """
         hosts = {body: element.get("name", _WORLD) for body, (element, _) in self.hosts.items()}
-        contact = etree.SubElement(self.root, "contact")
         for one, other in dict.fromkeys((hosts[a], hosts[b]) for a, b in neighbours(self.mechanism, LEAST)):
-            etree.SubElement(contact, "exclude", body1=one, body2=other)
+            etree.SubElement(self.contact, "exclude", body1=one, body2=other)
+
+    # -- joints -----------------------------------------------------------------------------------------------------
+
+    def _properties(self, joint: Joint, step: ExportedJoint) -> dict[str, str]:
+        """The attributes of a MuJoCo joint, one of those that a joint is."""
+        found = {}
+        for attribute in ("armature", "damping", "friction"):
+            every, mine = getattr(joint.properties, attribute), getattr(step.joint.properties, attribute)
+            together = mine
+            if joint.type.moving_frame and step.joint.type.slides:
+                # These axes turn with the child, those of MuJoCo do not: the numbers must be equal.
+                slides = (index for index, motion in enumerate(joint.type.steps) if motion.kind == "slide")
+                together = tuple(every[index] for index in slides) if every else ()
+            if any(together):
+                if len(set(together)) > 1:
+                    shown = ", ".join(f"{value:g}" for value in together)
+                    message = f"{attribute} {shown}: the mean is written"
+                    self.losses.add(f"export-unequal-{attribute}", joint.name, message)
+                    mine = together
+                mean = math.fsum(mine) / len(mine)
+                found["frictionloss" if attribute == "friction" else attribute] = numbers((mean,))
+        own = step.joint.properties
+        for effort in filter(math.isfinite, own.effort):
+            if not step.joint.axes or (effort == 0.0 and joint.name in self.mechanism.actuators):
+                self.losses.add("export-effort-limit", joint.name)
+            elif effort:
+                found["actuatorfrcrange"] = numbers((-effort, effort))
+        if not step.joint.axes or step.lead:
+            return found
+        if any(own.stiffness):
+            found |= {"stiffness": numbers(own.stiffness), "springref": numbers(own.rest)}
+        ((lower, upper),) = step.joint.ranges
+        if (math.isfinite(lower) or math.isfinite(upper)) and lower < upper:
+            found["range"] = numbers((max(lower, -UNLIMITED), min(upper, UNLIMITED)))
+        return found
+
+    def _scalar(self, joint: str) -> str:
+        """The MuJoCo joint with the one coordinate of a joint; the angle of a helical one."""
+        return list(self.steps[joint])[-1]
+
+    def _joint_equalities(self, joint: Joint) -> None:
+        """What holds between the MuJoCo joints of a joint, and those of its leader."""
+        steps = self.steps.get(joint.name, {})
+        for name, step in steps.items():
+            if step.lead:
+                self._joint_equality(f"{name}/mimic", (name, self._scalar(joint.name)), 0.0, step.lead)
+        if mimic := self.mimics.get(joint.name):
+            joints = self._scalar(joint.name), self._scalar(mimic.joint)
+            self._joint_equality(f"{joints[0]}/mimic", joints, mimic.offset, mimic.multiplier)
+        for name, step in steps.items():
+            for lower, upper in step.joint.ranges:
+                if lower == upper:
+                    self._joint_equality(f"{name}/locked", (name,), lower, 0.0)
+
+    def _joint_equality(self, name: str, joints: tuple[str, ...], offset: float, ratio: float) -> None:
+        """Let a joint be at an offset, plus a ratio times another one if there is one."""
+        attributes = {"name": self.equalities.new(name)}
+        attributes |= {f"joint{number}": joint for number, joint in enumerate(joints, 1)}
+        attributes["polycoef"] = numbers((offset, ratio, 0, 0, 0))
+        etree.SubElement(self.equality, "joint", attributes)
 
     # -- constraints ------------------------------------------------------------------------------------------------
 
-    def _closure(self, closure: Closure, tendon: etree._Element, equality: etree._Element) -> None:
+    def _closure(self, closure: Closure) -> None:
         name = self.equalities.new(closure.name)
-        ends = closure.a, closure.b
+        a, b = self._sites(closure)
+        if isinstance(closure, DistanceClosure):
+            path = self.tendons.new(closure.name)
+            spatial = etree.SubElement(self.tendon, "spatial", name=path)
+            etree.SubElement(spatial, "site", site=a)
+            etree.SubElement(spatial, "site", site=b)
+            # The equality is relative to the length at the reference configuration.
+            excess = closure.length - math.dist(*(self._origin(end.body, end.pose) for end in closure.anchors))
+            self._tendon_equality(name, path, excess)
+            return
+        etree.SubElement(self.equality, CLOSURES[closure.type], name=name, site1=a, site2=b)
+        if isinstance(closure, HingeClosure):
+            one, other = (Pose(point_on(direction(axis))) for axis in closure.axes)
+            a, b = self._sites(closure, "_axis", (one, other))
+            name = self.equalities.new(f"{closure.name}/axis")
+            etree.SubElement(self.equality, CLOSURES[closure.type], name=name, site1=a, site2=b)
 
-        def sites(suffix: str = "", poses: tuple[Pose, Pose] = (IDENTITY, IDENTITY)) -> tuple[str, str]:
-            a, b = (
-                self._site(end.body, end.pose * pose, f"{closure.name}/{side}{suffix}")
-                for end, pose, side in zip(ends, poses, "ab", strict=True)
-            )
-            return a, b
+    def _sites(
+        self, closure: Closure, suffix: str = "", poses: tuple[Pose, Pose] = (IDENTITY, IDENTITY)
+    ) -> tuple[str, str]:
+        """Add sites at poses in the frames A and B of a closure; returns their names."""
+        a, b = (
+            self._site(end.body, end.pose * pose, f"{closure.name}/{side}{suffix}")
+            for end, pose, side in zip(closure.anchors, poses, "ab", strict=True)
+        )
+        return a, b
 
-        match closure:
-            case PointClosure():
-                a, b = sites()
-                etree.SubElement(equality, "connect", name=name, site1=a, site2=b)
-            case FrameClosure():
-                a, b = sites()
-                etree.SubElement(equality, "weld", name=name, site1=a, site2=b)
-            case HingeClosure():
-                a, b = sites()
-                etree.SubElement(equality, "connect", name=name, site1=a, site2=b)
-                one, other = (Pose(_scaled(HINGE_WIDTH, direction(axis))) for axis in closure.axes)
-                a, b = sites("_axis", (one, other))
-                second = self.equalities.new(f"{closure.name}/axis")
-                etree.SubElement(equality, "connect", name=second, site1=a, site2=b)
-            case DistanceClosure():
-                a, b = sites()
-                path = self.tendons.new(closure.name)
-                spatial = etree.SubElement(tendon, "spatial", name=path)
-                for site in (a, b):
-                    etree.SubElement(spatial, "site", site=site)
-                # The equality is relative to the length at the reference configuration.
-                excess = closure.length - self._distance_at_rest(closure)
-                etree.SubElement(equality, "tendon", name=name, tendon1=path, polycoef=numbers((excess, 0, 0, 0, 0)))
-
-    def _distance_at_rest(self, closure: DistanceClosure) -> float:
+    def _origin(self, body: str, pose: Pose) -> Vector3:
+        """The origin of a pose in a body at the reference configuration."""
         carried = {joint.child: joint for joint in self.mechanism.joints}
+        while body in carried:
+            joint = carried[body]
+            pose, body = joint.placement * joint.offset * pose, joint.parent
+        return pose.xyz
 
-        def origin(body: str, pose: Pose) -> Vector3:
-            while body in carried:
-                joint = carried[body]
-                pose, body = joint.placement * joint.offset * pose, joint.parent
-            return pose.xyz
+    def _tendon_equality(self, name: str, tendon: str, offset: float) -> None:
+        polycoef = numbers((offset, 0, 0, 0, 0))
+        etree.SubElement(self.equality, "tendon", name=name, tendon1=tendon, polycoef=polycoef)
 
-        return math.dist(*(origin(end.body, end.pose) for end in (closure.a, closure.b)))
-
-    def _coupling(self, coupling: Coupling, tendon: etree._Element, equality: etree._Element) -> None:
-        name = self.equalities.new(coupling.name)
+    def _coupling(self, coupling: Coupling) -> None:
         terms = [(self._scalar(joint), coefficient) for joint, coefficient in coupling.coefficients]
         (first, c), *others = terms
         if len(others) <= 1:
             ratio = -others[0][1] / c if others else 0.0
-            more = {"joint2": others[0][0]} if others else {}
-            polycoef = numbers((coupling.offset / c, ratio, 0, 0, 0))
-            etree.SubElement(equality, "joint", {"name": name, "joint1": first, **more, "polycoef": polycoef})
+            joints = (first, *(joint for joint, _ in others))
+            self._joint_equality(coupling.name, joints, coupling.offset / c, ratio)
             return
-        fixed = self.tendons.new(coupling.name)
-        element = etree.SubElement(tendon, "fixed", name=fixed)
+        name, fixed = self.equalities.new(coupling.name), self.tendons.new(coupling.name)
+        element = etree.SubElement(self.tendon, "fixed", name=fixed)
         for joint, coefficient in terms:
             etree.SubElement(element, "joint", joint=joint, coef=numbers((coefficient,)))
-        etree.SubElement(equality, "tendon", name=name, tendon1=fixed, polycoef=numbers((coupling.offset, 0, 0, 0, 0)))
-
-    def _joint_equalities(self, joint: Joint, equality: etree._Element) -> None:
-        """What holds between the MuJoCo joints of a joint, and those of its leader."""
-        pieces = self.pieces.get(joint.name, ())
-        if joint.type is JointType.HELICAL:
-            slide, hinge = (piece.name for piece in pieces)
-            self._equal(equality, slide, Mimic(hinge, _advance(joint)))
-        mimic = self.mimics.get(joint.name)
-        if mimic is not None:
-            leader = self._scalar(mimic.joint)
-            self._equal(equality, pieces[0].name, Mimic(leader, mimic.multiplier, mimic.offset))
-        for piece in pieces:
-            if piece.coordinate is None:
-                continue
-            lower, upper = joint.ranges[piece.coordinate]
-            if lower == upper:
-                polycoef = numbers((lower, 0, 0, 0, 0))
-                name = self.equalities.new(f"{piece.name}/locked")
-                etree.SubElement(equality, "joint", name=name, joint1=piece.name, polycoef=polycoef)
-
-    def _equal(self, equality: etree._Element, follower: str, mimic: Mimic) -> None:
-        polycoef = numbers((mimic.offset, mimic.multiplier, 0, 0, 0))
-        name = self.equalities.new(f"{follower}/mimic")
-        etree.SubElement(equality, "joint", name=name, joint1=follower, joint2=mimic.joint, polycoef=polycoef)
-
-    def _scalar(self, joint: str) -> str:
-        """The MuJoCo joint with the one coordinate of a joint; the angle of a helical one."""
-        return self.pieces[joint][-1].name
+        self._tendon_equality(name, fixed, coupling.offset)
 
     # -- actuators --------------------------------------------------------------------------------------------------
 
-    def _actuator(self, name: str, actuator: etree._Element) -> None:
-        mechanism = self.mechanism
-        motor = mechanism.motor(name)
-        shown, control = motor.name, motor.control
-        if self.given.actuators == "none":
-            return
-        (joint,) = (joint for joint in mechanism.joints if joint.name == name)
-        count = joint.type.nv
-        for piece in self.pieces[name]:
-            for index in piece.velocities:
-                attributes = {"name": self.actuators.new(shown if count == 1 else f"{shown}_{index + 1}")}
-                attributes["joint"] = piece.name
-                effort = joint.properties.effort[index] if joint.properties.effort else math.inf
-                bounds = control or ((-effort, effort) if 0.0 < effort < math.inf else None)
-                if piece.kind == "ball":
-                    unit = Pose(quaternion=joint.offset.quaternion).inverse().rotate((_X, _Y, _Z)[index % 3])
-                    attributes["gear"] = numbers((*unit, 0.0, 0.0, 0.0))
-                if self.given.actuators == "motor" or piece.kind == "ball":
-                    if bounds is not None and bounds[0] < bounds[1]:
-                        attributes["ctrlrange"] = numbers(bounds)
-                    etree.SubElement(actuator, "motor", attributes)
-                    continue
+    def _actuator(self, joint: Joint) -> None:
+        motor = self.mechanism.motor(joint.name)
+        own = ((name, step, index) for name, step in self.steps[joint.name].items() for index in step.velocities)
+        for name, step, index in own:
+            if step.lead:
+                continue
+            shown = motor.name if joint.type.nv == 1 else f"{motor.name}_{index + 1}"
+            attributes = {"name": self.actuators.new(shown), "joint": name}
+            effort = joint.properties.effort[index] if joint.properties.effort else math.inf
+            bounds = motor.control or ((-effort, effort) if 0.0 < effort < math.inf else None)
+            is_ball = not step.joint.axes
+            if is_ball:
+                unit = Pose(quaternion=joint.offset.quaternion).inverse().rotate(AXES[index % 3])
+                attributes["gear"] = numbers((*unit, 0.0, 0.0, 0.0))
+            is_position = self.given.actuators == "position" and not is_ball
+            if is_position:
                 gain = position_gain(effort)
                 attributes |= {"kp": numbers((gain,)), "dampratio": "1"}
-                if bounds is not None and bounds[0] < bounds[1]:
-                    attributes["forcerange"] = numbers(bounds)
-                if "range" in self._properties(joint, piece):
-                    attributes["inheritrange"] = "1"
-                etree.SubElement(actuator, "position", attributes)
-                self.losses.add("export-position-gain", shown, f"kp is {gain:g}, dampratio 1")
+                self.losses.add("export-position-gain", motor.name, f"kp is {gain:g}, dampratio 1")
+            if bounds is not None and bounds[0] < bounds[1]:
+                attributes["forcerange" if is_position else "ctrlrange"] = numbers(bounds)
+            if is_position and "range" in self._properties(joint, step):
+                attributes["inheritrange"] = "1"
+            etree.SubElement(self.actuator, "position" if is_position else "motor", attributes)
 
 
 def _placed(pose: Pose) -> dict[str, str]:
@@ -495,32 +396,6 @@ def _placed(pose: Pose) -> dict[str, str]:
     if (x, y, z) != (0.0, 0.0, 0.0):
         attributes["quat"] = numbers((w, x, y, z))
     return attributes
-
-
-def _scaled(length: float, unit: Vector3) -> Vector3:
-    return length * unit[0], length * unit[1], length * unit[2]
-
-
-def _advance(joint: Joint) -> float:
-    """Of a helical joint, m/rad."""
-    return joint.pitch / (2.0 * math.pi)
-
-
-def _sharing(joint: Joint, piece: _Piece) -> Iterable[int]:
-    """The velocities of a joint that turn with the child, of which a piece has one: their numbers must be equal."""
-    if joint.type is JointType.PLANAR and piece.velocities[0] < 2:
-        return (0, 1)
-    if joint.type is JointType.FLOATING and piece.velocities[0] < 3:
-        return (0, 1, 2)
-    return piece.velocities
-
-
-def _is_readable(file: str, content: bytes) -> bool:
-    """Whether MuJoCo reads a mesh: a binary STL has 80 bytes, the number of triangles, and 50 bytes of each."""
-    suffix = PurePosixPath(file).suffix.lower()
-    if suffix == ".stl":
-        return len(content) >= 84 and len(content) == 84 + 50 * int.from_bytes(content[80:84], "little")
-    return suffix in (".obj", ".msh")
 
 
 FORMAT = Format("mjcf", "MJCF, for MuJoCo and what reads its format", write, ROWS, EXACT)

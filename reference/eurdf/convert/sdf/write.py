@@ -11,65 +11,40 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from lxml import etree
 
-from eurdf.convert.coordinates import Coordinates, Part
+from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.exceptions import CannotExport
-from eurdf.convert.export_format import ExportInput, ExportOutput, Format
+from eurdf.convert.export_format import ExportInput, ExportOutput, Format, coordinates_at
 from eurdf.convert.inertia import accepted_inertia
 from eurdf.convert.losses import Losses
-from eurdf.convert.mesh_file import MeshFiles
+from eurdf.convert.meshes import MeshFiles
 from eurdf.convert.names import UniqueNames
+from eurdf.convert.parts import Part
 from eurdf.convert.sdf.facts import CLOSURES, EXACT, LEAST, ROWS, VERSION
-from eurdf.convert.steps import is_skew
+from eurdf.convert.steps import AXES, in_series, turn_type
 from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.constraint import Closure, Coupling, HingeClosure, PointClosure
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_types import JointType
+from eurdf.mechanism.joint_types import ROTARY, JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
-from eurdf.mechanism.mimic import drivers
+from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
-from eurdf.writing.angles import rpy_of
-from eurdf.writing.xml_text import file_content
+from eurdf.writing.xml_text import file_content, representable, rpy_of
 
 #: Largest opening, m or rad, of a loop that counts as closed (EU-CLO-005).
 CLOSED = 1e-6
 
-_X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 _WORLD = "world"
 
+#: The types of joint that are one of SDFormat, beside those of one axis.
+_WHOLE = (JointType.SPHERICAL, JointType.HELICAL, JointType.UNIVERSAL)
 
-@dataclass(frozen=True, slots=True)
-class _Axis:
-    """An axis of a joint of the file.
-
-    Attributes:
-        xyz: In the frame of the joint.
-        index: Index of the coordinate, and velocity, of the robot's joint that it has.
-    """
-
-    xyz: Vector3
-    index: int
-
-
-@dataclass(frozen=True, slots=True)
-class _Step:
-    """One joint of the file of those that a joint is.
-
-    Attributes:
-        suffix: What its name adds to that of the joint.
-        type: Its type in the file.
-        moved: How far it has moved at the configuration of the file.
-        axes: Its axes.
-    """
-
-    suffix: str
-    type: str
-    moved: Pose
-    axes: tuple[_Axis, ...] = ()
+#: Their names in SDFormat, where these are others.
+_KINDS = {JointType.SPHERICAL: "ball", JointType.HELICAL: "screw"}
 
 
 def write(given: ExportInput, losses: Losses) -> ExportOutput:
@@ -78,28 +53,27 @@ def write(given: ExportInput, losses: Losses) -> ExportOutput:
     Raises:
         CannotExport: A link has a negative mass; or no closed configuration is known, at which the file has its links.
     """
-    return _Writer(given, losses).write()
+    return _SdfWriter(given, losses).write()
 
 
-class _Writer:
+class _SdfWriter:
     """A file while it is written."""
 
     def __init__(self, given: ExportInput, losses: Losses) -> None:
-        self.given, self.mechanism = given, given.mechanism
-        self.losses = losses
-        self.names = UniqueNames(self.losses, _WORLD)
-        self.meshes = MeshFiles(given, self.losses)
+        self.given, self.mechanism, self.losses = given, given.mechanism, losses
+        self.names = UniqueNames(losses, _WORLD, representable=_allowed)
+        self.meshes = MeshFiles(given, losses)
         self.sdf = etree.Element("sdf", version=VERSION)
         self.model = etree.SubElement(self.sdf, "model", name=_allowed(self.mechanism.name) or "robot")
         self.zero = self._zero()
         #: Names of links, and poses at the configuration of the file in the world.
-        self.links = {body.name: self._new(body.name) for body in self.mechanism.bodies}
+        self.links = {body.name: self.names.new(body.name) for body in self.mechanism.bodies}
         self.poses: dict[str, Pose] = {}
         #: By joint with axes, the last one: the axis of one that can mimic or be coupled.
         self.axes: dict[str, etree._Element] = {}
         self.joints: dict[str, str] = {}
         self.parts: list[Part] = []
-        self.mimics = drivers({joint.name: joint.mimic for joint in self.mechanism.joints if joint.mimic is not None})
+        self.mimics = given.mimics
 
     def write(self) -> ExportOutput:
         mechanism = self.mechanism
@@ -107,14 +81,14 @@ class _Writer:
         for joint, body in zip(mechanism.joints, mechanism.bodies[1:], strict=True):
             self._joint(joint, body)
         for frame in mechanism.frames:
-            element = _add(self.model, "frame", name=self._new(frame.name), attached_to=self.links[frame.body])
+            element = _add(self.model, "frame", name=self.names.new(frame.name), attached_to=self.links[frame.body])
             _pose(element, frame.pose)
         for joint in mechanism.joints:
             if joint.mimic is not None:
-                mimic = joint.mimic
-                self._mimic(joint.name, mimic.joint, mimic.multiplier, mimic.offset)
+                self._mimic(joint.name, joint.mimic)
         for closure in mechanism.closures:
-            self._closure(closure)
+            if closure.type in CLOSURES:
+                self._closure(closure)
         for coupling in mechanism.couplings:
             self._coupling(coupling)
         files = {"robot.sdf": file_content(self.sdf), **self.meshes.files}
@@ -142,19 +116,7 @@ class _Writer:
         return self.given.configurations[name]
 
     def _coordinates(self, joint: Joint) -> tuple[float, ...]:
-        mimic = self.mimics.get(joint.name)
-        if mimic is None:
-            return tuple(self.zero.get(joint.name, joint.type.neutral))
-        (leader,) = self.zero.get(mimic.joint, (0.0,))
-        return (mimic.multiplier * leader + mimic.offset,)
-
-    def _new(self, name: str) -> str:
-        """A name that no link, joint or frame has; ``::`` and names in double underscores are reserved."""
-        allowed = _allowed(name)
-        found = self.names.new(allowed)
-        if found != name:
-            self.losses.add("export-name", name, f"becomes '{found}'")
-        return found
+        return coordinates_at(self.zero, joint, self.mimics.get(joint.name))
 
     # -- links ------------------------------------------------------------------------------------------------------
 
@@ -163,14 +125,13 @@ class _Writer:
         self.model.set("canonical_link", name)
         placed = IDENTITY
         if self.mechanism.root == "floating":
-            x, y, z, *orientation = self.zero.get(ROOT_JOINT, JointType.FLOATING.neutral)
-            qx, qy, qz, qw = orientation
+            x, y, z, qx, qy, qz, qw = self.zero.get(ROOT_JOINT, JointType.FLOATING.neutral)
             placed = Pose((x, y, z), (qx, qy, qz, qw))
             self.parts.append(Part((name,), ROOT_JOINT, JointType.FLOATING))
         self.poses[body.name] = placed
         self._link(body, _add(self.model, "link", name=name), "", placed)
         if self.mechanism.root == "fixed":
-            joint = _add(self.model, "joint", name=self._new(f"{_WORLD}_{name}"), type="fixed")
+            joint = _add(self.model, "joint", name=self.names.new(f"{_WORLD}_{name}"), type="fixed")
             _add(joint, "parent").text = _WORLD
             _add(joint, "child").text = name
 
@@ -211,103 +172,68 @@ class _Writer:
 
     def _joint(self, joint: Joint, body: Body) -> None:
         at = self._coordinates(joint)
-        steps = _steps(joint, at)
         parent, placement, names = self.links[joint.parent], joint.placement, []
-        for number, step in enumerate(steps):
-            name = self._new(joint.name + step.suffix)
-            last = number == len(steps) - 1
-            child = self.links[body.name] if last else self._new(f"{name}_link")
+        steps = in_series(joint, _WHOLE)
+        for step in steps:
+            name = self.names.new(step.joint.name)
+            own = step.of(at)
+            pose = placement * step.joint.transform(own)
+            last = step is steps[-1]
+            child = self.links[body.name] if last else self.names.new(f"{name}_link")
             link = _add(self.model, "link", name=child)
-            pose = placement * step.moved
             if last:
                 self._link(body, link, parent, pose * joint.offset)
             else:
                 _pose(link, pose, parent)
                 _inertial(link, Inertia(LEAST, IDENTITY, (LEAST, 0.0, 0.0, LEAST, 0.0, LEAST)))
-            element = _add(self.model, "joint", name=name, type=step.type)
+            kind = step.joint.type
+            if kind in ROTARY:
+                kind = turn_type(step.joint)
+            element = _add(self.model, "joint", name=name, type=_KINDS.get(kind, kind))
             if last:
                 _pose(element, joint.offset.inverse() if joint.offset is not IDENTITY else IDENTITY)
             _add(element, "parent").text = parent
             _add(element, "child").text = child
-            if step.type == "screw":
-                _add(element, "screw_thread_pitch").text = _text((joint.pitch,))
-            for tag, axis in zip(("axis", "axis2"), step.axes, strict=False):
-                stated = _add(element, tag)
-                self._axis(joint, stated, axis, at[axis.index])
-                self.axes[joint.name] = stated
+            if kind is JointType.HELICAL:
+                _numbers(element, {"screw_thread_pitch": joint.pitch})
+            for index, (tag, axis) in enumerate(zip(("axis", "axis2"), _axes(step.joint, own), strict=False)):
+                self.axes[joint.name] = stated = _add(element, tag)
+                _add(stated, "xyz").text = _text(axis)
+                _limits(stated, step.joint, index, own[index])
             names.append(name)
             parent, placement = child, IDENTITY
         self.joints[joint.name] = names[0]
         self.poses[body.name] = self.poses[joint.parent] * joint.placement * joint.transform(at) * joint.offset
-        if not joint.type.is_fixed:
-            self.parts.append(self._part(joint, names, at))
-
-    def _axis(self, joint: Joint, element: etree._Element, axis: _Axis, at: float) -> None:
-        properties, i = joint.properties, axis.index
-        _add(element, "xyz").text = _text(direction(axis.xyz))
-        lower, upper = joint.ranges[i]
-        limit = {
-            name: value
-            for name, value in (
-                ("lower", lower - at),
-                ("upper", upper - at),
-                ("effort", properties.effort[i] if properties.effort else math.inf),
-                ("velocity", properties.velocity[i] if properties.velocity else math.inf),
-            )
-            if math.isfinite(value)
-        }
-        if limit:
-            limits = _add(element, "limit")
-            for name, value in limit.items():
-                _add(limits, name).text = _text((value,))
-        dynamics = {
-            name: values[i]
-            for name, values in (("damping", properties.damping), ("friction", properties.friction))
-            if values and values[i]
-        }
-        if properties.stiffness and properties.stiffness[i]:
-            dynamics |= {"spring_reference": properties.rest[i] - at, "spring_stiffness": properties.stiffness[i]}
-        if dynamics:
-            losses = _add(element, "dynamics")
-            for name, value in dynamics.items():
-                _add(losses, name).text = _text((value,))
-
-    def _part(self, joint: Joint, names: Sequence[str], at: tuple[float, ...]) -> Part:
-        mimic = self.mimics.get(joint.name)
-        if mimic is not None:
-            ratio = (0, mimic.multiplier, mimic.offset - at[0])
-            return Part(tuple(names), mimic.joint, joint.type, (ratio,), mimics=True)
-        if joint.type in (JointType.PLANAR, JointType.SPHERICAL, JointType.FLOATING):
-            zero = () if at == joint.type.neutral else at
-            return Part(tuple(names), joint.name, joint.type, zero=zero, turn=joint.offset.quaternion)
-        ratios = tuple((index, 1.0, -value) for index, value in enumerate(at))
-        return Part(tuple(names), joint.name, joint.type, ratios)
+        if joint.type.is_fixed:
+            return
+        if mimic := self.mimics.get(joint.name):
+            mimic = replace(mimic, offset=mimic.offset - at[0])
+        zero = () if at == joint.type.neutral else at
+        ratios = ((index, 1.0, -value) for index, value in enumerate(at))
+        self.parts.append(Part.of(joint, names, ratios, mimic, zero=zero))
 
     # -- relations --------------------------------------------------------------------------------------------------
 
-    def _mimic(self, follower: str, leader: str, multiplier: float, offset: float) -> None:
-        """State that follower = multiplier · leader + offset, in coordinates of the robot."""
+    def _mimic(self, follower: str, relation: Mimic) -> None:
+        """State the relation of a joint to its leader, which is in coordinates of the robot."""
         joints = {joint.name: joint for joint in self.mechanism.joints}
-        (mine,), (its,) = (self._coordinates(joints[name]) for name in (follower, leader))
-        mimic = _add(self.axes[follower], "mimic", joint=self.joints[leader])
-        _add(mimic, "multiplier").text = _text((multiplier,))
-        _add(mimic, "offset").text = _text((multiplier * its + offset - mine,))
-        _add(mimic, "reference").text = "0"
+        (mine,), (its,) = (self._coordinates(joints[name]) for name in (follower, relation.joint))
+        mimic = _add(self.axes[follower], "mimic", joint=self.joints[relation.joint])
+        offset = relation.multiplier * its + relation.offset - mine
+        _numbers(mimic, {"multiplier": relation.multiplier, "offset": offset, "reference": 0.0})
 
     def _coupling(self, coupling: Coupling) -> None:
         if len(coupling.coefficients) == 2:
             for (follower, c), (leader, d) in (coupling.coefficients, coupling.coefficients[::-1]):
                 if self.axes[follower].find("mimic") is None:
-                    self._mimic(follower, leader, -d / c, coupling.offset / c)
+                    self._mimic(follower, Mimic(leader, -d / c, coupling.offset / c))
                     self.losses.add("export-coupling", coupling.name)
                     return
         self.losses.add("export-coupling-dropped", coupling.name)
 
     def _closure(self, closure: Closure) -> None:
-        if closure.type not in CLOSURES:
-            return
         self._must_be_closed(closure)
-        joint = _add(self.model, "joint", name=self._new(closure.name), type=CLOSURES[closure.type])
+        joint = _add(self.model, "joint", name=self.names.new(closure.name), type=CLOSURES[closure.type])
         _pose(joint, closure.b.pose)
         for tag, end in (("parent", closure.a), ("child", closure.b)):
             _add(joint, tag).text = self.links[end.body]
@@ -322,7 +248,7 @@ class _Writer:
         if isinstance(closure, HingeClosure):
             pairs = [(a.rotate(direction(closure.axes[0])), b.rotate(direction(closure.axes[1])))]
         elif not isinstance(closure, PointClosure):
-            pairs = [(a.rotate(axis), b.rotate(axis)) for axis in (_X, _Y, _Z)]
+            pairs = [(a.rotate(axis), b.rotate(axis)) for axis in AXES]
         opening = max(math.dist(a.xyz, b.xyz), *(math.dist(*pair) for pair in pairs), 0.0)
         if opening > 2.0 * CLOSED:
             raise CannotExport(
@@ -334,54 +260,43 @@ class _Writer:
         return self.poses[anchor.body] * anchor.pose
 
 
-def _steps(joint: Joint, at: tuple[float, ...]) -> Sequence[_Step]:
-    """The joints of the file, from the parent outwards, that a joint at some coordinates is."""
-
-    def turn(suffix: str, axis: Vector3, index: int) -> _Step:
-        kind = "revolute" if any(map(math.isfinite, joint.ranges[index])) else "continuous"
-        return _Step(suffix, kind, _moved(JointType.REVOLUTE, axis, at[index]), (_Axis(axis, index),))
-
-    def slide(suffix: str, axis: Vector3, index: int) -> _Step:
-        return _Step(suffix, "prismatic", _moved(JointType.PRISMATIC, axis, at[index]), (_Axis(axis, index),))
-
-    match joint.type:
-        case JointType.FIXED:
-            return [_Step("", "fixed", IDENTITY)]
-        case JointType.REVOLUTE | JointType.CONTINUOUS:
-            return [turn("", joint.axes[0], 0)]
-        case JointType.PRISMATIC:
-            return [slide("", joint.axes[0], 0)]
-        case JointType.HELICAL:
-            return [_Step("", "screw", joint.transform(at), (_Axis(joint.axes[0], 0),))]
-        case JointType.CYLINDRICAL:
-            return [slide("_slide", joint.axes[0], 0), turn("_turn", joint.axes[0], 1)]
-        case JointType.UNIVERSAL:
-            first, second = map(direction, joint.axes)
-            if is_skew(joint):
-                return [turn("_1", first, 0), turn("_2", second, 1)]
-            # The frame of the joint is fixed to the child: the second turn has moved the first axis there.
-            seen = _moved(JointType.REVOLUTE, second, -at[1]).rotate(first)
-            return [_Step("", "universal", joint.transform(at), (_Axis(seen, 0), _Axis(second, 1)))]
-        case JointType.PLANAR:
-            return [slide("_x", _X, 0), slide("_y", _Y, 1), turn("_angle", _Z, 2)]
-        case JointType.SPHERICAL:
-            return [_Step("", "ball", joint.transform(at))]
-    slides = [slide(suffix, axis, i) for i, (suffix, axis) in enumerate((("_x", _X), ("_y", _Y), ("_z", _Z)))]
-    ball = replace(joint.transform(at), xyz=(0.0, 0.0, 0.0))
-    return [*slides, _Step("_ball", "ball", ball)]
+def _axes(joint: Joint, at: Sequence[float]) -> list[Vector3]:
+    """The axes of a joint of the file in its frame, which is fixed to the child, at its coordinates."""
+    axes = [direction(axis) for axis in joint.axes]
+    if joint.type is JointType.UNIVERSAL:  # the second turn has moved the first axis there
+        second = Joint("", JointType.REVOLUTE, "", "", axes=(axes[1],))
+        axes[0] = second.transform((-at[1],)).rotate(axes[0])
+    return axes
 
 
-def _moved(kind: JointType, axis: Vector3, value: float) -> Pose:
-    return Joint("", kind, "", "", axes=(axis,)).transform((value,))
+def _limits(axis: etree._Element, joint: Joint, index: int, at: float) -> None:
+    """State limits, losses and the spring of an axis, whose coordinate is zero at a value of that of the robot."""
+    properties = joint.properties
+    lower, upper = joint.ranges[index]
+    limits = {"lower": lower - at, "upper": upper - at}
+    limits |= {name: values[index] for name in ("effort", "velocity") if (values := getattr(properties, name))}
+    if finite := {name: value for name, value in limits.items() if math.isfinite(value)}:
+        _numbers(_add(axis, "limit"), finite)
+    dynamics = {
+        name: values[index]
+        for name in ("damping", "friction")
+        if (values := getattr(properties, name)) and values[index]
+    }
+    if properties.stiffness and properties.stiffness[index]:
+        dynamics |= {
+            "spring_reference": properties.rest[index] - at,
+            "spring_stiffness": properties.stiffness[index],
+        }
+    if dynamics:
+        _numbers(_add(axis, "dynamics"), dynamics)
 
 
 def _inertial(link: etree._Element, inertia: Inertia) -> None:
     element = _add(link, "inertial")
-    _add(element, "mass").text = _text((inertia.mass,))
+    _numbers(element, {"mass": inertia.mass})
     _pose(element, inertia.pose)
-    moments = _add(element, "inertia")
-    for name, value in zip(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), inertia.moments, strict=True):
-        _add(moments, name).text = _text((value,))
+    names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+    _numbers(_add(element, "inertia"), dict(zip(names, inertia.moments, strict=True)))
 
 
 def _pose(element: etree._Element, pose: Pose, relative_to: str = "") -> None:
@@ -393,6 +308,12 @@ def _pose(element: etree._Element, pose: Pose, relative_to: str = "") -> None:
 
 def _add(parent: etree._Element, tag: str, **attributes: str) -> etree._Element:
     return etree.SubElement(parent, tag, attributes)
+
+
+def _numbers(parent: etree._Element, values: Mapping[str, float]) -> None:
+    """Add an element of each name with a number."""
+    for name, value in values.items():
+        _add(parent, name).text = _text((value,))
 
 
 def _text(values: Sequence[float]) -> str:
@@ -410,8 +331,8 @@ def _number(value: float) -> str:
 
 
 def _allowed(name: str) -> str:
-    """The name, as SDFormat allows it: without ``::``, and not between double underscores."""
-    allowed = name.replace("::", "__")
+    """The name, as SDFormat allows it: without ``::``, and not between double underscores, which are reserved."""
+    allowed = representable(name).replace("::", "__")
     return f"_{allowed}_" if allowed.startswith("__") and allowed.endswith("__") else allowed
 
 

@@ -2,59 +2,23 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from collections.abc import Callable, Sequence
 
 from lxml import etree
 
-from eurdf.convert.coordinates import Coordinates, Part
 from eurdf.convert.export_format import ExportInput
 from eurdf.convert.losses import Losses
-from eurdf.convert.mesh_file import MeshFiles
+from eurdf.convert.meshes import MeshFiles
 from eurdf.convert.names import UniqueNames
+from eurdf.convert.parts import Part
+from eurdf.convert.steps import ExportedJoint, Z, in_series
 from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.mimic import Mimic
-from eurdf.mechanism.pose import IDENTITY, Vector3
-from eurdf.writing.urdf_elements import (
-    add_dynamics,
-    add_inertial,
-    add_joint,
-    add_limit,
-    add_mimic,
-    add_shape,
-    state_version,
-)
+from eurdf.mechanism.pose import IDENTITY, Pose
+from eurdf.writing.urdf_elements import add_inertial, add_joint, add_mimic, add_shape
 from eurdf.writing.xml_text import representable
-
-AXES: tuple[tuple[str, Vector3], ...] = (("_x", (1.0, 0.0, 0.0)), ("_y", (0.0, 1.0, 0.0)), ("_z", (0.0, 0.0, 1.0)))
-
-
-@dataclass(frozen=True, slots=True)
-class Step:
-    """One joint of the file of those that a joint is.
-
-    Attributes:
-        suffix: What its name adds to that of the joint.
-        type: The type of URDF that it has, or comes nearest to.
-        axis: Its axis, if it has one.
-        index: Index of the velocity of the joint that it has, if it has one.
-        mimic: The leader that it mimics for the sake of the joint.
-        tag: Tag of its element.
-        type_name: Its type in an element with another tag.
-    """
-
-    suffix: str
-    type: JointType
-    axis: Vector3 | None
-    index: int | None = None
-    mimic: Mimic | None = None
-    tag: str = "joint"
-    type_name: str = ""
 
 
 class UrdfTree:
@@ -67,6 +31,9 @@ class UrdfTree:
         joints: Names of the joints of each joint.
         parts: The robot's joints in it.
     """
+
+    #: The types of joint that are one joint of the file, beside those of one axis.
+    whole: tuple[JointType, ...] = ()
 
     def __init__(
         self, given: ExportInput, losses: Losses, is_readable: Callable[[str, bytes], bool] | None = None
@@ -82,23 +49,20 @@ class UrdfTree:
         self.parts: list[Part] = []
 
     def write(self) -> None:
-        """Write all links and joints, and record what every URDF loses."""
-        mechanism = self.mechanism
-        for body in mechanism.bodies:
-            self._link(body)
-        for joint in mechanism.joints:
-            self._joint(joint)
-
-    # -- links ------------------------------------------------------------------------------------------------------
-
-    def _link(self, body: Body) -> None:
-        link = etree.SubElement(self.root, "link", name=self.links[body.name])
-        inertia = self.inertia(body)
-        if inertia is not None:
-            add_inertial(link, inertia)
-        for tag, shapes in (("visual", body.visuals), ("collision", body.collisions)):
-            for shape in shapes:
-                self._shape(link, tag, shape)
+        """Write all links and joints."""
+        for body in self.mechanism.bodies:
+            link = etree.SubElement(self.root, "link", name=self.links[body.name])
+            inertia = self.inertia(body)
+            if inertia is not None:
+                add_inertial(link, inertia)
+            for tag, shapes in (("visual", body.visuals), ("collision", body.collisions)):
+                for shape in shapes:
+                    self._shape(link, tag, shape)
+        for joint in self.mechanism.joints:
+            if joint.type.is_fixed:
+                self.fixed(joint.name, joint.parent, self.links[joint.child], joint.placement * joint.offset)
+            else:
+                self._joint(joint)
 
     def inertia(self, body: Body) -> Inertia | None:
         """The inertia that is written of a body."""
@@ -110,160 +74,44 @@ class UrdfTree:
             name = self.meshes.path(name) or name
         add_shape(link, use, shape, name)
 
-    # -- joints -----------------------------------------------------------------------------------------------------
-
-    def steps(self, joint: Joint) -> Sequence[Step]:
-        """The joints, from the parent outwards, that a joint is."""
-        return plain_steps(joint)
-
-    def part(self, joint: Joint, names: Sequence[str], steps: Sequence[Step]) -> Part:
-        """The joint in the vectors of the model."""
-        if joint.type is JointType.SPHERICAL:
-            return Part(tuple(names), joint.name, joint.type, rotation="xyz")
-        if joint.type in (JointType.PLANAR, JointType.FLOATING):
-            return Part(tuple(names), joint.name, joint.type)
-        own = [(name, step.index) for name, step in zip(names, steps, strict=True) if step.index is not None]
-        ratios = tuple((index, 1.0, 0.0) for _, index in own)
-        return Part(tuple(name for name, _ in own), joint.name, joint.type, ratios)
+    def fixed(self, name: str, parent: str, child: str, placement: Pose) -> None:
+        """Add a fixed joint from a body to a link."""
+        self.joints[name] = (name,)
+        add_joint(self.root, name, JointType.FIXED, self.links[parent], child, placement, None)
 
     def _joint(self, joint: Joint) -> None:
-        steps = self.steps(joint)
-        parent, placement = self.links[joint.parent], joint.placement
-        names = []
-        for number, step in enumerate(steps):
-            name = joint.name if not step.suffix else self.names.new(joint.name + step.suffix)
-            last = number == len(steps) - 1 and joint.offset is IDENTITY
+        # The slide of a screw mimics the turn, which readers want first.
+        steps = sorted(in_series(joint, self.whole), key=lambda step: step.lead != 0.0)
+        parent, placement, names = self.links[joint.parent], joint.placement, []
+        for step in steps:
+            name = step.joint.name if step.joint.name == joint.name else self.names.new(step.joint.name)
+            last = step is steps[-1] and joint.offset is IDENTITY
             child = self.links[joint.child] if last else self.names.new(f"{name}_link")
             if not last:
                 etree.SubElement(self.root, "link", name=child)
-            element = add_joint(self.root, name, step.type, parent, child, placement, step.axis)
-            if step.tag != "joint":
-                element.tag, element.attrib["type"] = step.tag, step.type_name
+            axis = Z if step.joint.type is JointType.PLANAR else next(iter(step.joint.axes), None)
+            element = add_joint(self.root, name, self.type(joint, step), parent, child, placement, axis)
             self.add_properties(joint, step, element)
-            mimic = step.mimic or (joint.mimic if len(steps) == 1 else None)
-            if mimic is not None:
-                add_mimic(element, mimic)
+            if step.lead:
+                add_mimic(element, Mimic(joint.name, step.lead))
+            elif joint.mimic is not None:
+                add_mimic(element, joint.mimic)
             names.append(name)
             parent, placement = child, IDENTITY
         if joint.offset is not IDENTITY:
-            offset = joint.placement * joint.offset if joint.type.is_fixed else joint.offset
-            name = joint.name if joint.type.is_fixed else self.names.new(f"{joint.name}_offset")
-            add_joint(self.root, name, JointType.FIXED, parent, self.links[joint.child], offset, None)
+            name = self.names.new(f"{joint.name}_offset")
+            add_joint(self.root, name, JointType.FIXED, parent, self.links[joint.child], joint.offset, None)
         self.joints[joint.name] = tuple(names)
-        if not joint.type.is_fixed:
-            self.add_part(joint, names, steps)
+        self.add_part(joint, names, steps)
 
-    def add_part(self, joint: Joint, names: Sequence[str], steps: Sequence[Step]) -> None:
+    def type(self, joint: Joint, step: ExportedJoint) -> JointType:
+        """The type of one of the joints that a joint becomes."""
+        return step.joint.type
+
+    def add_properties(self, joint: Joint, step: ExportedJoint, element: etree._Element) -> None:
+        """Add what the file states of one of the joints that a joint becomes."""
+        raise NotImplementedError
+
+    def add_part(self, joint: Joint, names: Sequence[str], steps: Sequence[ExportedJoint]) -> None:
         """Add the joint to `parts`, unless it has no coordinates of its own."""
-        if joint.mimic is None:
-            self.parts.append(self.part(joint, names, steps))
-
-    def add_properties(self, joint: Joint, step: Step, element: etree._Element) -> None:
-        """Add limits and losses of one step of a joint."""
-        properties = joint.properties
-        at = step.index
-        if at is None:
-            if step.type is JointType.PRISMATIC:  # of a helical joint
-                add_limit(element, (-math.inf, math.inf), math.inf, math.inf)
-            if joint.type not in (JointType.PLANAR, JointType.FLOATING):
-                return
-            at = 0
-        position = None
-        if step.type in (JointType.REVOLUTE, JointType.PRISMATIC):
-            position = joint.ranges[at]
-        velocity = properties.velocity[at] if properties.velocity else math.inf
-        effort = properties.effort[at] if properties.effort else math.inf
-        rates = {name: values[at] for name, values in properties.rates.items() if math.isfinite(values[at])}
-        if position or math.isfinite(velocity) or math.isfinite(effort) or rates:
-            add_limit(element, position, effort, velocity, rates)
-        damping = properties.damping[at] if properties.damping else 0.0
-        friction = properties.friction[at] if properties.friction else 0.0
-        add_dynamics(element, damping, friction)
-
-
-class PlainTree(UrdfTree):
-    """A tree that has only the joint types of URDF, with frames as links; its losses are `PLAIN_LOSSES`."""
-
-    def write(self) -> None:
-        """Write links, joints and frames, and record what plain URDF loses."""
-        super().write()
-        state_version(self.root)
-        mechanism = self.mechanism
-        for frame in mechanism.frames:
-            name = self.names.new(frame.name)
-            etree.SubElement(self.root, "link", name=name)
-            fixed = self.names.new(f"{name}_fixed")
-            add_joint(self.root, fixed, JointType.FIXED, self.links[frame.body], name, frame.pose, None)
-        if mechanism.root == "floating":
-            # The coordinates are those of the URDF once it is loaded as the hint says.
-            self.parts.insert(0, Part((ROOT_JOINT,), ROOT_JOINT, JointType.FLOATING))
-
-    @cached_property
-    def _leaders(self) -> frozenset[str]:
-        """Names of the joints that others mimic."""
-        return frozenset(joint.mimic.joint for joint in self.mechanism.joints if joint.mimic is not None)
-
-    def steps(self, joint: Joint) -> Sequence[Step]:
-        """The joints, from the parent outwards, that a joint is: without limits, a revolute one is continuous.
-
-        Not where joints mimic: Pinocchio lets no revolute or prismatic joint mimic a continuous one.
-        """
-        if joint.type is not JointType.REVOLUTE or any(map(math.isfinite, joint.ranges[0])):
-            return super().steps(joint)
-        kind = joint.type if joint.mimic is not None or joint.name in self._leaders else JointType.CONTINUOUS
-        return [Step("", kind, joint.axes[0], 0)]
-
-    def part(self, joint: Joint, names: Sequence[str], steps: Sequence[Step]) -> Part:
-        """The joint in the vectors of Pinocchio's model: q has cosine and sine of the angle of a continuous joint."""
-        own = [step.type for step in steps if step.mimic is None]
-        circular = [index for index, kind in enumerate(own) if kind is JointType.CONTINUOUS]
-        if joint.type is JointType.PLANAR:
-            circular = [2]
-        return replace(super().part(joint, names, steps), circular=tuple(circular))
-
-    @property
-    def coordinates(self) -> Coordinates:
-        """From the vectors of the robot to those of Pinocchio's model of the file, with its mimic joints."""
-        rank = {name: number for number, name in enumerate(self._depth_first())}
-        parts = sorted(self.parts, key=lambda part: -1 if part.joint == ROOT_JOINT else rank[part.names[0]])
-        return Coordinates(tuple(parts), self._given.own, "xyzw", at_rest=False)
-
-    def _depth_first(self) -> Iterator[str]:
-        """Names of the joints in the order of Pinocchio: depth first, those of one link by their names."""
-        leaving: dict[str, list[tuple[str, str]]] = {}
-        for joint in self.root.findall("joint"):
-            name, parent, child = (str(joint.xpath(f"string({at})")) for at in ("@name", "parent/@link", "child/@link"))
-            leaving.setdefault(parent, []).append((name, child))
-        found = sorted(leaving.get(self.links[self.mechanism.bodies[0].name], ()), reverse=True)
-        while found:
-            name, child = found.pop()
-            yield name
-            found += sorted(leaving.get(child, ()), reverse=True)
-
-
-def plain_steps(joint: Joint) -> Sequence[Step]:
-    """The joints of plain URDF, from the parent outwards, that a joint is."""
-
-    def turning(index: int) -> JointType:
-        return JointType.REVOLUTE if any(map(math.isfinite, joint.ranges[index])) else JointType.CONTINUOUS
-
-    match joint.type:
-        case JointType.FIXED:
-            return [Step("", JointType.FIXED, None)] if joint.offset is IDENTITY else []
-        case JointType.PLANAR:
-            return [Step("", joint.type, AXES[2][1])]
-        case JointType.FLOATING:
-            return [Step("", joint.type, None)]
-        case JointType.SPHERICAL:
-            return [Step(suffix, JointType.CONTINUOUS, axis) for suffix, axis in AXES]
-        case JointType.UNIVERSAL:
-            return [Step(f"_{index + 1}", turning(index), joint.axes[index], index) for index in range(2)]
-        case JointType.CYLINDRICAL:
-            slide = Step("_slide", JointType.PRISMATIC, joint.axes[0], 0)
-            return [slide, Step("_turn", turning(1), joint.axes[0], 1)]
-        case JointType.HELICAL:
-            advance = Mimic(joint.name, joint.pitch / (2.0 * math.pi))
-            slide = Step("_slide", JointType.PRISMATIC, joint.axes[0], mimic=advance)
-            # Not continuous: the slide counts full turns, and Pinocchio lets none mimic a joint of (cos, sin).
-            return [Step("", JointType.REVOLUTE, joint.axes[0], 0), slide]
-    return [Step("", joint.type, joint.axes[0], 0)]
+        raise NotImplementedError

@@ -8,86 +8,35 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
 from importlib.util import find_spec
 from itertools import combinations, permutations
 
 import numpy as np
-import numpy.typing as npt
 
-from eurdf.convert.contacts import neighbours
-from eurdf.convert.coordinates import Coordinates, Part
-from eurdf.convert.export_format import ExportInput, ExportOutput, Format
+from eurdf.convert.conventions import neighbours, position_gain
+from eurdf.convert.coordinates import Coordinates
+from eurdf.convert.export_format import ExportInput, ExportOutput, Format, coordinates_at
 from eurdf.convert.inertia import about_centre, accepted_inertia, has_inertia
 from eurdf.convert.losses import Losses
-from eurdf.convert.mesh_file import mesh_names, report_unread
+from eurdf.convert.meshes import MeshFiles
 from eurdf.convert.names import UniqueNames
-from eurdf.convert.servo import position_gain
-from eurdf.convert.steps import is_skew
+from eurdf.convert.parts import UPRIGHT, Part
+from eurdf.convert.steps import in_series
 from eurdf.convert.usd.facts import CLOSURES, DAMPING_TIME, EXACT, LEAST, LEAST_MOMENT, ROWS
+from eurdf.convert.usd.joints import KINDS, WHOLE, Freedom, axis_and_frame, freedoms
 from eurdf.diagnostics.extras import install_command
 from eurdf.exceptions import MissingExtra
 from eurdf.mechanism.body import Body, Shape
-from eurdf.mechanism.constraint import (
-    Closure,
-    Coupling,
-    DistanceClosure,
-    HingeClosure,
-)
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.constraint import Closure, Coupling, DistanceClosure, HingeClosure
+from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
-from eurdf.mechanism.mimic import Mimic, drivers
-from eurdf.mechanism.pose import IDENTITY, Pose, Quaternion, Vector3, direction
+from eurdf.mechanism.mimic import Mimic
+from eurdf.mechanism.pose import IDENTITY, Pose, turn_from_x
 from eurdf.mechanism.spanning_tree import rigid_roots
 
 _DEGREES = 180.0 / math.pi
-_UPRIGHT: Quaternion = (0.0, 0.0, 0.0, 1.0)
-
-#: Axis tokens of directions that need no turn of the frame.
-_TOKENS: dict[Vector3, str] = {(1.0, 0.0, 0.0): "X", (0.0, 1.0, 0.0): "Y", (0.0, 0.0, 1.0): "Z"}
-
-
-@dataclass(frozen=True, slots=True)
-class _Freedom:
-    """A free axis of a USD joint.
-
-    Attributes:
-        axis: Its name: ``angular`` or ``linear`` of a joint with one axis, else ``transX`` to ``rotZ``.
-        index: Index of the coordinate and the velocity of the joint that it has.
-        advance: Of the translation of a helical joint its length for 1 rad, m; else None.
-    """
-
-    axis: str
-    index: int
-    advance: float | None = None
-
-    @property
-    def turns(self) -> bool:
-        """Whether it is a rotation."""
-        return self.axis == "angular" or self.axis.startswith("rot")
-
-
-@dataclass(frozen=True, slots=True)
-class _Step:
-    """A USD joint: one of those, in order, that a joint of the mechanism is.
-
-    Attributes:
-        suffix: What its name has after that of the joint.
-        kind: ``fixed``, ``revolute``, ``prismatic``, ``spherical`` or ``d6``.
-        joint: The same joint in terms of the mechanism, for its transform.
-        turn: Orientation of its frames in those of the joint.
-        axis: Of a revolute or prismatic joint: ``X``, ``Y`` or ``Z`` of its frames.
-        freedoms: Its free axes; none of a spherical joint.
-    """
-
-    suffix: str
-    kind: str
-    joint: Joint
-    turn: Quaternion = _UPRIGHT
-    axis: str = ""
-    freedoms: tuple[_Freedom, ...] = ()
 
 
 def write(given: ExportInput, losses: Losses) -> ExportOutput:
@@ -100,42 +49,31 @@ def write(given: ExportInput, losses: Losses) -> ExportOutput:
     if find_spec("pxr") is None:
         message = "the package that writes USD is not installed; install it with: "
         raise MissingExtra(message + install_command("usd"), "usd")
-    return _Writer(given, losses).write()
+    return _UsdWriter(given, losses).write()
 
 
-class _Writer:
+class _UsdWriter:
     """A stage while it is written."""
 
     def __init__(self, given: ExportInput, losses: Losses) -> None:
-        from eurdf.convert.usd.stage import UsdStage  # loads the libraries of USD
+        from eurdf.convert.usd.stage import UsdStage, mesh_file  # loads the libraries of USD
 
-        self.given, self.mechanism = given, given.mechanism
-        self.losses = losses
+        self.given, self.mechanism, self.losses = given, given.mechanism, losses
         self.bodies, self.joints, self.closures, self.shapes = (
-            UniqueNames(self.losses, representable=_identifier) for _ in range(4)
+            UniqueNames(losses, representable=_identifier) for _ in range(4)
         )
-        name = UniqueNames(self.losses, representable=_identifier).new(self.mechanism.name)
+        name = UniqueNames(losses, representable=_identifier).new(self.mechanism.name)
         self.stage = UsdStage(name, self.mechanism.name)
         #: For each link, the path of the rigid body that has it, and its pose there.
         self.hosts: dict[str, tuple[str, Pose]] = {}
         self.poses: dict[str, Pose] = {}
-        #: The USD joints of each joint.
-        self.paths: dict[str, tuple[str, ...]] = {}
-        self.steps: dict[str, tuple[_Step, ...]] = {}
+        #: The first USD joint of each joint: its path and its kind.
+        self.first: dict[str, tuple[str, str]] = {}
         self.jointed: set[frozenset[str]] = set()
         self.followers: set[str] = set()
         self.parts: list[Part] = []
-        self.start: Mapping[str, tuple[float, ...]] = next(iter(given.configurations.values()), {})
-        self.mimics = drivers(
-            {
-                joint.name: joint.mimic
-                for joint in self.mechanism.joints
-                if joint.mimic is not None and joint.type.is_axial
-            }
-        )
-        self.mesh_names = mesh_names(given.meshes)
-        self.meshes: dict[str, str | None] = {}
-        self.files: dict[str, bytes] = {}
+        self.mimics = given.mimics
+        self.meshes = MeshFiles(given, losses, lambda name, content: False, (".usdc", mesh_file))
 
     def write(self) -> ExportOutput:
         mechanism, losses = self.mechanism, self.losses
@@ -150,7 +88,8 @@ class _Writer:
             host, pose = self.hosts[frame.body]
             self.stage.frame(host, self.shapes.new(frame.name), pose * frame.pose, frame.name)
         for closure in mechanism.closures:
-            self._closure(closure)
+            if closure.type in CLOSURES:
+                self._closure(closure)
         for coupling in mechanism.couplings:
             self._coupling(coupling)
         self._no_contacts()
@@ -158,15 +97,15 @@ class _Writer:
         for name in others:
             losses.add("export-configurations", name)
         coordinates = Coordinates(tuple(self.parts), self.given.own, "xyzw", at_rest=False)
-        return ExportOutput({"robot.usda": self.stage.content(), **self.files}, coordinates)
+        return ExportOutput({"robot.usda": self.stage.content(), **self.meshes.files}, coordinates)
 
     # -- bodies -----------------------------------------------------------------------------------------------------
 
     def _root_body(self, body: Body) -> None:
         fixed = self.mechanism.root == "fixed"
         pose = IDENTITY
-        if not fixed and ROOT_JOINT in self.start:
-            x, y, z, qx, qy, qz, qw = self.start[ROOT_JOINT]
+        if not fixed and ROOT_JOINT in self.given.start:
+            x, y, z, qx, qy, qz, qw = self.given.start[ROOT_JOINT]
             norm = math.hypot(qx, qy, qz, qw)
             pose = Pose((x, y, z), (qx / norm, qy / norm, qz / norm, qw / norm))
         path = self._rigid_body(body, pose)
@@ -202,153 +141,118 @@ class _Writer:
     # -- joints -----------------------------------------------------------------------------------------------------
 
     def _joint(self, joint: Joint, body: Body) -> None:
-        steps = _steps(joint)
         if joint.type.is_fixed and not has_inertia(body):
             self._fixed_frame(body, joint.parent, joint.placement * joint.offset)
             return
-        coordinates = self._coordinates(joint)
+        coordinates = coordinates_at(self.given.start, joint, self.mimics.get(joint.name))
         host, at = self.hosts[joint.parent]
         pose, placement = self.poses[joint.parent], joint.placement
-        paths = []
-        for number, step in enumerate(steps):
-            last = number == len(steps) - 1
+        names, ratios = [], []
+        steps = in_series(joint, WHOLE)
+        for step in steps:
+            last = step is steps[-1]
             offset = joint.offset if last else IDENTITY
-            own = coordinates if len(steps) == 1 else (coordinates[number],)
-            moved = step.joint.transform(own)
-            pose = pose * placement * moved * offset
-            name = self.joints.new(joint.name + step.suffix)
+            own = step.of(coordinates)
+            pose = pose * placement * step.joint.transform(own) * offset
+            name = self.joints.new(step.joint.name)
             if last:
                 child = self._rigid_body(body, pose)
             else:
                 child = self.stage.body(self.bodies.new(f"{name}_body"), pose)
                 self.stage.mass(child, LEAST, (0.0, 0.0, 0.0), LEAST * np.eye(3))
-            turn = Pose(quaternion=step.turn)
+            kind, (axis, orientation) = KINDS.get(step.joint.type, "d6"), axis_and_frame(step.joint)
+            turn = Pose(quaternion=orientation)
             ends = (host, at * placement * turn), (child, offset.inverse() * turn)
             shown = joint.name if len(steps) == 1 else ""
-            path = self.stage.joint("joints", name, step.kind, ends, axis=step.axis, shown=shown)
+            path = self.stage.joint("joints", name, kind, ends, axis=axis, shown=shown)
             self.jointed.add(frozenset((host, child)))
-            self._axes(joint, step, path, own)
-            paths.append(path)
+            self.first.setdefault(joint.name, (path, kind))
+            free = list(freedoms(step.joint))
+            self._axes(joint.name, step.joint, kind, path, own, free)
+            names.append(name)
+            ratios += [(step.velocities[each.index], each.lead or 1.0, 0.0) for each in free]
             host, at, placement = child, IDENTITY, IDENTITY
-        self.paths[joint.name], self.steps[joint.name] = tuple(paths), steps
-        self._part(joint, steps, [path.rpartition("/")[2] for path in paths])
+        if not joint.type.is_fixed:
+            self.parts.append(Part.of(joint, names, ratios, self.mimics.get(joint.name)))
 
-    def _coordinates(self, joint: Joint) -> tuple[float, ...]:
-        """Those of the start, as files have them."""
-        mimic = self.mimics.get(joint.name)
-        if mimic is not None:
-            (leader,) = self.start.get(mimic.joint, (0.0,))
-            return (mimic.multiplier * leader + mimic.offset,)
-        return tuple(self.start.get(joint.name, joint.type.neutral))
-
-    def _part(self, joint: Joint, steps: Sequence[_Step], names: Sequence[str]) -> None:
-        if joint.type.is_fixed:
-            return
-        mimic = self.mimics.get(joint.name)
-        if mimic is not None:
-            ratios: tuple[tuple[int, float, float], ...] = ((0, mimic.multiplier, mimic.offset),)
-            self.parts.append(Part(tuple(names), mimic.joint, joint.type, ratios, mimics=True))
-        elif joint.type in (JointType.PLANAR, JointType.SPHERICAL, JointType.FLOATING):
-            self.parts.append(Part(tuple(names), joint.name, joint.type))
-        else:
-            freedoms = (freedom for step in steps for freedom in step.freedoms)
-            ratios = tuple((each.index, 1.0 if each.advance is None else each.advance, 0.0) for each in freedoms)
-            self.parts.append(Part(tuple(names), joint.name, joint.type, ratios))
-
-    def _axes(self, joint: Joint, step: _Step, path: str, own: Sequence[float]) -> None:
+    def _axes(
+        self, name: str, joint: Joint, kind: str, path: str, own: Sequence[float], freedoms: Sequence[Freedom]
+    ) -> None:
         """Limits, drives and states of the axes of a USD joint, and what only schemas of simulators have."""
-        if step.kind == "d6":
-            self.stage.lock_others(path, [freedom.axis for freedom in step.freedoms])
-        for freedom in step.freedoms:
-            if joint.type is JointType.FLOATING:  # its rotation has no coordinate for each axis
-                position = None
-            else:
-                position = own[freedom.index if len(own) > 1 else 0] * (freedom.advance or 1.0)
+        if kind == "d6":
+            self.stage.lock_others(path, [freedom.axis for freedom in freedoms])
+        turns_as_ball = joint.type.quaternion is not None  # then, no rotation has a coordinate of its own
+        for freedom in freedoms:
+            position = 0.0
+            if not turns_as_ball:
+                position = own[freedom.index] * (freedom.lead or 1.0)
                 self.stage.state(path, freedom.axis, position)
-            # The rotation of a floating joint has no coordinate for each axis.
-            turns = joint.type is JointType.FLOATING and freedom.index >= 3
-            unlimited = turns or freedom.advance is not None
-            lower, upper = (-math.inf, math.inf) if unlimited else joint.ranges[freedom.index]
+            is_unlimited = (turns_as_ball and freedom.turns) or freedom.lead is not None
+            lower, upper = (-math.inf, math.inf) if is_unlimited else joint.ranges[freedom.index]
             self.stage.limits(path, freedom.axis, lower, upper)
-            if freedom.advance is None:
-                self._drive(joint, path, freedom, position or 0.0)
-        if step.kind == "spherical":
-            self._undriven(joint)
-        if step.kind != "fixed":
-            self._numbers_of_simulators(joint, step, path)
+            if freedom.lead is None:
+                self._drive(name, joint.properties, path, freedom, position)
+        if kind == "spherical" and any(map(math.isfinite, joint.properties.effort)):
+            self.losses.add("export-effort-limit", name)
+        if kind != "fixed":
+            self._numbers_of_simulators(name, joint.properties, freedoms, path)
 
-    def _drive(self, joint: Joint, path: str, freedom: _Freedom, position: float) -> None:
-        properties, index = joint.properties, freedom.index
+    def _drive(self, name: str, properties: JointProperties, path: str, freedom: Freedom, position: float) -> None:
+        index = freedom.index
         damping = properties.damping[index] if properties.damping else 0.0
         stiffness = properties.stiffness[index] if properties.stiffness else 0.0
         target = properties.rest[index] if stiffness else 0.0
         effort = properties.effort[index] if properties.effort else math.inf
-        shown = self._actuator(joint)
-        if shown is None:
+        if name not in self.mechanism.actuators or self.given.actuators == "none":
             if math.isfinite(effort):
-                self.losses.add("export-effort-limit", joint.name)
+                self.losses.add("export-effort-limit", name)
             if damping or stiffness:
                 self.stage.drive(path, freedom.axis, stiffness, damping, target, math.inf)
             return
-        motor = self.mechanism.motor(joint.name)
+        motor = self.mechanism.motor(name)
         most = effort if effort > 0.0 else math.inf
         if motor.control is not None:
             lower, upper = motor.control
             most = min(most, max(-lower, upper))
         if self.given.actuators == "position":
             if stiffness:
-                self.losses.add("export-spring", joint.name)
+                self.losses.add("export-spring", name)
             stiffness, target = position_gain(effort), position
             damping += DAMPING_TIME * stiffness
             message = f"stiffness is {stiffness:g}, damping {damping:g} (N, m, rad, s)"
-            self.losses.add("export-position-gain", shown, message)
+            self.losses.add("export-position-gain", motor.name, message)
         self.stage.drive(path, freedom.axis, stiffness, damping, target, most)
 
-    def _actuator(self, joint: Joint) -> str | None:
-        """The name of the actuator of a joint, if it is to have one; with what is lost of it."""
-        if joint.name not in self.mechanism.actuators:
-            return None
-        shown = self.mechanism.motor(joint.name).name
-        if self.given.actuators == "none":
-            return None
-        return shown
-
-    def _undriven(self, joint: Joint) -> None:
-        """What a spherical joint loses, which has no drive."""
-        if any(math.isfinite(effort) for effort in joint.properties.effort):
-            self.losses.add("export-effort-limit", joint.name)
-
-    def _numbers_of_simulators(self, joint: Joint, step: _Step, path: str) -> None:
-        properties = joint.properties
-        ball = step.kind == "spherical"
-        mine = [freedom.index for freedom in step.freedoms] or range(3)
+    def _numbers_of_simulators(
+        self, name: str, properties: JointProperties, freedoms: Sequence[Freedom], path: str
+    ) -> None:
+        """What Newton and PhysX have of a joint, and USD does not; it is one number for all axes."""
+        mine = [freedom.index for freedom in freedoms] or range(3)  # a spherical joint
 
         def mean(values: tuple[float, ...]) -> float:
             return math.fsum(values[index] for index in mine) / len(mine) if values else 0.0
 
-        velocity = (
-            min((properties.velocity[index] for index in mine), default=math.inf) if properties.velocity else math.inf
-        )
-        turning = {freedom.turns for freedom in step.freedoms} or {True}
+        armature, friction, damping = map(mean, (properties.armature, properties.friction, properties.damping))
+        velocity = min((properties.velocity[index] for index in mine if properties.velocity), default=math.inf)
+        turning = {freedom.turns for freedom in freedoms} or {True}
         if len(turning) > 1:
             if any(properties.armature) or any(properties.friction) or math.isfinite(velocity):
-                self.losses.add("export-mixed-axes", joint.name)
+                self.losses.add("export-mixed-axes", name)
             return
         newton: dict[str, float] = {}
         physx: dict[str, float] = {}
-        armature, friction = mean(properties.armature), mean(properties.friction)
         if armature:
             newton["newton:armature"] = physx["physxJoint:armature"] = armature
-            self.losses.add("export-armature", joint.name)
+            self.losses.add("export-armature", name)
         if friction:
             newton["newton:friction"] = friction
-            self.losses.add("export-friction", joint.name)
-        if ball and mean(properties.damping):
-            newton["newton:damping"] = mean(properties.damping) / _DEGREES
+            self.losses.add("export-friction", name)
+        if damping and not freedoms:
+            newton["newton:damping"] = damping / _DEGREES
         if math.isfinite(velocity):
             velocity *= _DEGREES if True in turning else 1.0
             newton["newton:velocityLimit"] = physx["physxJoint:maxJointVelocity"] = velocity
-            self.losses.add("export-velocity-limit", joint.name)
+            self.losses.add("export-velocity-limit", name)
         for schema, values in (("NewtonJointAPI", newton), ("PhysxJointAPI", physx)):
             if values:
                 self.stage.numbers_of_simulators(path, schema, values)
@@ -362,28 +266,25 @@ class _Writer:
 
     def _mimic(self, name: str, mimic: Mimic) -> bool:
         """Let a joint follow another one; returns False if it cannot."""
-        step, leader = self.steps[name][0], self.steps[mimic.joint][0]
-        if name in self.followers or step.kind != leader.kind or step.kind not in ("revolute", "prismatic"):
+        (path, kind), (leader, other) = self.first[name], self.first[mimic.joint]
+        if name in self.followers or kind != other or kind not in ("revolute", "prismatic"):
             return False
-        offset = mimic.offset * (_DEGREES if step.kind == "revolute" else 1.0)
-        self.stage.mimic(self.paths[name][0], self.paths[mimic.joint][0], mimic.multiplier, offset)
+        offset = mimic.offset * (_DEGREES if kind == "revolute" else 1.0)
+        self.stage.mimic(path, leader, mimic.multiplier, offset)
         self.followers.add(name)
         return True
 
     # -- constraints ------------------------------------------------------------------------------------------------
 
     def _closure(self, closure: Closure) -> None:
-        kind = CLOSURES.get(closure.type)
-        if kind is None:
-            return
-        axis, turns = "", (_UPRIGHT, _UPRIGHT)
+        axis, turns = "", (UPRIGHT, UPRIGHT)
         if isinstance(closure, HingeClosure):
-            axis, turns = "X", (_to_x(closure.axes[0]), _to_x(closure.axes[1]))
+            axis, turns = "X", (turn_from_x(closure.axes[0]), turn_from_x(closure.axes[1]))
         ends = []
-        for anchor, turn in zip((closure.a, closure.b), turns, strict=True):
+        for anchor, turn in zip(closure.anchors, turns, strict=True):
             host, pose = self.hosts[anchor.body]
             ends.append((host, pose * anchor.pose * Pose(quaternion=turn)))
-        name = self.closures.new(closure.name)
+        kind, name = CLOSURES[closure.type], self.closures.new(closure.name)
         path = self.stage.joint("closures", name, kind, ends, axis=axis, closes=True, shown=closure.name)
         if isinstance(closure, DistanceClosure):
             self.stage.distance(path, closure.length)
@@ -417,27 +318,6 @@ class _Writer:
 
     # -- shapes -----------------------------------------------------------------------------------------------------
 
-    def _mesh(self, uri: str) -> str | None:
-        """The path of the file of a mesh, made if there is none yet; None if the mesh is left out."""
-        from eurdf.convert.usd.stage import mesh_file
-
-        if uri in self.meshes:
-            return self.meshes[uri]
-        path = self.meshes[uri] = None
-        if report_unread(self.given, uri, self.losses):
-            return None
-        if (triangles := self.given.read_mesh(self.given.meshes[uri])) is None:
-            self.losses.add("export-mesh-format", uri)
-        else:
-            path = self.meshes[uri] = f"meshes/{self.mesh_names[uri]}.usdc"
-            self.files[path] = mesh_file(triangles.vertices, triangles.triangles)
-            self.losses.add("export-mesh-converted", uri)
-            if self.given.mesh_files == "reference":
-                self.losses.add("export-mesh-not-referenced", uri)
-            if uri.startswith("package://"):
-                self.losses.add("export-mesh-path", uri, f"becomes '{path}'")
-        return path
-
     def _shapes(self, body: Body) -> None:
         host, pose = self.hosts[body.name]
         for use, shapes in (("visual", body.visuals), ("collision", body.collisions)):
@@ -446,7 +326,7 @@ class _Writer:
 
     def _shape(self, host: str, pose: Pose, name: str, shape: Shape, use: str) -> None:
         if shape.kind == "mesh":
-            file = self._mesh(shape.filename)
+            file = self.meshes.path(shape.filename)
             if file is None:
                 return
             path = self.stage.mesh(host, self._shape_name(name), file, shape.size, pose * shape.pose)
@@ -462,64 +342,6 @@ class _Writer:
     def _shape_name(self, name: str) -> str:
         """A name that nobody gave: that it changes is no loss."""
         return self.shapes.new(_identifier(name))
-
-
-def _steps(joint: Joint) -> tuple[_Step, ...]:
-    """The USD joints, from the parent outwards, that a joint is."""
-    match joint.type:
-        case JointType.FIXED:
-            return (_Step("", "fixed", joint),)
-        case JointType.REVOLUTE | JointType.CONTINUOUS:
-            return (_single("", "revolute", joint, joint.axes[0], 0),)
-        case JointType.PRISMATIC:
-            return (_single("", "prismatic", joint, joint.axes[0], 0),)
-        case JointType.SPHERICAL:
-            return (_Step("", "spherical", joint),)
-        case JointType.CYLINDRICAL:
-            return (_Step("", "d6", joint, _to_x(joint.axes[0]), "", _freedoms("transX", "rotX")),)
-        case JointType.PLANAR:
-            return (_Step("", "d6", joint, freedoms=_freedoms("transX", "transY", "rotZ")),)
-        case JointType.FLOATING:
-            axes = _freedoms("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
-            return (_Step("", "d6", joint, freedoms=axes),)
-        case JointType.HELICAL:
-            advance = _Freedom("transX", 0, joint.pitch / (2.0 * math.pi))
-            return (_Step("", "d6", joint, _to_x(joint.axes[0]), "", (advance, _Freedom("rotX", 0))),)
-    first, second = (np.array(direction(axis)) for axis in joint.axes)
-    if not is_skew(joint):
-        turn = _columns(np.stack((first, second, np.cross(first, second)), axis=1))
-        return (_Step("", "d6", joint, turn, "", _freedoms("rotX", "rotY")),)
-    halves = (replace(joint, type=JointType.REVOLUTE, axes=(axis,)) for axis in joint.axes)
-    return tuple(_single(f"_{index + 1}", "revolute", half, half.axes[0], index) for index, half in enumerate(halves))
-
-
-def _freedoms(*axes: str) -> tuple[_Freedom, ...]:
-    return tuple(_Freedom(axis, index) for index, axis in enumerate(axes))
-
-
-def _single(suffix: str, kind: str, joint: Joint, axis: Vector3, index: int) -> _Step:
-    unit = direction(axis)
-    token = _TOKENS.get(unit)
-    freedom = _Freedom("angular" if kind == "revolute" else "linear", index)
-    return _Step(suffix, kind, joint, _UPRIGHT if token else _to_x(axis), token or "X", (freedom,))
-
-
-def _to_x(axis: Vector3) -> Quaternion:
-    """An orientation whose x axis is along an axis: the smallest rotation."""
-    x, y, z = direction(axis)
-    if x < -1.0 + 1e-12:
-        return 0.0, 0.0, 1.0, 0.0
-    w = 1.0 + x
-    norm = math.hypot(w, y, z)
-    return 0.0, -z / norm, y / norm, w / norm
-
-
-def _columns(R: npt.NDArray[np.float64]) -> Quaternion:
-    """The quaternion of a rotation matrix."""
-    one = Pose(quaternion=_to_x((R[0, 0], R[1, 0], R[2, 0])))
-    y = one.inverse().rotate((R[0, 1], R[1, 1], R[2, 1]))
-    half = math.atan2(y[2], y[1]) / 2.0
-    return (one * Pose(quaternion=(math.sin(half), 0.0, 0.0, math.cos(half)))).quaternion
 
 
 def _identifier(name: str) -> str:

@@ -21,6 +21,7 @@ from eurdf.convert.verification.read_model import (
     Exported,
     Instant,
     Range,
+    ReadModel,
     anchored,
     opening_of,
 )
@@ -87,12 +88,11 @@ class Plant:
         return tuple(found)
 
 
-class DrakeModel:
+class DrakeModel(ReadModel):
     """A URDF for Drake; see `ReadModel`."""
 
     reader = READER
-    unverified: tuple[str, ...] = ("the robot falls without contacts: its shapes are not read",)
-    tolerance = mass_tolerance = 1e-6
+    unverified = ("the robot falls without contacts: its shapes are not read",)
     step = 1e-3
     shorter = "divide the time step of MultibodyPlant by 2"
 
@@ -108,25 +108,23 @@ class DrakeModel:
         self._balls = self._read_balls()
 
     @property
-    def mass(self) -> float:  # noqa: D102
+    def mass(self) -> float:
         return float(self._here.plant.CalcTotalMass(self._here.context))
 
-    def mass_matrix(self, q: Vector) -> Matrix:  # noqa: D102
+    def mass_matrix(self, q: Vector) -> Matrix:
         self._at(self._here, q)
         T = self.coordinates.rates(q)
         return np.asarray(T.T @ self._here.mass_matrix @ T)
 
-    def openings(self, q: Vector) -> tuple[Opening, ...]:  # noqa: D102
+    def openings(self, q: Vector) -> tuple[Opening, ...]:
         self._at(self._here, q)
         return self._openings(self._here)
 
-    def ranges(self, q: Vector) -> tuple[Range, ...]:  # noqa: D102
+    def ranges(self, q: Vector) -> tuple[Range, ...]:
         self._at(self._here, q)
         return self._here.ranges
 
-    def fall(  # noqa: D102
-        self, q: Vector, seconds: float, *, slower: int = 1, contacts: bool = True
-    ) -> Iterator[Instant]:
+    def fall(self, q: Vector, seconds: float, *, slower: int = 1, contacts: bool = True) -> Iterator[Instant]:
         step = self.step / slower
         there = Plant(self._text, "urdf", step)
         simulator = Simulator(there.plant)
@@ -181,7 +179,7 @@ def _relations(exported: Exported, positions: Any) -> Iterator[Opening]:
                 yield opening
 
 
-class SdfTree:
+class SdfTree(ReadModel):
     """An SDFormat file in Drake, which refuses joints with two parents: its loops are left out. See `ReadModel`."""
 
     reader = READER
@@ -189,12 +187,8 @@ class SdfTree:
         "Drake reads the tree alone: the joints that close loops are compared by the poses of their links",
         "the fall is not simulated: Drake has no loop joints; simulate it where the file is used",
     )
-    tolerance = 1e-6
     # Links between the joints that a joint becomes have 1e-9 kg and kg·m², which small robots notice.
     mass_tolerance = 1e-4
-    step = 0.0
-    shorter = ""
-    velocities: tuple[tuple[str, str], ...] = ()
 
     def __init__(self, exported: Exported) -> None:
         self._exported = exported
@@ -206,14 +200,14 @@ class SdfTree:
         self.there = Plant(etree.tostring(sdf, encoding="unicode"), "sdf")
 
     @property
-    def mass(self) -> float:  # noqa: D102
+    def mass(self) -> float:
         return float(self.there.plant.CalcTotalMass(self.there.context))
 
-    def mass_matrix(self, q: Vector) -> Matrix:  # noqa: D102
+    def mass_matrix(self, q: Vector) -> Matrix:
         T = self.at(q)
         return np.asarray(T.T @ self.there.mass_matrix @ T)
 
-    def openings(self, q: Vector) -> tuple[Opening, ...]:  # noqa: D102
+    def openings(self, q: Vector) -> tuple[Opening, ...]:
         self.at(q)
         written = {(loop.findtext("parent"), loop.findtext("child")) for loop in self.loops}
         return tuple(
@@ -222,14 +216,9 @@ class SdfTree:
             if (closure.a.body, closure.b.body) in written
         )
 
-    def ranges(self, q: Vector) -> tuple[Range, ...]:  # noqa: D102
+    def ranges(self, q: Vector) -> tuple[Range, ...]:
         self.at(q)
         return self.there.ranges
-
-    def fall(  # noqa: D102
-        self, q: Vector, seconds: float, *, slower: int = 1, contacts: bool = True
-    ) -> Iterator[Instant]:
-        return iter(())
 
     def at(self, q: Vector) -> Matrix:
         """Move to q (nq,) of the robot; returns T: Drake's velocities are T v."""

@@ -9,8 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eurdf.convert.coordinates import Coordinates, Matrix, Vector
-from eurdf.convert.verification.finding import Finding
-from eurdf.convert.verification.read_model import Diverged, Instant, ReadModel
+from eurdf.convert.verification.read_model import Diverged, Finding, Instant, ReadModel
 from eurdf.diagnostics import enumerated
 from eurdf.kinematics.mass_matrix import mass_matrix
 from eurdf.kinematics.opening import Opening

@@ -9,19 +9,17 @@ import mujoco
 import numpy as np
 
 from eurdf.convert.coordinates import Matrix, Vector
-from eurdf.convert.verification.read_model import CannotRead, Diverged, Exported, Instant, Range
+from eurdf.convert.verification.read_model import CannotRead, Diverged, Exported, Instant, Range, ReadModel
 from eurdf.kinematics.opening import Opening
 
 _SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
 _BAD = (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC)
 
 
-class MuJoCoModel:
+class MuJoCoModel(ReadModel):
     """See `ReadModel`. What MuJoCo says of each equality of the file is its opening."""
 
     reader = f"MuJoCo {mujoco.__version__}"
-    unverified: tuple[str, ...] = ()
-    tolerance = mass_tolerance = 1e-6
     shorter = "divide timestep, and the first number of solref, by 2 in the file"
 
     def __init__(self, exported: Exported) -> None:
@@ -41,10 +39,10 @@ class MuJoCoModel:
         self._scales = [self._scale(equality) for equality in range(self.model.neq)]
 
     @property
-    def mass(self) -> float:  # noqa: D102
+    def mass(self) -> float:
         return float(self.model.body_mass.sum())
 
-    def mass_matrix(self, q: Vector) -> Matrix:  # noqa: D102
+    def mass_matrix(self, q: Vector) -> Matrix:
         self._at(q)
         T = self.coordinates.rates(q)
         found = np.zeros((self.model.nv, T.shape[1]))
@@ -54,11 +52,11 @@ class MuJoCoModel:
             column[:] = product
         return np.asarray(T.T @ found)
 
-    def openings(self, q: Vector) -> tuple[Opening, ...]:  # noqa: D102
+    def openings(self, q: Vector) -> tuple[Opening, ...]:
         self._at(q)
         return self._openings()
 
-    def ranges(self, q: Vector) -> tuple[Range, ...]:  # noqa: D102
+    def ranges(self, q: Vector) -> tuple[Range, ...]:
         self._at(q)
         model, qpos = self.model, self.data.qpos
         return tuple(
@@ -66,9 +64,7 @@ class MuJoCoModel:
             for joint in np.flatnonzero(model.jnt_limited)
         )
 
-    def fall(  # noqa: D102
-        self, q: Vector, seconds: float, *, slower: int = 1, contacts: bool = True
-    ) -> Iterator[Instant]:
+    def fall(self, q: Vector, seconds: float, *, slower: int = 1, contacts: bool = True) -> Iterator[Instant]:
         model, data = self.model, self.data
         flags, step, solref = model.opt.disableflags, model.opt.timestep, model.eq_solref.copy()
         model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_ACTUATION  # else position servos move to 0

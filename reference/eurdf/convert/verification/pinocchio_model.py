@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -10,19 +9,15 @@ import pinocchio as pin
 from lxml import etree
 
 from eurdf.convert.coordinates import Matrix, Vector
-from eurdf.convert.verification.read_model import CannotRead, Exported, Instant, Range, opening_of
+from eurdf.convert.verification.read_model import CannotRead, Exported, Range, ReadModel, opening_of
 from eurdf.kinematics.opening import Opening
 
 
-class PinocchioModel:
+class PinocchioModel(ReadModel):
     """See `ReadModel`. Pinocchio reads the tree; loop joints are read from the file, and moved with its frames."""
 
     reader = f"Pinocchio {pin.__version__}"
-    unverified: tuple[str, ...] = ("the fall is not simulated: Pinocchio reads no loops",)
-    tolerance = mass_tolerance = 1e-6
-    step = 0.0
-    shorter = ""
-    velocities: tuple[tuple[str, str], ...] = ()
+    unverified = ("the fall is not simulated: Pinocchio reads no loops",)
 
     def __init__(self, exported: Exported) -> None:
         self._exported, text = exported, exported.path.read_bytes()
@@ -39,22 +34,22 @@ class PinocchioModel:
         }
 
     @property
-    def mass(self) -> float:  # noqa: D102
+    def mass(self) -> float:
         return sum(float(each.mass) for each in self.model.inertias)
 
-    def mass_matrix(self, q: Vector) -> Matrix:  # noqa: D102
+    def mass_matrix(self, q: Vector) -> Matrix:
         values, T = self._moved(q)
         M = np.triu(pin.crba(self.model, self.data, values))
         return np.asarray(T.T @ (M + np.triu(M, 1).T) @ T)
 
-    def openings(self, q: Vector) -> tuple[Opening, ...]:  # noqa: D102
+    def openings(self, q: Vector) -> tuple[Opening, ...]:
         values, _ = self._moved(q)
         pin.framesForwardKinematics(self.model, self.data, values)
         loops = {loop.get("name"): loop for loop in self._file.iterfind("loop_joint")}
         closures = (each for each in self._exported.robot.mechanism.closures if each.name in loops)
         return tuple(self._opening(closure, loops[closure.name]) for closure in closures)
 
-    def ranges(self, q: Vector) -> tuple[Range, ...]:  # noqa: D102
+    def ranges(self, q: Vector) -> tuple[Range, ...]:
         values, _ = self._moved(q)
         found = []
         for name, joint in list(zip(self.model.names, self.model.joints, strict=True))[1:]:  # after the universe
@@ -63,11 +58,6 @@ class PinocchioModel:
                 limits = self.model.lowerPositionLimit[at], self.model.upperPositionLimit[at]
                 found.append(Range(name, float(values[at]), *map(float, limits)))
         return tuple(found)
-
-    def fall(  # noqa: D102
-        self, q: Vector, seconds: float, *, slower: int = 1, contacts: bool = True
-    ) -> Iterator[Instant]:
-        return iter(())
 
     def _moved(self, q: Vector) -> tuple[Vector, Matrix]:
         """Pinocchio's configuration at q (nq,) of the robot, and T: its velocities are T v. Mimic joints follow."""

@@ -1,11 +1,12 @@
-"""What a program reads of an exported file: the seam between a simulator and the comparison."""
+"""What a program reads of an exported file: the seam between a simulator and the comparison, and what is found."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 import pinocchio as pin
@@ -16,6 +17,22 @@ from eurdf.mechanism.constraint import Closure, DistanceClosure, FrameClosure, H
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.pose import direction
 from eurdf.pinocchio.robot import Robot, build_robot
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """Something that is wrong with a file that was read back.
+
+    Attributes:
+        message: What is wrong, with its values.
+        causes: What was seen of the cause, and what to do, each a sentence.
+    """
+
+    message: str
+    causes: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        return "; ".join((self.message, *self.causes))
 
 
 class CannotRead(Exception):  # noqa: N818 - it never leaves the comparison
@@ -87,47 +104,48 @@ class Diverged(Exception):  # noqa: N818 - it never leaves the comparison
     """A simulation has numbers that are not finite; the text says what the simulator reports."""
 
 
-class ReadModel(Protocol):
-    """A file as a program reads it."""
+class ReadModel(ABC):
+    """A file as a program reads it.
+
+    Attributes:
+        reader: Name and version of the program.
+        unverified: What this program cannot compare, each a sentence.
+        tolerance: Opening, m or rad, up to which a loop counts as closed at the start.
+        mass_tolerance: Relative difference up to which masses and mass matrices count as equal.
+        step: Time step of its simulations, s; 0 if it simulates nothing.
+        shorter: What to do for a shorter time step.
+        velocities: Joint and unit (rad or m) of each velocity of the model.
+    """
+
+    reader: str
+    unverified: tuple[str, ...] = ()
+    tolerance = mass_tolerance = 1e-6
+    step = 0.0
+    shorter = ""
+    velocities: Sequence[tuple[str, str]] = ()
+
+    @abstractmethod
+    def __init__(self, exported: Exported) -> None:
+        """Read a file.
+
+        Raises:
+            CannotRead: The program refuses it.
+        """
 
     @property
-    def reader(self) -> str:
-        """Name and version of the program."""
-
-    @property
-    def unverified(self) -> tuple[str, ...]:
-        """What this program cannot compare, each a sentence."""
-
-    @property
-    def tolerance(self) -> float:
-        """Opening, m or rad, up to which a loop counts as closed at the start."""
-
-    @property
-    def mass_tolerance(self) -> float:
-        """Relative difference up to which masses and mass matrices count as equal."""
-
-    @property
-    def step(self) -> float:
-        """Time step of its simulations, s; 0 if it simulates nothing."""
-
-    @property
-    def shorter(self) -> str:
-        """What to do for a shorter time step."""
-
-    @property
-    def velocities(self) -> Sequence[tuple[str, str]]:
-        """Joint and unit (rad or m) of each velocity of the model."""
-
-    @property
+    @abstractmethod
     def mass(self) -> float:
         """Mass of all bodies, kg."""
 
+    @abstractmethod
     def mass_matrix(self, q: Vector) -> Matrix:
         """M (nv, nv) at q (nq,), for velocities of the robot."""
 
+    @abstractmethod
     def openings(self, q: Vector) -> tuple[Opening, ...]:
         """How far each closure, coupling and mimic of the file is open at q (nq,)."""
 
+    @abstractmethod
     def ranges(self, q: Vector) -> tuple[Range, ...]:
         """Each coordinate with limits, at q (nq,)."""
 
@@ -146,6 +164,7 @@ class ReadModel(Protocol):
         Raises:
             Diverged: Numbers are not finite.
         """
+        raise NotImplementedError
 
 
 def without_armature(robot: Robot, names: Sequence[str] | None = None) -> Robot:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,7 @@ import numpy as np
 from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
 from eurdf.convert.coordinates import Matrix, Vector
-from eurdf.convert.verification.read_model import CannotRead, Exported, Instant, Range, opening_of
+from eurdf.convert.verification.read_model import CannotRead, Exported, Range, ReadModel, opening_of
 from eurdf.kinematics.mass_matrix import mass_matrix
 from eurdf.kinematics.opening import Opening
 from eurdf.mechanism.body import Inertia
@@ -61,19 +60,16 @@ class Stage:
         return mass.GetMassAttr().Get(), np.array(mass.GetCenterOfMassAttr().Get()), moments
 
 
-class UsdModel:
+class UsdModel(ReadModel):
     """See `ReadModel`. The mass matrix is that of the robot with the inertias of the stage."""
 
     reader = "usd-core {}".format(".".join(map(str, Usd.GetVersion()[1:])))
-    unverified: tuple[str, ...] = (
+    unverified = (
         "the fall is not simulated, and axes and armature of joints are not compared: the library of USD has no "
         "dynamics; open the file in Newton or Isaac Sim",
     )
     # USD has inertias, and frames of joints, in single precision.
     tolerance = mass_tolerance = 1e-5
-    step = 0.0
-    shorter = ""
-    velocities: tuple[tuple[str, str], ...] = ()
 
     def __init__(self, exported: Exported) -> None:
         self._exported = exported
@@ -85,19 +81,19 @@ class UsdModel:
         self._closures = self.stage.prims("closures")
 
     @property
-    def mass(self) -> float:  # noqa: D102
+    def mass(self) -> float:
         base = self._exported.robot.mechanism.bodies[0]
         # A base without mass that is fixed to the world has 1 kg there: it does not move.
         left_out = base.name if base.inertia is None or base.inertia.mass == 0.0 else ""
         prims = [body for name, body in self._bodies.items() if name != left_out]
         return float(sum(UsdPhysics.MassAPI(prim).GetMassAttr().Get() or 0.0 for prim in prims))
 
-    def mass_matrix(self, q: Vector) -> Matrix:  # noqa: D102
+    def mass_matrix(self, q: Vector) -> Matrix:
         mechanism = self._exported.robot.mechanism
         bodies = tuple(replace(body, inertia=self._inertia(body.name)) for body in mechanism.bodies)
         return mass_matrix(build_robot(replace(mechanism, bodies=bodies), geometry=False), q)
 
-    def openings(self, q: Vector) -> tuple[Opening, ...]:  # noqa: D102
+    def openings(self, q: Vector) -> tuple[Opening, ...]:
         closures = {closure.name: closure for closure in self._exported.robot.mechanism.closures}
         found = []
         for name, prim in self._closures.items():
@@ -107,7 +103,7 @@ class UsdModel:
             found.append(opening_of(closure, *self.stage.frames(prim)))
         return tuple(found)
 
-    def ranges(self, q: Vector) -> tuple[Range, ...]:  # noqa: D102
+    def ranges(self, q: Vector) -> tuple[Range, ...]:
         found = []
         for name, prim in self.stage.prims("joints").items():
             for kind, axis, unit in (
@@ -120,11 +116,6 @@ class UsdModel:
                     values = (state.Get(), joint.GetLowerLimitAttr().Get(), joint.GetUpperLimitAttr().Get())
                     found.append(Range(name, *(unit * value for value in values)))
         return tuple(found)
-
-    def fall(  # noqa: D102
-        self, q: Vector, seconds: float, *, slower: int = 1, contacts: bool = True
-    ) -> Iterator[Instant]:
-        return iter(())
 
     def _inertia(self, body: str) -> Inertia | None:
         if body not in self._bodies or not UsdPhysics.MassAPI(self._bodies[body]).GetMassAttr().Get():

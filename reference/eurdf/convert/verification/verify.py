@@ -5,6 +5,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from importlib import import_module
 from importlib.util import find_spec
 
 import numpy as np
@@ -14,8 +15,7 @@ from eurdf.convert.coordinates import Coordinates, Matrix, Vector
 from eurdf.convert.inertia import physical
 from eurdf.convert.losses import Effect, Loss
 from eurdf.convert.verification.fall import Fall, Motion, joint_of_velocity, listed, simulate, size
-from eurdf.convert.verification.finding import Finding
-from eurdf.convert.verification.read_model import CannotRead, Exported, Range, ReadModel, without_armature
+from eurdf.convert.verification.read_model import CannotRead, Exported, Finding, Range, ReadModel, without_armature
 from eurdf.diagnostics.extras import install_command
 from eurdf.exceptions import MissingExtra
 from eurdf.kinematics.mass_matrix import mass_matrix
@@ -23,12 +23,14 @@ from eurdf.kinematics.opening import Opening
 from eurdf.pinocchio.robot import Robot, build_robot
 from eurdf.writing.output_folder import write_files
 
-#: The packages and extras that read each format; what is empty needs none.
-_NEEDS = {
-    "mjcf": ("mujoco", "mujoco"),
-    "usd": ("pxr", "usd"),
-    "drake": ("pydrake", "drake"),
-    "sdf": ("pydrake", "drake"),
+#: What reads each format: module here and class; the package that it needs, and the extra that has it, if any.
+_READERS = {
+    "mjcf": ("mujoco_model", "MuJoCoModel", "mujoco", "mujoco"),
+    "usd": ("usd_model", "UsdModel", "pxr", "usd"),
+    "drake": ("drake_model", "DrakeModel", "pydrake", "drake"),
+    "sdf": ("drake_model", "SdfTree", "pydrake", "drake"),
+    "urdf": ("pinocchio_model", "PinocchioModel", "", ""),
+    "loop-joint": ("pinocchio_model", "PinocchioModel", "", ""),
 }
 
 #: How far a coordinate may be beyond its limits, rad or m: what rounding leaves.
@@ -74,7 +76,7 @@ def require_reader(to: str) -> None:
     Raises:
         MissingExtra: It is not.
     """
-    package, extra = _NEEDS.get(to, ("", ""))
+    _, _, package, extra = _READERS[to]
     if package and find_spec(package) is None:
         raise MissingExtra(f"verifying {to} needs {package}; install it with: {install_command(extra)}", extra)
 
@@ -93,31 +95,13 @@ def verify(
     require_reader(to)
     with tempfile.TemporaryDirectory() as folder:
         exported = Exported(write_files(folder, files)[0], robot, coordinates)
+        module, name, *_ = _READERS[to]
         try:
-            model = _reads(to)(exported)
+            model: ReadModel = getattr(import_module(f"eurdf.convert.verification.{module}"), name)(exported)
         except CannotRead as refusal:
             finding = Finding(f"{refusal.reader} refuses the file: {refusal}")
             return Verification(refusal.reader, str(refusal), findings=(finding,))
         return _compare(model, exported, losses, start, seconds, progress)
-
-
-def _reads(to: str) -> Callable[[Exported], ReadModel]:
-    """What reads a format."""
-    if to == "mjcf":
-        from eurdf.convert.verification.mujoco_model import MuJoCoModel
-
-        return MuJoCoModel
-    if to in ("drake", "sdf"):
-        from eurdf.convert.verification.drake_model import DrakeModel, SdfTree
-
-        return DrakeModel if to == "drake" else SdfTree
-    if to == "usd":
-        from eurdf.convert.verification.usd_model import UsdModel
-
-        return UsdModel
-    from eurdf.convert.verification.pinocchio_model import PinocchioModel
-
-    return PinocchioModel
 
 
 def _compare(
