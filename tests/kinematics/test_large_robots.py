@@ -14,6 +14,7 @@ import eurdf
 from eurdf.commands.robot_info import robot_info
 from eurdf.format.urdf.read import JOINT_LIMIT
 from eurdf.kinematics.assembly import Assembler
+from eurdf.kinematics.evaluate import frames
 from eurdf.kinematics.loop import Loop, find_loops, independent_groups, joints_of_loops
 from eurdf.linking.link import ROW_LIMIT, VELOCITY_LIMIT
 from eurdf.pinocchio.ancestry import Ancestry
@@ -78,7 +79,7 @@ def test_kinematics_of_hundred_four_bars_needs_small_data_only(tmp_path: Path, m
     there = eurdf.forward_kinematics(loaded, q[loaded.actuation.idx_q] + 0.01, q)
     np.testing.assert_allclose(eurdf.residual(loaded, there), 0.0, atol=1e-10)
     frame = loaded.mechanism.bodies[-1].name
-    target = loaded.tree.frames([frame]).memory().placements(there)[0].translation
+    target = frames(loaded, [frame], few=True).at(there[None]).position[0, 0]
     assert eurdf.inverse_kinematics(loaded, {frame: np.array(target)}, q).converged
     eurdf.actuated_jacobian(loaded, there, frame)
     assert max(made) <= 60

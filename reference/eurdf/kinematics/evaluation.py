@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eurdf.kinematics.array import Matrix, Vector
-from eurdf.kinematics.constraint_stack import ConstraintStack
+from eurdf.kinematics.evaluate import evaluator
 from eurdf.kinematics.loop import LoopGroup
 
 if TYPE_CHECKING:
@@ -43,11 +43,10 @@ class Evaluation:
         self.group = group
         self.row_scale = row_scale[group.rows]
         self.unit = velocity_scale[group.velocities]
-        self._stack = ConstraintStack(robot.tree, [robot.constraints[i] for i in group.closures], group.velocities)
-        self._memory = self._stack.memory()
+        self._evaluator = evaluator(robot, group.closures, group.velocities, few=True)
         m, n = len(group.rows), len(group.velocities)
         self.work = float(m) * n * min(m, n) + _WORK_OF_A_CLOSURE * len(group.closures)
-        self._at = self._stack.at(robot.tree.neutral(), self._memory)
+        self._at = self._evaluator.at(robot.tree.neutral()[None])
         self._held: Vector | None = None
 
     def holding(self, direction: Vector) -> Evaluation:
@@ -64,17 +63,18 @@ class Evaluation:
 
     def residual(self, q: Vector) -> Vector:
         """Rows (m,) of the group at q (nq,), m and rad."""
-        self._at = self._stack.at(q, self._memory)
-        return self._stack.residual(self._at)
+        self._at = self._evaluator.at(q[None])
+        return np.asarray(self._evaluator.residual(self._at)[0])
 
     def jacobian(self) -> Matrix:
         """Derivative (m, n) of the rows by the velocities, where `residual` last was, dimensionless."""
-        A = self._stack.jacobian(self._at) * self._scale
+        A: Matrix = self._evaluator.jacobian(self._at)[0] * self._scale
         return A if self._held is None else A - np.outer(A @ self._held, self._held)
 
     def openings(self) -> list[tuple[float, float]]:
         """How far each constraint is open where `residual` last was, m and rad."""
-        return self._stack.openings(self._at)
+        lengths, angles = self._evaluator.openings(self._at)
+        return list(zip(lengths[0].tolist(), angles[0].tolist(), strict=True))
 
 
 def evaluations(

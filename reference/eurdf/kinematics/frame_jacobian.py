@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pinocchio import LOCAL, LOCAL_WORLD_ALIGNED, WORLD
 
+from eurdf.closures.se3 import skew
 from eurdf.kinematics.array import Matrix, Vector
-from eurdf.kinematics.constraints.vector import origins, velocity_of_origin
 from eurdf.kinematics.derived import borrowed
-from eurdf.kinematics.tree_kinematics import PairMemory
+from eurdf.kinematics.evaluate import Frames, frames
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -29,21 +28,18 @@ def frame_jacobian(robot: Robot, q: Vector, frame: str, reference: Any) -> Matri
     Raises:
         ValueError: The frame is unknown or ambiguous, or ``reference`` is none of the three.
     """
-    with borrowed(robot, _memory, frame) as memory:
-        placements = memory.placements(q)
-        return memory.jacobian(_rows(placements, reference), [0])
-
-
-def _memory(robot: Robot, frame: str) -> PairMemory:
-    return robot.tree.frames([frame]).memory()
-
-
-def _rows(placements: Sequence[Any], reference: Any) -> Matrix:
-    """The rows (1, 6, 6) of the motion in the axes of the reference over the twist in the world."""
-    if reference == LOCAL:
-        return np.asarray(placements[0].toActionMatrixInverse())[None]
-    if reference == WORLD:
-        return np.eye(6)[None]
+    with borrowed(robot, _frame, frame) as frames_:
+        at = frames_.at(q[None])
+        J: Matrix = frames_.jacobians(at)[0, 0]
+        ((R,),), ((p,),) = frames_.poses(at)
     if reference == LOCAL_WORLD_ALIGNED:
-        return np.concatenate((velocity_of_origin(origins(placements))[0], np.eye(3, 6, 3)))[None]
+        return J
+    if reference == LOCAL:
+        return np.concatenate((R.T @ J[:3], R.T @ J[3:]))
+    if reference == WORLD:
+        return np.concatenate((J[:3] + skew(p) @ J[3:], J[3:]))
     raise ValueError(f"reference is {reference!r}; expected pin.LOCAL, pin.WORLD or pin.LOCAL_WORLD_ALIGNED")
+
+
+def _frame(robot: Robot, name: str) -> Frames:
+    return frames(robot, [name], few=True)

@@ -3,29 +3,28 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from pinocchio import SE3
 
+from eurdf.closures.se3 import log3, log3_derivative
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import Assembler, Assembly, start
 from eurdf.kinematics.bounded_step import bounded_step
-from eurdf.kinematics.constraint_stack import all_constraints
 from eurdf.kinematics.damped_step import damped_step
 from eurdf.kinematics.derived import borrowed, derived
+from eurdf.kinematics.evaluate import Evaluator, Frames, evaluator, frames
 from eurdf.kinematics.least_solution import certain_inverse
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.position_limit import JointAtLimit, chosen_limits
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.residual import all_openings
 from eurdf.kinematics.tangent_space import TangentSpaces
-from eurdf.kinematics.tree_kinematics import PairMemory
 from eurdf.mechanism.joint import LIMIT_TOLERANCE
 from eurdf.pinocchio.arguments import checked_array, checked_count, checked_tolerance
-from eurdf.pinocchio.logarithm import log3, log3_derivative
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -167,9 +166,9 @@ def inverse_kinematics(
         return _Search(robot, checked, assembler, memory, tolerance).run(q, restarts)
 
 
-def _memory(robot: Robot, *frames: str) -> tuple[PairMemory, PairMemory]:
-    """Memory for frames, and for all constraints."""
-    return robot.tree.frames(frames).memory(), all_constraints(robot).memory()
+def _memory(robot: Robot, *names: str) -> tuple[Frames, Evaluator]:
+    """The frames, and all constraints."""
+    return frames(robot, names, few=True), evaluator(robot, few=True)
 
 
 class _Search:
@@ -180,18 +179,17 @@ class _Search:
         robot: Robot,
         targets: Mapping[str, Any],
         assembler: Assembler,
-        memory: tuple[PairMemory, PairMemory],
+        memory: tuple[Frames, Evaluator],
         tolerance: float,
     ) -> None:
         self.robot, self.targets = robot, targets
-        self.assembler, (self.frames, self.closures) = assembler, memory
-        self.constraints = all_constraints(robot)
+        self.assembler, (self.frames, self.constraints) = assembler, memory
         self.spaces = derived(robot, TangentSpaces)
         self.nv = robot.tree.nv
         self.tolerance = tolerance
         self.iterations = 0
         self.limits = assembler.limits
-        self._oMf: Sequence[Any] = ()
+        self._at: Any = None
         # Of each target its position, the inverse of its rotation, if it has one, and where its rows begin.
         self._parts: list[tuple[Vector, Matrix | None, int]] = []
         rows = 0
@@ -364,7 +362,7 @@ class _Search:
 
     def _constraint_jacobian(self, q: Vector) -> Matrix:
         """K (nc, nv)."""
-        return self.constraints.jacobian(self.constraints.at(q, self.closures))
+        return np.asarray(self.constraints.jacobian(self.constraints.at(q[None]))[0])
 
     def _look_at_rank(self, A: Matrix) -> None:
         """Keep the largest rank of A = E Z met so far, and with it the largest of its smallest singular values.
@@ -397,24 +395,25 @@ class _Search:
 
     def _error(self, q: Vector) -> Vector:
         """Stacked errors of all frames at q, in characteristic lengths and rad."""
-        self._oMf, e = self.frames.placements(q), np.empty(self._rows)
-        for (position, inverse, first), oMf in zip(self._parts, self._oMf, strict=True):
-            e[first : first + 3] = (oMf.translation - position) / self.spaces.length
+        self._at, e = self.frames.at(q[None]), np.empty(self._rows)
+        (rotations,), (origins,) = self.frames.poses(self._at)
+        for (position, inverse, first), R, p in zip(self._parts, rotations, origins, strict=True):
+            e[first : first + 3] = (p - position) / self.spaces.length
             if inverse is not None:
-                e[first + 3 : first + 6] = log3(inverse.dot(oMf.rotation))
+                e[first + 3 : first + 6] = log3(inverse.dot(R))
         return e
 
     def _jacobian(self) -> Matrix:
         """Derivative of the errors by v, where they were last computed."""
         rows = self._twists
-        for row, (_, inverse, _), oMf in zip(rows, self._parts, self._oMf, strict=True):
-            x, y, z = (oMf.translation / self.spaces.length).tolist()
+        (rotations,), (origins,) = self.frames.poses(self._at)
+        for row, (_, inverse, _), R, p in zip(rows, self._parts, rotations, origins, strict=True):
+            x, y, z = (p / self.spaces.length).tolist()
             row[0, 4], row[0, 5], row[1, 5] = z, -y, x  # minus the skew matrix
             row[1, 3], row[2, 3], row[2, 4] = -z, y, -x
             if inverse is not None:
-                R = oMf.rotation
-                row[3:, 3:] = log3_derivative(inverse.dot(R)).dot(R.T)
-        J = self.frames.jacobian(rows, range(len(rows)))
+                row[3:, 3:] = log3_derivative(log3(inverse.dot(R))).dot(R.T)
+        J: Matrix = self.frames.rows(self._at, rows[None])[0]
         return J if self._all_poses else J[self._used]
 
     def _reached(self, e: Vector) -> bool:

@@ -12,10 +12,14 @@ from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
+from eurdf.closures.distance import DistanceClosure
+from eurdf.closures.frame import FrameClosure
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.point import PointClosure
+from eurdf.closures.se3 import plane_across
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.batch import rigid
-from eurdf.kinematics.constraints.vector import plane_across
-from eurdf.mechanism.constraint import Closure, DistanceClosure, FrameClosure, HingeClosure, PointClosure
+from eurdf.mechanism.constraint import Closure
 
 AnyClosure = TypeVar("AnyClosure", bound=Closure)
 

@@ -29,7 +29,7 @@ class BatchFrames:
         Raises:
             ValueError: A frame is unknown, or two different frames have this name.
         """
-        found = [frame for _, frame in robot.tree.frames(list(names)).pairs]
+        found = robot.tree.frame_sites(names)
         self._tree = tree
         self.sites = [
             Site(tree.joint_of(joint), np.array(placement.rotation), np.array(placement.translation))
