@@ -16,6 +16,10 @@ from eurdf.array import Matrix, Vector
 _NEXT, _LAST = [1, 2, 0], [2, 0, 1]
 _EACH = np.arange(3)
 _ONE = np.eye(3)
+# Linear maps are one product with a vector: it is faster than to set entries one by one.
+_SKEW = np.cross(_ONE[:, None], _ONE).transpose(0, 2, 1).reshape(3, 9)
+_OF_ORIGIN = np.concatenate((np.zeros((3, 3, 3)), -_SKEW.reshape(3, 3, 3)), axis=2).reshape(3, 18)
+_OF_ZERO = np.eye(3, 6).ravel()
 
 
 def cross(a: Matrix, b: Matrix) -> Matrix:
@@ -35,9 +39,7 @@ def norm(a: Matrix) -> Vector:
 
 def skew(a: Matrix) -> Matrix:
     """The matrices (…, 3, 3) that multiply b to a × b."""
-    S = np.zeros((*a.shape, 3))
-    S[..., _LAST, _NEXT], S[..., _NEXT, _LAST] = a, -a
-    return S
+    return np.asarray((a @ _SKEW).reshape(*a.shape, 3))
 
 
 def turned(R: Matrix, a: Matrix) -> Matrix:
@@ -57,10 +59,7 @@ def outer(a: Matrix, b: Matrix) -> Matrix:
 
 def velocity_of_origin(p: Matrix) -> Matrix:
     """[1, -skew(p)] (…, 3, 6): ṗ over the twist of B against A, seen from A, where the origin of B is at p (…, 3)."""
-    rows = np.zeros((*p.shape, 6))
-    rows[..., _EACH, _EACH] = 1.0
-    rows[..., 3:] = -skew(p)
-    return rows
+    return np.asarray((p @ _OF_ORIGIN + _OF_ZERO).reshape(*p.shape, 6))
 
 
 def plane_across(a: Vector) -> Matrix:

@@ -10,7 +10,8 @@ import numpy as np
 from eurdf.kinematics.array import Matrix
 from eurdf.kinematics.batch.arguments import checked_rows
 from eurdf.kinematics.batch.blocks import Progress, blocks
-from eurdf.kinematics.batch.problem import Problem, problem
+from eurdf.kinematics.derived import derived
+from eurdf.kinematics.evaluate import Evaluator, evaluator
 from eurdf.kinematics.exceptions import NumericalOverflow
 
 if TYPE_CHECKING:
@@ -44,9 +45,9 @@ def residual(
         NotImplementedError: A joint or constraint has a type that is not supported.
         NumericalOverflow: A configuration is so large that its residual is not finite; the message names it.
     """
-    model = problem(robot)
-    rows = checked_rows("q", q, model.tree.nq)
-    (r,) = blocks(model.whole.numbers, block, threads, executor, progress).map(_residual, model, (rows,))
+    rows = checked_rows("q", q, robot.tree.nq)
+    constraints = derived(robot, _constraints)
+    (r,) = blocks(constraints.numbers, block, threads, executor, progress).map(_residual, constraints, (rows,))
     _require_finite(r)
     return r
 
@@ -78,20 +79,25 @@ def residual_and_jacobian(
         NotImplementedError: As in `residual`.
         NumericalOverflow: As in `residual`, also of the derivative.
     """
-    model = problem(robot)
-    rows = checked_rows("q", q, model.tree.nq)
-    r, K = blocks(model.whole.numbers, block, threads, executor, progress).map(_residual_and_jacobian, model, (rows,))
+    rows = checked_rows("q", q, robot.tree.nq)
+    constraints = derived(robot, _constraints)
+    work = blocks(constraints.numbers, block, threads, executor, progress)
+    r, K = work.map(_residual_and_jacobian, constraints, (rows,))
     _require_finite(r, K)
     return r, K
 
 
-def _residual(model: Problem, q: Matrix) -> tuple[Matrix]:
-    return (model.residual(q.T).T,)
+def _constraints(robot: Robot) -> Evaluator:
+    return evaluator(robot, few=False)
 
 
-def _residual_and_jacobian(model: Problem, q: Matrix) -> tuple[Matrix, Matrix]:
-    at = model.whole.at(q.T)
-    return model.whole.residual(at).T, np.moveaxis(model.whole.jacobian(at), -1, 0)
+def _residual(constraints: Evaluator, q: Matrix) -> tuple[Matrix]:
+    return (constraints.residual(constraints.at(q)),)
+
+
+def _residual_and_jacobian(constraints: Evaluator, q: Matrix) -> tuple[Matrix, Matrix]:
+    at = constraints.at(q)
+    return constraints.residual(at), constraints.jacobian(at)
 
 
 def _require_finite(*results: Matrix) -> None:
