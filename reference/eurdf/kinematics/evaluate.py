@@ -124,8 +124,13 @@ class Evaluator:
 
     @property
     def numbers(self) -> int:
-        """Numbers that the evaluation of one element takes, roughly."""
-        return int(self._pairs.numbers) + 3 * self.m * self.n + 2 * self.m * self.m
+        """Numbers that the residual and K of one element take, roughly."""
+        return self.numbers_of_residual + 3 * self.m * self.n + 2 * self.m * self.m
+
+    @property
+    def numbers_of_residual(self) -> int:
+        """Numbers that the residual of one element takes, roughly."""
+        return int(self._pairs.numbers)
 
     def at(self, q: Matrix) -> State:
         """The constraints at q (B, nq)."""

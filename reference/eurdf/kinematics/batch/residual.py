@@ -47,7 +47,9 @@ def residual(
     """
     rows = checked_rows("q", q, robot.tree.nq)
     constraints = derived(robot, _constraints)
-    (r,) = blocks(constraints.numbers, block, threads, executor, progress).map(_residual, constraints, (rows,))
+    (r,) = blocks(constraints.numbers_of_residual, block, threads, executor, progress).map(
+        _residual, constraints, (rows,)
+    )
     _require_finite(r)
     return r
 
