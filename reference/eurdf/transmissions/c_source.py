@@ -11,10 +11,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eurdf.closures.distance import DistanceClosure
-from eurdf.closures.frame import FrameClosure
-from eurdf.closures.hinge import HingeClosure
-from eurdf.closures.point import PointClosure
+from eurdf.closures.kind import MODULES
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import MOST_STEPS, RESTARTS, SPREADS
 from eurdf.kinematics.derived import derived
@@ -24,7 +21,7 @@ from eurdf.kinematics.loop import find_loops
 from eurdf.kinematics.opening import CLOSED as STILL_CLOSED
 from eurdf.kinematics.scale import row_scale
 from eurdf.kinematics.tangent_space import TangentSpaces
-from eurdf.mechanism.constraint import Constraint, Coupling
+from eurdf.mechanism.constraint import Closure, Constraint, Coupling
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mimic import Mimic
@@ -36,13 +33,8 @@ from eurdf.writing.output_folder import write_files
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
-_KINDS: Mapping[type[Constraint], str] = {
-    PointClosure: "POINT",
-    FrameClosure: "FRAME",
-    HingeClosure: "HINGE",
-    DistanceClosure: "DISTANCE",
-    Coupling: "COUPLING",
-}
+#: What the kernel calls each kind of constraint.
+_KINDS = {type_: module.upper() for type_, module in MODULES.items()} | {Coupling.type: "COUPLING"}
 
 _X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 _HERE = (0.0, 0.0, 0.0)
@@ -335,7 +327,7 @@ def _source(tables: _Tables, name: str, drives: Sequence[Drive], steps: int, sub
     constraints: list[str] = []
     for index in tables.constraints:
         constraint, of_rows = robot.constraints[index], rows[index]
-        if type(constraint) not in _KINDS:
+        if constraint.type not in _KINDS:
             raise ValueError(
                 f"constraint '{constraint.name}' is {constraint.type}, which the generated C does not support"
             )
@@ -434,16 +426,13 @@ typedef struct {
 
 def _constraint(constraint: Constraint, tables: _Tables, first: int, last: int, scale: Vector) -> str:
     ends = tables.anchors(constraint) or [(0, IDENTITY), (0, IDENTITY)]
-    a, b, length = _Z, _Z, 0.0
-    if isinstance(constraint, HingeClosure):
-        a, b = (direction(axis) for axis in constraint.axes)
-    elif isinstance(constraint, DistanceClosure):
-        length = constraint.length
-    elif isinstance(constraint, Coupling):
-        length = constraint.offset
+    own = constraint.own if isinstance(constraint, Closure) else {}
+    a, b = (direction(axis) for axis in own.get("axes", (_Z, _Z)))
+    length = constraint.offset if isinstance(constraint, Coupling) else own.get("length", 0.0)
     frames = ", ".join(f"{_rotation(pose)}, {_vector(pose.xyz)}" for _, pose in ends)
     return (
-        f"{{{_KINDS[type(constraint)]}, {constraint.rows}, {first}, {last}, {ends[0][0]}, {ends[1][0]}, {frames}, "
+        f"{{{_KINDS[constraint.type]}, {constraint.rows}, {first}, {last}, "
+        f"{ends[0][0]}, {ends[1][0]}, {frames}, "
         f"{_number(length)}, {_vector(a)}, {_vector(b)}, {{{', '.join(map(_vector, _across(a)))}}}, {_vector(scale)}}}"
     )
 

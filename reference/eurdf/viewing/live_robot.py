@@ -11,8 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eurdf.closures.distance import DistanceClosure
-from eurdf.closures.hinge import HingeClosure
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
@@ -188,10 +186,9 @@ def _constraint(
             found["offset"] = constraint.offset
         case Closure():
             found["a"], found["b"] = (_anchor(each, bodies) for each in constraint.anchors)
-            if isinstance(constraint, HingeClosure):
-                found["axes"] = [direction(axis) for axis in constraint.axes]
-            if isinstance(constraint, DistanceClosure):
-                found["length"] = constraint.length
+            found |= constraint.own
+            if "axes" in found:
+                found["axes"] = [direction(axis) for axis in found["axes"]]
     return found
 
 

@@ -14,8 +14,6 @@ from typing import Any, Literal, cast
 
 from lxml import etree
 
-from eurdf.closures.distance import DistanceClosure
-from eurdf.closures.hinge import HingeClosure
 from eurdf.diagnostics.visible import visible
 from eurdf.format.own_key import is_own_key
 from eurdf.format.yaml_text import Entry, Value, item_of_mapping, lines_of, lines_of_item, modeline, section, text_of
@@ -373,14 +371,7 @@ def _closure(closure: Closure, anchors: _Anchors) -> Value:
         "type": closure.type,
         "frames": [anchors.reference(closure.a), anchors.reference(closure.b)],
     }
-    if isinstance(closure, HingeClosure):
-        one, other = closure.axes
-        if one != other:
-            entry["axes"] = [list(one), list(other)]
-        elif one != _Z:
-            entry["axis"] = list(one)
-    if isinstance(closure, DistanceClosure):
-        entry["length"] = closure.length
+    entry |= closure.stated()
     compliance = _compliance(closure)
     if compliance:
         entry["compliance"] = compliance
