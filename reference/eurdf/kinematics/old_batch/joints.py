@@ -1,6 +1,6 @@
 """The joint types: how joints move their children, for arrays of coordinates (EU-JNT-015 to -018, EU-JNT-025).
 
-Components come first and elements last, as in `eurdf.kinematics.batch.rigid`. Coordinates and velocities are those of
+Components come first and elements last, as in `eurdf.kinematics.old_batch.rigid`. Coordinates and velocities are those of
 Pinocchio: an angle without limits is (cos, sin), and the velocity of planar, spherical and floating joints is that of
 the moving frame, in its own axes (EU-JNT-026).
 """
@@ -14,7 +14,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from eurdf.kinematics.array import Matrix, Vector
-from eurdf.kinematics.batch import rigid
+from eurdf.kinematics.old_batch import rigid
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.pose import direction

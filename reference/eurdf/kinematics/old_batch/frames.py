@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eurdf.kinematics.array import Matrix
-from eurdf.kinematics.batch import rigid
-from eurdf.kinematics.batch.stack import frame_at
-from eurdf.kinematics.batch.tree import BatchTree, Place, Site
+from eurdf.kinematics.old_batch import rigid
+from eurdf.kinematics.old_batch.stack import frame_at
+from eurdf.kinematics.old_batch.tree import BatchTree, Place, Site
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot

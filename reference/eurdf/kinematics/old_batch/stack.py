@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
-from eurdf.kinematics.batch import rigid
-from eurdf.kinematics.batch.constraints import CLOSURE_KINDS, ClosureKind
-from eurdf.kinematics.batch.tree import BatchTree, Place, Site
+from eurdf.kinematics.old_batch import rigid
+from eurdf.kinematics.old_batch.constraints import CLOSURE_KINDS, ClosureKind
+from eurdf.kinematics.old_batch.tree import BatchTree, Place, Site
 from eurdf.mechanism.constraint import Closure, Constraint, Coupling
 
 

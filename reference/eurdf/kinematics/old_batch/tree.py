@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eurdf.kinematics.array import Matrix, Vector
-from eurdf.kinematics.batch import rigid
-from eurdf.kinematics.batch.joints import Floating, Motion, Screw, motion
+from eurdf.kinematics.old_batch import rigid
+from eurdf.kinematics.old_batch.joints import Floating, Motion, Screw, motion
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.pose import IDENTITY, Pose
 from eurdf.pinocchio.coordinates import slots

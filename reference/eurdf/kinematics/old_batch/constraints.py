@@ -13,8 +13,8 @@ from typing import Any, ClassVar, Generic, TypeVar
 import numpy as np
 
 from eurdf.kinematics.array import Matrix, Vector
-from eurdf.kinematics.batch import rigid
 from eurdf.kinematics.constraints.vector import plane_across
+from eurdf.kinematics.old_batch import rigid
 from eurdf.mechanism.constraint import Closure, DistanceClosure, FrameClosure, HingeClosure, PointClosure
 
 AnyClosure = TypeVar("AnyClosure", bound=Closure)
