@@ -11,9 +11,9 @@ import pinocchio as pin
 import pytest
 
 import eurdf
+from eurdf.closures.distance import DistanceClosure
 from eurdf.commands.main import main
 from eurdf.kinematics.residual import acceleration_drift
-from eurdf.mechanism.constraint import DistanceClosure
 from eurdf.pinocchio.constraint import NoConstraintModel
 from support.described import body, revolute
 from support.plain_urdf import robot as urdf

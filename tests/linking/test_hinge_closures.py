@@ -10,8 +10,8 @@ import pinocchio as pin
 import pytest
 
 import eurdf
+from eurdf.closures.hinge import HingeClosure
 from eurdf.commands.main import main
-from eurdf.mechanism.constraint import HingeClosure
 
 ROBOTS = Path(__file__).parents[2] / "robots"
 

@@ -13,10 +13,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import eurdf
+from eurdf.closures.hinge import HingeClosure
 from eurdf.exporting.coordinates import Part
 from eurdf.exporting.verification.read_model import without_armature
 from eurdf.loss import Effect
-from eurdf.mechanism.constraint import HingeClosure
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_type import JointType

@@ -8,15 +8,12 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
+from eurdf.closures.distance import DistanceClosure
+from eurdf.closures.frame import FrameClosure
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.point import PointClosure
 from eurdf.mechanism.body import Body
-from eurdf.mechanism.constraint import (
-    Closure,
-    Coupling,
-    DistanceClosure,
-    FrameClosure,
-    HingeClosure,
-    PointClosure,
-)
+from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Mechanism, Root

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 import eurdf
+from eurdf.closures.kind import REGISTRY
 from eurdf.mechanism.body import Body
-from eurdf.mechanism.constraint import CLOSURES, Closure, Coupling
+from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_transform import joint_transform
@@ -82,7 +83,7 @@ def one_loop(
 
 
 def _closure(type_: str, a: Pose, b: Pose, body: str, random: np.random.Generator) -> Closure:
-    kind = CLOSURES[type_]
+    kind = REGISTRY[type_]
     if type_ == "distance":
         away = Pose(tuple(a.act(_vector(random))))
         length = float(np.linalg.norm(np.subtract(away.xyz, a.xyz)))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
-from eurdf.mechanism.constraint import CLOSURES
+from eurdf.closures.kind import REGISTRY
 from eurdf.mechanism.joint_type import JointType
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ class ClosureInfo(_Entry):
 
     name: str
     """Name of the closure."""
-    type: Annotated[str, Field(json_schema_extra={"enum": sorted(CLOSURES)})]
+    type: Annotated[str, Field(json_schema_extra={"enum": sorted(REGISTRY)})]
     """3d for position, 6d for position and orientation, hinge for position and an axis, distance for a distance."""
     rows: Count
     """Number of its constraint rows."""

@@ -9,12 +9,14 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.point import PointClosure
 from eurdf.kinematics.analysis import analyze
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.loss import COMMON, Loss, Losses
-from eurdf.mechanism.constraint import Closure, HingeClosure, PointClosure
+from eurdf.mechanism.constraint import Closure
 from eurdf.pinocchio.robot import Robot, build_robot
 
 #: Singular values of an angular velocity, relative to those of the whole motion, that count as none.

@@ -240,7 +240,7 @@ class _Closing:
             self._iterations += longest
         is_open = ~(self._errors <= CLOSED)
         stopped = (self._spent > MOST_WORK) | ~(self._ended & is_open).any(axis=1)
-        closes, decided = self._sure.all(axis=1), ~(is_open.any(axis=1) & stopped)
+        closes, decided = np.array(self._sure.all(axis=1)), ~(is_open.any(axis=1) & stopped)
         doubtful = np.flatnonzero(~closes)
         if len(doubtful):
             closes[doubtful] = problem.closes(self._best[doubtful], max(CLOSED, self._tolerance))
@@ -346,7 +346,7 @@ def closed_start(problem: Problem, q: Vector, tolerance: float, where: str = "th
     """
     closed = close(problem, q[None], tolerance)
     if closed.closes[0]:
-        return closed.q[0]
+        return np.array(closed.q[0])
     first = assembled(problem, q, tolerance)
     if not first.closes:
         raise NotClosable(f"no closed configuration was found near {where}", first.open, first.q)

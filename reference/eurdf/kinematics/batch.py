@@ -155,7 +155,7 @@ def _goal(driving: Driving, q: Matrix, values: Matrix) -> Matrix:
 def _moved(
     driving: Driving, q: Matrix, goal: Matrix, closed: Mask | None = None
 ) -> tuple[Matrix, Vector, Indices, Mask]:
-    """Where the given joints get (B, nq), the norms (B,) of the residual, the reasons, and whether springs are at rest."""
+    """Where the given joints get (B, nq), the norms (B,) of the residual, the reasons, and if springs are at rest."""
     if closed is None:
         first = close(driving.free, q, driving.tolerance, RESTARTS)
         values, q, closed = goal[:, driving.coordinates], first.q, first.closes

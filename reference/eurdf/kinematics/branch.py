@@ -83,6 +83,7 @@ class Branch:
         self._problem = Problem(robot, sorted(held))
         moved = [group for group in self._problem.groups if actuator in group.loops.velocities]
         self._group = moved[0] if moved else None
+        self._rows = np.empty(0) if self._group is None else self._group.row_scale
         self.velocities = np.array([actuator]) if self._group is None else self._group.loops.velocities
         self._unit = self._problem.spaces.scale[self.velocities]
         self._driven = self.velocities == actuator
@@ -112,18 +113,17 @@ class Branch:
         step -= here.inverse @ (here.K @ step)
         q = self._moved(here.q, step)
         correction = np.zeros(len(step))
-        for _ in range(_MOST_CORRECTIONS if self._group is not None else 0):
-            r = self._group.residual(q[None])[0]
+        for _ in range(_MOST_CORRECTIONS):
+            r = np.empty(0) if self._group is None else self._group.residual(q[None])[0]
             if np.abs(r).max(initial=0.0) <= BRANCH:
                 break
-            more = here.inverse @ -(self._group.row_scale * r)
+            more = here.inverse @ -(self._rows * r)
             q = self._moved(q, more)
             correction += more
             if np.abs(more).max() <= ROUNDED_CORRECTION:
                 break
         else:
-            if self._group is not None:
-                return None
+            return None
         part = float(np.linalg.norm(correction) / np.linalg.norm(step))
         if part > _MOST_CORRECTION:
             return None

@@ -8,14 +8,14 @@ redundant rows. Each element has its own damping and its own end; elements that 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.position_limit import PositionLimits
 from eurdf.kinematics.problem import Group, Problem
-from eurdf.kinematics.rank import squares
+from eurdf.kinematics.rank import diagonals, squares
 from eurdf.kinematics.tolerances import (
     FIRST_DAMPING,
     GOOD_SHARE,
@@ -51,6 +51,24 @@ class Descended(NamedTuple):
     steps: Indices
     cut: Mask
 
+    def copy(self) -> Descended:
+        """The same in arrays of its own."""
+        q, residuals = np.array(self.q), [np.array(each) for each in self.residuals]
+        square, scaled_square = np.array(self.square), np.array(self.scaled_square)
+        return Descended(q, residuals, square, scaled_square, np.array(self.steps), np.array(self.cut))
+
+    def keep(self, here: Descended, which: Mask, elements: Indices) -> None:
+        """Write some of other descents, those of these elements, to where they belong."""
+        to = elements[which]
+        for whole, own in zip(self.residuals, here.residuals, strict=True):
+            whole[to] = own[which]
+        self.q[to], self.square[to], self.scaled_square[to] = (
+            here.q[which],
+            here.square[which],
+            here.scaled_square[which],
+        )
+        self.steps[to], self.cut[to] = here.steps[which], here.cut[which]
+
 
 _FACTORS = np.array([4.0, 1.0, 0.1])
 
@@ -58,7 +76,7 @@ _FACTORS = np.array([4.0, 1.0, 0.1])
 def next_damping(damping: Vector, gain: Vector) -> Vector:
     """The damping after accepted steps that reduced the square by so much of what was expected."""
     factor = _FACTORS[np.add(gain > POOR_SHARE, gain > GOOD_SHARE, dtype=np.intp)]
-    return np.maximum(damping * factor, LEAST_DAMPING)
+    return np.asarray(np.maximum(damping * factor, LEAST_DAMPING))
 
 
 def descend(
@@ -97,19 +115,16 @@ def descend(
             going &= ~cut
         count = np.count_nonzero(going) if step < MOST_STEPS else 0
         if count < len(on) or not count:
-            here = Descended(
-                q, r, error, square, np.full(len(on), step), np.zeros(len(on), bool) if cut is None else cut
-            )
+            no: Mask = np.zeros(len(on), dtype=bool)
+            here = Descended(q, r, error, square, np.full(len(on), step), no if cut is None else cut)
             if not count and ended is None:
                 return here  # all at once
-            if ended is None:
-                ended = Descended(*(_empty(part, B) for part in here))
-            _keep(here, ~going if count else np.ones(len(on), bool), on, ended)
+            ended = here.copy() if ended is None else ended
+            ended.keep(here, ~going if count else ~no, on)
             if not count:
                 break
-            on, q, error, square, damping = (each[going] for each in (on, q, error, square, damping))
-            more, idle = more[going], idle[going]
-            r, A = [each[going] for each in r], [each[going] for each in A]
+            on, q, r, A = on[going], q[going], [each[going] for each in r], [each[going] for each in A]
+            error, square, damping, more, idle = error[going], square[going], damping[going], more[going], idle[going]
             if stale is None:
                 at = [group.evaluator.at(q) for group in groups]
             else:
@@ -132,30 +147,16 @@ def descend(
             q, r, error, square, stale = trial, r_there, error_there, reached, None
             damping, more[:] = next_damping(damping, progress / expected), _MORE
             continue
-        own = accepted[:, None]
-        q = np.where(own, trial, q)
+        rows = accepted[:, None]
+        q = np.where(rows, trial, q)
         error, square = np.where(accepted, error_there, error), np.where(accepted, reached, square)
-        r = [np.where(own, there, here) for there, here in zip(r_there, r, strict=True)]
+        r = [np.where(rows, there, here) for there, here in zip(r_there, r, strict=True)]
         gain = np.divide(progress, expected, out=np.zeros(len(on)), where=accepted)
         damping = np.where(accepted, next_damping(damping, gain), damping * more)
         more = np.where(accepted, _MORE, 2.0 * more)
         stale = accepted
     assert ended is not None
     return ended
-
-
-def _empty(part: Any, count: int) -> Any:
-    if isinstance(part, list):
-        return [_empty(each, count) for each in part]
-    return np.empty((count, *part.shape[1:]), part.dtype)
-
-
-def _keep(here: Descended, which: Mask, on: Indices, ended: Descended) -> None:
-    """Write some of the descents, those of the elements ``on``, to where they belong among all."""
-    elements = on[which]
-    for part, whole in zip(here, ended, strict=True):
-        for own, all_of_them in zip(part, whole, strict=True) if isinstance(part, list) else [(part, whole)]:
-            all_of_them[elements] = own[which]
 
 
 def _measured(groups: Sequence[Group], r: Sequence[Matrix]) -> tuple[Vector, Vector]:
@@ -204,16 +205,15 @@ def _damped(A: Sequence[Matrix], b: Sequence[Matrix], damping: Vector) -> list[M
     transposed = [each.swapaxes(1, 2) for each in A]
     wide = [each.shape[1] < each.shape[2] for each in A]
     grams = [own @ back if is_wide else back @ own for own, back, is_wide in zip(A, transposed, wide, strict=True)]
-    diagonals = [gram.reshape(len(gram), -1)[:, :: gram.shape[1] + 1] for gram in grams]  # views
-    trace = _sum([diagonal.sum(axis=1) for diagonal in diagonals])
+    trace = _sum([diagonals(gram).sum(axis=1) for gram in grams])
     # Invertible even with redundant rows.
     damping = np.maximum(np.maximum(damping, 1e-13 * trace), 1e-300)[:, None]
-    steps = []
-    for back, gram, diagonal, rows, is_wide in zip(transposed, grams, diagonals, b, wide, strict=True):
-        diagonal += damping
+    steps: list[Matrix] = []
+    for back, gram, rows, is_wide in zip(transposed, grams, b, wide, strict=True):
+        diagonals(gram)[:] += damping
         column = rows[:, :, None]
         step = back @ np.linalg.solve(gram, -column) if is_wide else np.linalg.solve(gram, back @ -column)
-        steps.append(step[:, :, 0])
+        steps.append(np.asarray(step[:, :, 0]))
     return steps
 
 

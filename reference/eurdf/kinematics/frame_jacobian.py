@@ -7,21 +7,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pinocchio import LOCAL, LOCAL_WORLD_ALIGNED, WORLD
 
-from eurdf.kinematics.array import Matrix, Vector
+from eurdf.array import Matrix, Vector
+from eurdf.closures.se3 import skew
 from eurdf.kinematics.derived import borrowed
-from eurdf.kinematics.evaluate import frames as evaluated_frames
+from eurdf.kinematics.evaluate import Frames, frames
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 
-def frames_of(robot: Robot, *names: str) -> Any:
-    """Evaluates frames with these names, for few elements.
-
-    Raises:
-        ValueError: A frame is unknown, or two different frames have this name.
-    """
-    return evaluated_frames(robot, names, few=True)
+def frames_of(robot: Robot, *names: str) -> Frames:
+    """Frames for few configurations; see `eurdf.kinematics.evaluate.frames`."""
+    return frames(robot, names, few=True)
 
 
 def frame_jacobian(robot: Robot, q: Vector, frame: str, reference: Any) -> Matrix:
@@ -36,8 +33,9 @@ def frame_jacobian(robot: Robot, q: Vector, frame: str, reference: Any) -> Matri
     Raises:
         ValueError: The frame is unknown or ambiguous, or ``reference`` is none of the three.
     """
-    with borrowed(robot, frames_of, frame) as frames:
-        return in_reference(frames, q[None], checked_reference(reference))[0]
+    with borrowed(robot, frames_of, frame) as found:
+        J: Matrix = in_reference(found, q[None], checked_reference(reference))[0]
+        return J
 
 
 def checked_reference(reference: Any) -> Any:
@@ -51,14 +49,14 @@ def checked_reference(reference: Any) -> Any:
     return reference
 
 
-def in_reference(frames: Any, q: Matrix, reference: Any) -> Matrix:
+def in_reference(found: Frames, q: Matrix, reference: Any) -> Matrix:
     """The Jacobians (B, 6, nv) of one frame at q (B, nq), in the axes of the reference."""
-    at = frames.at(q)
-    J = frames.jacobians(at)[:, 0]  # of the origin, in the axes of the world
-    R, p = (part[:, 0] for part in frames.poses(at))
+    at = found.at(q)
+    J: Matrix = found.jacobians(at)[:, 0]
+    R, p = (part[:, 0] for part in found.poses(at))
     if reference == LOCAL:
         inverse = R.swapaxes(1, 2)
         return np.concatenate((inverse @ J[:, :3], inverse @ J[:, 3:]), axis=1)
     if reference == WORLD:
-        return np.concatenate((J[:, :3] + np.cross(p[:, :, None], J[:, 3:], axis=1), J[:, 3:]), axis=1)
-    return np.asarray(J)
+        return np.concatenate((J[:, :3] + skew(p) @ J[:, 3:], J[:, 3:]), axis=1)
+    return J

@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 from pinocchio import SE3
 
+from eurdf.closures.se3 import log3, log3_derivative
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import Closed, assembled, close, start
 from eurdf.kinematics.bounded_step import bounded_step
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.descend import next_damping
-from eurdf.kinematics.evaluate import log3, log3_derivative
 from eurdf.kinematics.frame_jacobian import frames_of
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits, chosen_limits
@@ -338,7 +338,7 @@ class _Search:
                 end[on[stays]], squared[on[stays]] = q[stays], cost[stays]
                 if stays.all():
                     break
-                on, q, e, cost, damping, idle = (each[going] for each in (on, q, e, cost, damping, idle))
+                on, q, e, cost, damping, idle = on[going], q[going], e[going], cost[going], damping[going], idle[going]
                 E = None if E is None else E[going]
                 at = None
             if E is None:
@@ -348,7 +348,7 @@ class _Search:
             worth = expected > LEAST_GAIN * cost
             if not worth.all():
                 end[on[~worth]], squared[on[~worth]] = q[~worth], cost[~worth]
-                on, q, e, cost, damping, idle = (each[worth] for each in (on, q, e, cost, damping, idle))
+                on, q, e, cost, damping, idle = on[worth], q[worth], e[worth], cost[worth], damping[worth], idle[worth]
                 E, v, expected = E[worth], v[worth], expected[worth]
                 if not len(on):
                     break
@@ -460,7 +460,7 @@ class _Search:
         return "steps", at_limits
 
     def _look_at_rank(self, q: Matrix, E: Matrix, element: int) -> Vector:
-        """Keep the largest rank of Ẽ P that an element has met, and with it the largest of its smallest singular values.
+        """Keep the largest rank of Ẽ P that an element has met, and the largest of its smallest singular values then.
 
         Only configurations with the fewest free motions count: at singular loops, there are more, and the rank can be
         larger. The singular values at this one (1, nq) are returned.
@@ -503,7 +503,7 @@ class _Search:
         """How far each frame is from its target (b, F), m and rad, by the errors."""
         errors = np.zeros((len(e), len(self._used)))
         errors[:, self._used] = e
-        both = np.sqrt((errors.reshape(len(e), -1, 2, 3) ** 2).sum(axis=3))
+        both = np.sqrt((errors.reshape(len(e), len(self._task.poses), 2, 3) ** 2).sum(axis=3))
         return self._spaces.length * both[:, :, 0], both[:, :, 1]
 
     def _reached(self, e: Matrix) -> Mask:

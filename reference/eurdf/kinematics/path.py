@@ -40,7 +40,8 @@ def follow(advance: Advance, count: int = 1, *, shortest: float = SHORTEST_STEP,
         What fraction (count,) of each path is done: 1, or less if it ended early.
     """
     done, step = np.zeros(count), np.full(count, first)
-    part, on = done, slice(None)  # what is done of the elements that go on
+    on: Elements = slice(None)
+    part = done  # what is done of the elements that go on
     while True:
         tried, accepted = advance(on, part, np.minimum(step, 1.0 - part))
         part = part + accepted * tried

@@ -75,7 +75,7 @@ class PositionLimits:
         return within
 
     def room(self, q: Matrix, velocities: Indices | None = None) -> tuple[Matrix, Matrix]:
-        """Distances from q (…, nq) to the lower limits (at most 0) and to the upper limits (at least 0), by velocity."""
+        """Distances from q (…, nq) to the lower limits (at most 0) and to the upper ones (at least 0), by velocity."""
         chosen = slice(None) if velocities is None else velocities
         at = q[..., self.coordinates[chosen]]
         return np.minimum(self.lower[chosen] - at, 0.0), np.maximum(self.upper[chosen] - at, 0.0)

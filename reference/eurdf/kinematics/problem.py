@@ -58,13 +58,14 @@ class Group:
     def jacobian(self, at: Any) -> Matrix:
         """Their derivative (B, m, n) at configurations that the evaluator was given, dimensionless."""
         K = self.evaluator.jacobian(at)
-        A = (K[:, :, : len(self.unit)] if len(self.by) else K) * self.factors
+        A: Matrix = (K[:, :, : len(self.unit)] if len(self.by) else K) * self.factors
         return A if self.held is None else A - (A @ self.held)[:, :, None] * self.held
 
     def jacobian_at(self, q: Matrix) -> Matrix:
         """The same at q (B, nq)."""
         return self.jacobian(self.evaluator.at(q))
 
+    @np.errstate(all="ignore")  # what overflows does not exist
     def following(self, q: Matrix, driven: Matrix) -> tuple[Matrix, Mask]:
         """Their own velocities (B, n, k) for given ones (B, g, k), and where (B,) these exist beyond doubt.
 
@@ -142,7 +143,7 @@ class Problem:
     @property
     def numbers(self) -> int:
         """Numbers that one element takes, roughly."""
-        return sum(part.evaluator.numbers for part in self.parts) + 10 * self.tree.nq
+        return sum(int(part.evaluator.numbers) for part in self.parts) + 10 * self.tree.nq
 
     def measured(self, q: Matrix) -> tuple[Matrix, Matrix, Matrix]:
         """At q (B, nq) the residual (B, nc), m and rad, and how far each constraint is open (B, c), m and rad."""

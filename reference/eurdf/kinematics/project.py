@@ -17,6 +17,7 @@ from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.metric import metric, nearest
 from eurdf.kinematics.problem import Problem
+from eurdf.kinematics.rank import are_finite
 from eurdf.kinematics.residual import acceleration_drift, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpace, TangentSpaces
 from eurdf.kinematics.tolerances import RESTARTS, SOLVED
@@ -67,7 +68,7 @@ def project_configuration(
             assembly = assembled(problem, q, tolerance)
             raise NotClosable("no closed configuration was found near the given one", assembly.open, assembly.q)
     finite("the configuration", found)
-    return found[0]
+    return np.array(found[0])
 
 
 class ProjectionTask(NamedTuple):
@@ -119,7 +120,7 @@ def nearest_closed(task: ProjectionTask, q: Matrix) -> tuple[Matrix, Mask]:
 def _distance(task: ProjectionTask, q: Matrix, at: Matrix) -> Vector:
     """½ xᵀ W x (B,), x = at ⊖ q."""
     x = task.problem.tree.difference(q, at)
-    return 0.5 * ((x @ task.W) * x).sum(axis=1)
+    return np.asarray(0.5 * ((x @ task.W) * x).sum(axis=1))
 
 
 def _gradient(task: ProjectionTask, q: Matrix, at: Matrix) -> Matrix:
@@ -223,7 +224,7 @@ def project_acceleration(
 
 def _downhill(H: Matrix, slope: Matrix) -> Matrix:
     """The Newton steps -H⁻¹ slope (b, m), with H (b, m, m) made positive definite if it is not."""
-    H = np.where(np.isfinite(H).all(axis=(1, 2))[:, None, None], H, 0.0)
+    H = np.where(are_finite(H)[:, None, None], H, 0.0)
     values, vectors = np.linalg.eigh(0.5 * (H + H.swapaxes(1, 2)))
     values = np.abs(values)
     values = np.maximum(values, np.maximum(1e-3 * values.max(axis=1, initial=0.0), 1e-300)[:, None])

@@ -20,12 +20,23 @@ _ROUNDING_OF_SQUARES = 1e-15
 
 def squares(rows: Matrix) -> Vector:
     """The squared Euclidean norms (B,) of (B, …)."""
-    return np.asarray(np.add.reduce((rows * rows).reshape(len(rows), -1), axis=1))
+    return np.asarray(np.add.reduce(rows * rows, axis=1 if rows.ndim == 2 else (1, 2)))
 
 
 def norms(rows: Matrix) -> Vector:
     """The Euclidean norms (B,) of (B, …)."""
     return np.asarray(np.sqrt(squares(rows)))
+
+
+def are_finite(matrices: Matrix) -> Mask:
+    """Which (B,) of the matrices (B, m, n) are finite."""
+    return np.asarray(np.isfinite(matrices).all(axis=(1, 2)))
+
+
+def diagonals(matrices: Matrix) -> Matrix:
+    """The diagonals (B, n) of (B, n, n), to read and to change."""
+    B, n, _ = matrices.shape
+    return matrices.reshape(B, n * n)[:, :: n + 1]
 
 
 def numerical_rank(singular_values: Vector, reference: float) -> int:
@@ -63,13 +74,13 @@ def certain_inverse(gram: Matrix, norm: Vector) -> tuple[Matrix, Mask]:
         norm: A norm (B,) that the singular values of A are compared with, at least its Frobenius norm.
     """
     try:
-        inverse = np.linalg.inv(gram)
+        inverse: Matrix = np.asarray(np.linalg.inv(gram), dtype=np.float64)
     except np.linalg.LinAlgError:  # one is singular to the last digit
         if len(gram) == 1:
             return np.zeros_like(gram), np.zeros(1, dtype=bool)
         each = [certain_inverse(gram[i : i + 1], norm[i : i + 1]) for i in range(len(gram))]
         return np.concatenate([one for one, _ in each]), np.concatenate([sure for _, sure in each])
-    trace = inverse.reshape(len(gram), -1)[:, :: gram.shape[1] + 1].sum(axis=1)
+    trace = diagonals(inverse).sum(axis=1)
     return inverse, (trace > 0.0) & (CERTAIN * CERTAIN * norm * norm * trace < 1.0)
 
 
@@ -93,7 +104,7 @@ def least_solution(A: Matrix, b: Matrix, norm: Vector) -> tuple[Matrix, Mask]:
             return x, sure
     else:
         x, sure = np.zeros((len(A), n, b.shape[2])), np.zeros(len(A), dtype=bool)
-    doubtful = np.flatnonzero(~sure & np.isfinite(norm) & np.isfinite(A).all(axis=(1, 2)))
+    doubtful = np.flatnonzero(~sure & np.isfinite(norm) & are_finite(A))
     A, b = A[doubtful], b[doubtful]
     left, values, right = np.linalg.svd(A, full_matrices=False)
     counts = values > CERTAIN * norm[doubtful, None]
@@ -118,11 +129,11 @@ def damped_step(A: Matrix, e: Matrix, damping: Vector) -> Matrix:
         e: (B, m).
         damping: λ (B,).
     """
-    B, m, n = A.shape
+    m, n = A.shape[1:]
     if not 0 < m <= n:
         return _damped_by_values(A, e, damping)
     gram = A @ np.swapaxes(A, 1, 2)
-    finite = np.isfinite(gram).all(axis=(1, 2))
+    finite = are_finite(gram)
     squares, axes = np.linalg.eigh(gram if finite.all() else np.where(finite[:, None, None], gram, 0.0))
     largest = squares[:, -1:]
     counts = squares > CERTAIN * CERTAIN * largest
@@ -137,7 +148,7 @@ def damped_step(A: Matrix, e: Matrix, damping: Vector) -> Matrix:
 
 def _damped_by_values(A: Matrix, e: Matrix, damping: Vector) -> Matrix:
     """`damped_step` by singular values."""
-    A = np.where(np.isfinite(A).all(axis=(1, 2))[:, None, None], A, 0.0)
+    A = np.where(are_finite(A)[:, None, None], A, 0.0)
     left, values, right = np.linalg.svd(A, full_matrices=False)
     counts = values > ZERO * values.max(axis=1, initial=0.0)[:, None]
     factors = np.divide(values, values**2 + damping[:, None], out=np.zeros_like(values), where=counts)

@@ -60,7 +60,7 @@ def dq_dq_actuated(robot: Robot, q: Vector, weights: Vector | Matrix | None = No
         if dependent:
             _refuse_dependent(robot, free, q)
     finite("the derivative", D)
-    return D
+    return np.asarray(D)
 
 
 @overflow_refused("the Jacobian")
@@ -99,7 +99,7 @@ def actuated_jacobian(
         if dependent:
             _refuse_dependent(robot, free, q)
     finite("the Jacobian", J)
-    return J
+    return np.asarray(J)
 
 
 class JacobianTask(NamedTuple):
@@ -150,7 +150,7 @@ def _derivatives(free: Problem, driven: Problem, W: Matrix | None, q: Matrix) ->
 
 
 def _rank_of_actuators(free: Problem, basis: Matrix, velocities: Indices) -> Indices:
-    """Ranks (b,) of the choices of the actuated velocities that the null spaces of K, with bases (b, nv, m), contain."""
+    """Ranks (b,) of the choices of the actuated velocities that null spaces of K, with bases (b, nv, m), contain."""
     unit_free, _ = np.linalg.qr(basis / free.spaces.scale[:, None])
     values = np.linalg.svd(unit_free[:, velocities], compute_uv=False)
     return numerical_ranks(values, np.ones(len(basis)))

@@ -12,7 +12,7 @@ import numpy as np
 from eurdf.kinematics.array import Indices, Matrix, Vector
 from eurdf.kinematics.finite import finite
 from eurdf.kinematics.loop import LoopGroup, independent_groups
-from eurdf.kinematics.rank import least_solution, numerical_ranks
+from eurdf.kinematics.rank import are_finite, least_solution, numerical_ranks
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
 from eurdf.kinematics.tolerances import CERTAIN
 
@@ -101,7 +101,8 @@ class TangentSpaces:
         self.length = characteristic_length(robot)
         self.scale = velocity_scale(robot, self.length)
         self.row_scale = row_scale(robot, self.length)
-        self.dimensionless = self.row_scale[:, None] * self.scale
+        with np.errstate(over="ignore", invalid="ignore"):  # lengths such as 1e200 m
+            self.dimensionless = self.row_scale[:, None] * self.scale
         outside = np.ones(robot.tree.nv, dtype=bool)
         alike: dict[tuple[int, int], list[LoopGroup]] = {}  # by the numbers of their rows and velocities
         for group in independent_groups(robot):
@@ -141,26 +142,26 @@ class TangentSpaces:
     def each(self, K: Matrix) -> Iterator[TangentSpace]:
         """The tangent spaces for K (B, nc, nv): those of one dimension together. A K that is not finite has no rank."""
         A = K * self.dimensionless
-        ok = np.isfinite(A).all(axis=(1, 2))
+        ok = are_finite(A)
         return self._spaces(A if ok.all() else np.where(ok[:, None, None], A, 0.0), alone=False)
 
     def _spaces(self, A: Matrix, alone: bool) -> Iterator[TangentSpace]:
         """The spaces of dimensionless K (B, nc, nv), by their ranks."""
         decomposed: list[tuple[LoopGroup, _Decomposed]] = []
         for groups, rows, velocities in self._alike:
-            blocks = A[:, rows[:, :, None], velocities[:, None]]  # (B, groups, m, n)
+            own = A[:, rows[:, :, None], velocities[:, None]]  # (B, groups, m, n)
             if len(A) == 1 and len(groups) < _MANY:
-                found = [_decomposed(own[None]) for own in blocks[0]]
+                found = [_decomposed(block[None]) for block in own[0]]
             else:
-                parts = _decomposed(blocks.reshape(-1, *blocks.shape[2:]))
-                found = [_Decomposed(*(part[first :: len(groups)] for part in parts)) for first in range(len(groups))]
+                parts = _decomposed(own.reshape(-1, *own.shape[2:]))
+                found = [parts.of(slice(first, None, len(groups))) for first in range(len(groups))]
             decomposed += zip(groups, found, strict=True)
-        ranks = np.array([own.rank for _, own in decomposed], dtype=np.intp).reshape(-1, len(A)).T
+        ranks = np.array([each.rank for _, each in decomposed], dtype=np.intp).reshape(len(decomposed), len(A)).T
         for of_kind in np.unique(ranks, axis=0) if len(A) > 1 else ranks:
             which = np.flatnonzero((ranks == of_kind).all(axis=1))
             blocks = [
-                _Block(group, own.right[which][:, :, rank:], own.inverse[which])
-                for (group, own), rank in zip(decomposed, of_kind.tolist(), strict=True)
+                _Block(group, each.right[which][:, :, rank:], each.inverse[which])
+                for (group, each), rank in zip(decomposed, of_kind.tolist(), strict=True)
             ]
             yield TangentSpace(which, blocks, self, alone)
 
@@ -177,6 +178,10 @@ class _Decomposed(NamedTuple):
     right: Matrix
     inverse: Matrix
     rank: Indices
+
+    def of(self, which: slice) -> _Decomposed:
+        """Some of them."""
+        return _Decomposed(self.right[which], self.inverse[which], self.rank[which])
 
 
 def _decomposed(A: Matrix) -> _Decomposed:

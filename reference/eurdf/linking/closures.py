@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from eurdf.closures.kind import REGISTRY
 from eurdf.format.extension import ClosureEntry
 from eurdf.linking.frame_names import FrameNames
-from eurdf.mechanism.constraint import CLOSURES, RIGID, Closure, Compliance, DistanceClosure, HingeClosure
+from eurdf.mechanism.constraint import RIGID, Closure, Compliance
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.pose import Pose, Vector3
 from eurdf.reading.reporter import YamlReporter
@@ -54,7 +55,7 @@ def link_closures(
             )
             continue
         joined[pair] = entry.name
-        kind = CLOSURES.get(entry.type)
+        kind = REGISTRY.get(entry.type)
         if kind is None:
             reporter.report(
                 "closure-type-unknown",
@@ -65,12 +66,10 @@ def link_closures(
         compliance = entry.compliance or RIGID
         if not _fits(compliance, kind, entry, reporter):
             continue
-        if entry.length is not None:
-            closures.append(DistanceClosure(entry.name, a, b, entry.length, compliance=compliance))
-        elif entry.axes is None:
-            closures.append(kind(entry.name, a, b, compliance=compliance))
-        elif _have_directions(entry, entry.axes, reporter):
-            closures.append(HingeClosure(entry.name, a, b, entry.axes, compliance=compliance))
+        if entry.axes is None or _have_directions(entry, entry.axes, reporter):
+            keys = {"length": entry.length, "axes": entry.axes}
+            own = {name: value for name, value in keys.items() if value is not None}
+            closures.append(kind(entry.name, a, b, compliance=compliance, **own))
     return tuple(closures)
 
 

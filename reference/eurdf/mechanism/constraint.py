@@ -1,7 +1,4 @@
-"""The constraints that a mechanism has beside its spanning tree, one class a kind.
-
-What a kind means, its residual and the derivatives of that, is in `eurdf.kinematics.constraints`.
-"""
+"""The constraints that a mechanism has beside its spanning tree: closures (kinds: `eurdf.closures`) and couplings."""
 
 from __future__ import annotations
 
@@ -10,7 +7,6 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 from eurdf.mechanism.frame import Anchor
-from eurdf.mechanism.pose import Vector3
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -94,56 +90,6 @@ class Closure(Constraint):
 
 
 @dataclass(frozen=True, slots=True)
-class PointClosure(Closure):
-    """The origin of B is at the origin of A: a ball joint."""
-
-    type: ClassVar[str] = "3d"
-    units: ClassVar[tuple[Unit, ...]] = ("m",) * 3
-
-
-@dataclass(frozen=True, slots=True)
-class FrameClosure(Closure):
-    """B is at A in position and orientation: a weld."""
-
-    type: ClassVar[str] = "6d"
-    units: ClassVar[tuple[Unit, ...]] = ("m",) * 3 + ("rad",) * 3
-
-    def with_orientation_free(self) -> PointClosure:
-        """The 3d closure of the same frames."""
-        return PointClosure(self.name, self.a, self.b)
-
-
-@dataclass(frozen=True, slots=True)
-class HingeClosure(Closure):
-    """The origin of B is at the origin of A, and an axis of B is along an axis of A: a revolute joint.
-
-    Attributes:
-        axes: The axis in A and the axis in B, of any length but zero.
-    """
-
-    type: ClassVar[str] = "hinge"
-    units: ClassVar[tuple[Unit, ...]] = ("m",) * 3 + ("rad",) * 2
-    axes: tuple[Vector3, Vector3] = ((0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
-
-    def with_orientation_free(self) -> PointClosure:
-        """The 3d closure of the same frames."""
-        return PointClosure(self.name, self.a, self.b)
-
-
-@dataclass(frozen=True, slots=True)
-class DistanceClosure(Closure):
-    """The origins of A and B are at a fixed distance: a massless rod between two ball joints.
-
-    Attributes:
-        length: The distance, m; positive.
-    """
-
-    type: ClassVar[str] = "distance"
-    units: ClassVar[tuple[Unit, ...]] = ("m",)
-    length: float
-
-
-@dataclass(frozen=True, slots=True)
 class Coupling(Constraint):
     """A linear relation of joint coordinates: Σ cᵢ qᵢ = offset.
 
@@ -169,9 +115,3 @@ class Coupling(Constraint):
             coefficients=tuple(each for each in self.coefficients if each[0] not in coordinates),
             offset=self.offset - sum(c * coordinates[name] for name, c in self.coefficients if name in coordinates),
         )
-
-
-#: The kinds of closure that files can state, by their type there.
-CLOSURES: Mapping[str, type[Closure]] = {
-    kind.type: kind for kind in (PointClosure, FrameClosure, HingeClosure, DistanceClosure)
-}

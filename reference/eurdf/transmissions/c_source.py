@@ -11,11 +11,15 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from eurdf.closures.distance import DistanceClosure
+from eurdf.closures.frame import FrameClosure
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.point import PointClosure
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import SPREADS
-from eurdf.kinematics.constraint_stack import all_constraints
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.loop import find_loops
+from eurdf.kinematics.scale import row_scale
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.kinematics.tolerances import (
     CLOSED,
@@ -28,14 +32,7 @@ from eurdf.kinematics.tolerances import (
     RESTARTS,
     SHORTEST_STEP,
 )
-from eurdf.mechanism.constraint import (
-    Constraint,
-    Coupling,
-    DistanceClosure,
-    FrameClosure,
-    HingeClosure,
-    PointClosure,
-)
+from eurdf.mechanism.constraint import Constraint, Coupling
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mimic import Mimic
@@ -340,7 +337,7 @@ int {name}_at_joints({name}_pose *pose, const double joints[{nj}], double motors
 
 def _source(tables: _Tables, name: str, drives: Sequence[Drive], steps: int, substeps: int) -> str:
     robot = tables.robot
-    scale = all_constraints(robot).scale(derived(robot, TangentSpaces).length)
+    scale = row_scale(robot, derived(robot, TangentSpaces).length)
     rows = {index: loop.rows for index, loop in enumerate(find_loops(robot))}
     path: list[str] = []
     constraints: list[str] = []

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.point import PointClosure
 from eurdf.format.urdf.data import Urdf
-from eurdf.mechanism.constraint import HingeClosure, PointClosure
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.spanning_tree import rigid_poses
 from eurdf.writing.joined_closures import Apart, join_points

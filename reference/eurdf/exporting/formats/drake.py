@@ -16,13 +16,17 @@ from pathlib import PurePosixPath
 
 from lxml import etree
 
+from eurdf.closures.distance import DistanceClosure
+from eurdf.closures.frame import FrameClosure
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.point import PointClosure
 from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.inertia import accepted_inertia, has_inertia
 from eurdf.exporting.urdf_tree import AXES, URDF_LOSSES, Step, UrdfTree, plain_steps
 from eurdf.exporting.written import Exportable, Format, Written
 from eurdf.loss import ACCELERATION, CONVERSION, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Inertia
-from eurdf.mechanism.constraint import Closure, Coupling, DistanceClosure, FrameClosure, HingeClosure, PointClosure
+from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism

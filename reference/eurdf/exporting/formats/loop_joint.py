@@ -11,10 +11,11 @@ import math
 
 from lxml import etree
 
+from eurdf.closures.hinge import HingeClosure
 from eurdf.exporting.urdf_tree import PLAIN_LOSSES, PlainTree
 from eurdf.exporting.written import Exportable, Format, Written
 from eurdf.loss import Effect, Losses, LossKind
-from eurdf.mechanism.constraint import Closure, HingeClosure
+from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.pose import Pose, Quaternion, Vector3, direction
 from eurdf.writing.angles import rpy_of
 from eurdf.writing.names import UniqueNames

@@ -16,6 +16,10 @@ from pathlib import PurePosixPath
 
 from lxml import etree
 
+from eurdf.closures.distance import DistanceClosure
+from eurdf.closures.frame import FrameClosure
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.point import PointClosure
 from eurdf.exporting.contacts import neighbours
 from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.exceptions import CannotExport
@@ -25,14 +29,7 @@ from eurdf.exporting.servo import position_gain
 from eurdf.exporting.written import Exportable, Format, Written
 from eurdf.loss import ACCELERATION, BEYOND_LIMITS, COMMON, CONVERSION, NAMED_FILE, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Shape
-from eurdf.mechanism.constraint import (
-    Closure,
-    Coupling,
-    DistanceClosure,
-    FrameClosure,
-    HingeClosure,
-    PointClosure,
-)
+from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT

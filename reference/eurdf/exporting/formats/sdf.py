@@ -16,6 +16,8 @@ from operator import mul
 
 from lxml import etree
 
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.point import PointClosure
 from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.exceptions import CannotExport
 from eurdf.exporting.inertia import accepted_inertia
@@ -23,7 +25,7 @@ from eurdf.exporting.mesh_file import MeshFiles
 from eurdf.exporting.written import Exportable, Format, Written
 from eurdf.loss import ACCELERATION, BEYOND_LIMITS, COMMON, NAMED_FILE, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Inertia, Shape
-from eurdf.mechanism.constraint import Closure, Coupling, HingeClosure, PointClosure
+from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_transform import joint_transform

@@ -16,6 +16,10 @@ from itertools import combinations, permutations
 import numpy as np
 import numpy.typing as npt
 
+from eurdf.closures.distance import DistanceClosure
+from eurdf.closures.frame import FrameClosure
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.point import PointClosure
 from eurdf.diagnostics.extras import install_command
 from eurdf.exceptions import MissingExtra
 from eurdf.exporting.contacts import neighbours
@@ -27,14 +31,7 @@ from eurdf.exporting.servo import position_gain
 from eurdf.exporting.written import Exportable, Format, Written
 from eurdf.loss import ACCELERATION, BEYOND_LIMITS, COMMON, NOT_REFERENCED, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Shape
-from eurdf.mechanism.constraint import (
-    Closure,
-    Coupling,
-    DistanceClosure,
-    FrameClosure,
-    HingeClosure,
-    PointClosure,
-)
+from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_transform import joint_transform
 from eurdf.mechanism.joint_type import JointType

@@ -13,12 +13,13 @@ from pathlib import Path
 
 from lxml import etree
 
+from eurdf.closures.point import PointClosure
 from eurdf.importing.elements import Elements, local, named
 from eurdf.importing.locked import LOCKED, without_locks
 from eurdf.importing.robot_read import ImportFormat, RobotRead
 from eurdf.importing.urdf_tree import URDF_LOSSES, UrdfTree, read_tree
 from eurdf.loss import Effect, Losses, LossKind
-from eurdf.mechanism.constraint import Closure, Coupling, PointClosure
+from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_type import COORDINATES, JointType

@@ -11,11 +11,14 @@ from pathlib import Path
 
 from lxml import etree
 
+from eurdf.closures.frame import FrameClosure
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.point import PointClosure
 from eurdf.importing.elements import named
 from eurdf.importing.robot_read import ImportFormat, RobotRead
 from eurdf.importing.urdf_tree import URDF_LOSSES, UrdfTree, loop_left_out, read_tree
 from eurdf.loss import Effect, Losses, LossKind
-from eurdf.mechanism.constraint import Closure, FrameClosure, HingeClosure, PointClosure
+from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.reading.resource import FileFinder
 from eurdf.writing.names import UniqueNames

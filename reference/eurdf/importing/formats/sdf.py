@@ -19,6 +19,9 @@ from typing import Any
 
 from lxml import etree
 
+from eurdf.closures.frame import FrameClosure
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.point import PointClosure
 from eurdf.importing.elements import Elements, named
 from eurdf.importing.locked import LOCKED, without_locks
 from eurdf.importing.mesh_copies import NAMED_FILE, MeshCopies
@@ -26,7 +29,7 @@ from eurdf.importing.robot_read import ImportFormat, RobotRead
 from eurdf.importing.xml_files import inside, read_root
 from eurdf.loss import Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Inertia, Shape
-from eurdf.mechanism.constraint import Closure, FrameClosure, HingeClosure, PointClosure
+from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_type import COORDINATES, JointType

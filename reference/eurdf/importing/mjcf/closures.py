@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from eurdf.closures.distance import DistanceClosure
+from eurdf.closures.frame import FrameClosure
+from eurdf.closures.point import PointClosure
 from eurdf.importing.mjcf.reading import MjcfReading
 from eurdf.importing.mjcf.values import pose_from, vector
-from eurdf.mechanism.constraint import Closure, DistanceClosure, FrameClosure, PointClosure
+from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose

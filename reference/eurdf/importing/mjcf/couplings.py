@@ -7,9 +7,7 @@ from dataclasses import replace
 
 from eurdf.importing.mjcf.reading import MjcfReading
 from eurdf.importing.mjcf.step import SCALAR
-from eurdf.mechanism.constraint import (
-    Coupling,
-)
+from eurdf.mechanism.constraint import Coupling
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_transform import joint_transform
 from eurdf.mechanism.joint_type import JointType
