@@ -28,24 +28,24 @@ class FrameClosure(ClosureKind):
     @staticmethod
     def residual(poses: RelativePoses, fixed: Any) -> Matrix:
         """log6(ᴬM_B)."""
-        return poses.logarithm
+        return poses.logarithm()
 
     @staticmethod
     def jacobian(poses: RelativePoses, fixed: Any) -> Matrix:
         """Jlog6(ᴮM_A)."""
-        return poses.logarithm_by_twist
+        return poses.logarithm_by_twist()
 
     @staticmethod
     def drift(motions: RelativeMotions, fixed: Any) -> Matrix:
         """J ξ̇ + J̇ ξ, with ṙ = J(r) ξ the derivative of log6 by the twist in the axes of B."""
-        r = motions.poses.logarithm
+        r = motions.poses.logarithm()
         J = log6_derivative(r)
         return turned(J, motions.change) + turned(log6_second_derivative(r, turned(J, motions.twist)), motions.twist)
 
     @staticmethod
     def opening(poses: RelativePoses, fixed: Any) -> tuple[Vector, Vector]:
         """|p| and the angle of ᴬR_B."""
-        return np.hypot.reduce(poses.position, axis=-1), np.hypot.reduce(poses.logarithm[..., 3:], axis=-1)
+        return np.hypot.reduce(poses.position, axis=-1), np.hypot.reduce(poses.logarithm()[..., 3:], axis=-1)
 
 
 KIND = FrameClosure

@@ -75,13 +75,13 @@ class HingeClosure(ClosureKind):
     @staticmethod
     def residual(poses: RelativePoses, fixed: Axes) -> Matrix:
         """p and Eᵀ s."""
-        _, theta, n = _turn(poses.rotation, fixed)
+        _, theta, n = poses.once(_turn, fixed)
         return np.concatenate((poses.position, turned(transposed(fixed.across), theta[..., None] * n)), axis=-1)
 
     @staticmethod
     def jacobian(poses: RelativePoses, fixed: Axes) -> Matrix:
         """[1, -skew(p); 0, Eᵀ S], where ṡ = S ω = g a × (ω × β) + (1 - g c) (n · ω) n."""
-        beta, theta, n = _turn(poses.rotation, fixed)
+        beta, theta, n = poses.once(_turn, fixed)
         g = _stretch(theta)
         S = (1.0 - g * np.cos(theta))[..., None, None] * outer(n, n)
         S -= g[..., None, None] * (skew(fixed.a) @ skew(beta))
@@ -94,7 +94,7 @@ class HingeClosure(ClosureKind):
     def drift(motions: RelativeMotions, fixed: Axes) -> Matrix:
         """p̈ and Eᵀ s̈, with s̈ = g a × β̈ + 2 g' ċ a × β̇ + (g' c̈ + g'' ċ²) a × β."""
         a = fixed.a
-        beta, theta, n = _turn(motions.poses.rotation, fixed)
+        beta, theta, n = motions.poses.once(_turn, fixed)
         g, slope, bend = (values[..., None] for values in _profile(theta))
         omega = motions.omega
         rate = cross(omega, beta)
@@ -107,15 +107,15 @@ class HingeClosure(ClosureKind):
     @staticmethod
     def opening(poses: RelativePoses, fixed: Axes) -> tuple[Vector, Vector]:
         """|p| and θ."""
-        return np.hypot.reduce(poses.position, axis=-1), _turn(poses.rotation, fixed)[1]
+        return np.hypot.reduce(poses.position, axis=-1), poses.once(_turn, fixed)[1]
 
 
 KIND = HingeClosure
 
 
-def _turn(R: Matrix, axes: Axes) -> tuple[Matrix, Vector, Matrix]:
+def _turn(poses: RelativePoses, axes: Axes) -> tuple[Matrix, Vector, Matrix]:
     """β (…, k, 3), the angle θ (…, k) from a to β, in [0, π], and the unit vector n (…, k, 3) about which it turns."""
-    beta = turned(R, axes.b)
+    beta = turned(poses.rotation, axes.b)
     normal = cross(axes.a, beta)
     sine = norm(normal)
     n = np.empty_like(normal)

@@ -8,11 +8,10 @@ closures of the kind, as functions of the poses of their frames B in A. To add a
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -25,6 +24,9 @@ if TYPE_CHECKING:
     from eurdf.array import Matrix, Vector
 
 
+_T = TypeVar("_T")
+
+
 class RelativePoses:
     """ᴬM_B of k pairs of frames A, B at B configurations.
 
@@ -35,20 +37,29 @@ class RelativePoses:
 
     rotation: Matrix
     position: Matrix
+    _logarithm: Matrix | None = None
+    _found: tuple[Callable[..., Any], Any] = isinstance, None
 
     def of(self, which: slice) -> RelativePoses:
         """Those of some of the pairs."""
         return PoseArrays(self.rotation[:, which], self.position[:, which])
 
-    @cached_property
     def logarithm(self) -> Matrix:
         """log6(ᴬM_B) (B, k, 6), linear and angular, m and rad."""
-        return log6(self.rotation, self.position)
+        if self._logarithm is None:
+            self._logarithm = log6(self.rotation, self.position)
+        return self._logarithm
 
-    @cached_property
     def logarithm_by_twist(self) -> Matrix:
         """Its derivative (B, k, 6, 6) by the twist of B against A, seen from A: Jlog6(ᴬM_B) Ad(ᴮM_A) = Jlog6(ᴮM_A)."""
-        return log6_derivative(-self.logarithm)
+        return log6_derivative(-self.logarithm())
+
+    def once(self, compute: Callable[[RelativePoses, Any], _T], fixed: Any) -> _T:
+        """What a function of a kind computes from the poses; it is kept for the next to ask for it."""
+        if self._found[0] is not compute:
+            self._found = compute, compute(self, fixed)
+        value: _T = self._found[1]
+        return value
 
 
 class PoseArrays(RelativePoses):

@@ -16,6 +16,10 @@ from eurdf.array import Matrix, Vector
 _NEXT, _LAST = [1, 2, 0], [2, 0, 1]
 _EACH = np.arange(3)
 _ONE = np.eye(3)
+# Linear maps are one product with a vector: it is faster than to set entries one by one.
+_SKEW = np.cross(_ONE[:, None], _ONE).transpose(0, 2, 1).reshape(3, 9)
+_OF_ORIGIN = np.concatenate((np.zeros((3, 3, 3)), -_SKEW.reshape(3, 3, 3)), axis=2).reshape(3, 18)
+_OF_ZERO = np.eye(3, 6).ravel()
 
 
 def cross(a: Matrix, b: Matrix) -> Matrix:
@@ -35,9 +39,7 @@ def norm(a: Matrix) -> Vector:
 
 def skew(a: Matrix) -> Matrix:
     """The matrices (…, 3, 3) that multiply b to a × b."""
-    S = np.zeros((*a.shape, 3))
-    S[..., _LAST, _NEXT], S[..., _NEXT, _LAST] = a, -a
-    return S
+    return np.asarray((a @ _SKEW).reshape(*a.shape, 3))
 
 
 def turned(R: Matrix, a: Matrix) -> Matrix:
@@ -57,10 +59,7 @@ def outer(a: Matrix, b: Matrix) -> Matrix:
 
 def velocity_of_origin(p: Matrix) -> Matrix:
     """[1, -skew(p)] (…, 3, 6): ṗ over the twist of B against A, seen from A, where the origin of B is at p (…, 3)."""
-    rows = np.zeros((*p.shape, 6))
-    rows[..., _EACH, _EACH] = 1.0
-    rows[..., 3:] = -skew(p)
-    return rows
+    return np.asarray((p @ _OF_ORIGIN + _OF_ZERO).reshape(*p.shape, 6))
 
 
 def plane_across(a: Vector) -> Matrix:
@@ -131,33 +130,48 @@ def quaternion_log(quaternion: Matrix) -> Matrix:
 
 # -- exponentials and logarithms --------------------------------------------------------------------------------------
 
-# Terms cₙ tⁿ of 1 - (θ/2) cot(θ/2), t = θ², from the differential equation that it satisfies; for angles below 1 rad.
-_SERIES = [0.0]
-for _n in range(1, 12):
-    _SERIES.append(((_n == 1) / 4.0 + sum(_SERIES[i] * _SERIES[_n - i] for i in range(1, _n))) / (2.0 * _n + 1.0))
-_COTANGENT = np.polynomial.Polynomial(_SERIES[1:])
-_COTANGENTS = _COTANGENT, _COTANGENT.deriv(), _COTANGENT.deriv(2)
+# Coefficients cₙ of tⁿ, n > 0, in 1 - (θ/2) cot(θ/2), t = θ², from the differential equation that it satisfies.
+_COTANGENT: list[float] = []
+for _n in range(1, 10):
+    _sum = sum(a * b for a, b in zip(_COTANGENT, reversed(_COTANGENT), strict=True))
+    _COTANGENT.append(((_n == 1) / 4.0 + _sum) / (2.0 * _n + 1.0))
+_NEAR = 0.25  # below this t the series counts; its terms shrink by t / 4π²
 
 
-def _beta(turn: Matrix) -> tuple[Vector, Vector, Vector]:
-    """β(t) = 1/t - cot(θ/2) / 2θ (…, 1, 1), β′ and β″; the inverse of the right Jacobian is 1 + W/2 + β W²."""
-    t = dot(turn, turn)[..., None, None]
-    small = t < 1.0
-    if small.all():
-        series, slope, bend = _COTANGENTS
-        return series(t), slope(t), bend(t)
+def _beta(turn: Matrix, order: int = 0) -> list[Vector]:
+    """β(t) = 1/t - cot(θ/2) / 2θ (…, 1), and its derivatives up to an order of at most 2.
+
+    The inverse of the right Jacobian of exp3 is 1 + W/2 + β W².
+    """
+    t = dot(turn, turn)[..., None]
+    most = float(t.max(initial=0.0))
+    if most < _NEAR:
+        return _series(t, most, order)
+    small = t < _NEAR
     far = np.where(small, 1.0, t)
     half = 0.5 * np.sqrt(far)
     h = half / np.tan(half)
     h_slope = (h - h * h - 0.25 * far) / (2.0 * far)
     h_bend = (h_slope * (1.0 - 2.0 * h) - 0.25 - 2.0 * h_slope) / (2.0 * far)
-    beta = (1.0 - h) / far
-    slope_ = -(h_slope + beta) / far
-    bend_ = -(h_bend + 2.0 * slope_) / far
-    near = np.where(small, t, 0.0)
-    found = zip(_COTANGENTS, (beta, slope_, bend_), strict=True)
-    beta, slope_, bend_ = (np.where(small, series(near), value) for series, value in found)
-    return beta, slope_, bend_
+    found = [(1.0 - h) / far]
+    found.append(-(h_slope + found[0]) / far)
+    found.append(-(h_bend + 2.0 * found[1]) / far)
+    near = _series(np.where(small, t, 0.0), _NEAR, order)
+    return [np.where(small, one, other) for one, other in zip(near, found, strict=False)]
+
+
+def _series(t: Vector, most: float, order: int) -> list[Vector]:
+    """β and its derivatives by their series, of as many terms as the largest t needs."""
+    count = min(len(_COTANGENT), 3 + order + int(37.0 / math.log(39.0 / max(most, 1e-300))))
+    coefficients, found = _COTANGENT[:count], []
+    for _ in range(order + 1):
+        value = np.full_like(t, coefficients[-1])
+        for coefficient in reversed(coefficients[:-1]):
+            value *= t
+            value += coefficient
+        found.append(value)
+        coefficients = [n * coefficient for n, coefficient in enumerate(coefficients)][1:]
+    return found
 
 
 def log3(R: Matrix) -> Matrix:
@@ -167,59 +181,65 @@ def log3(R: Matrix) -> Matrix:
 
 def log3_derivative(turn: Matrix) -> Matrix:
     """The derivative (…, 3, 3) of log3 by the angular velocity in the axes that turn, of rotation vectors (…, 3)."""
-    W = skew(turn)
-    return np.asarray(_ONE + 0.5 * W + _beta(turn)[0] * (W @ W))
+    return _inverse_jacobian(turn, *_beta(turn))
+
+
+def _inverse_jacobian(w: Matrix, beta: Vector) -> Matrix:
+    """1 + W/2 + β W²."""
+    return skew(0.5 * w) + outer(beta * w, w) + _scalar(1.0 - beta * _along(w, w))
 
 
 def log6(R: Matrix, p: Matrix) -> Matrix:
     """log6 (…, 6) of poses: linear, m, and angular, rad."""
     turn = log3(R)
     across = cross(turn, p)
-    return np.concatenate((p - 0.5 * across + _beta(turn)[0][..., 0] * cross(turn, across), turn), axis=-1)
+    (beta,) = _beta(turn)
+    return np.concatenate((p - 0.5 * across + beta * cross(turn, across), turn), axis=-1)
 
 
 def log6_derivative(r: Matrix) -> Matrix:
     """The derivative (…, 6, 6) of log6 by the twist in the axes of the moved frame, of logarithms (…, 6)."""
-    beta, slope, _ = _beta(r[..., 3:])
-    V, W = skew(r[..., :3]), skew(r[..., 3:])
-    square = W @ W
-    along = _along(r[..., 3:], r[..., :3])
-    return _blocks(_ONE + 0.5 * W + beta * square, 0.5 * V + beta * _both(W, V) + 2.0 * along * slope * square)
+    v, w = r[..., :3], r[..., 3:]
+    beta, slope = _beta(w, 1)
+    along = 2.0 * _along(w, v)
+    # The derivative of 1 + W/2 + β W² along v, where W² = w wᵀ - t and t changes by 2 w · v.
+    beside = skew(0.5 * v) + outer(beta * v + slope * along * w, w) + outer(beta * w, v)
+    beside += _scalar(-along * (beta + slope * _along(w, w)))
+    return _blocks(_inverse_jacobian(w, beta), beside)
 
 
 def log6_second_derivative(r: Matrix, rate: Matrix) -> Matrix:
     """The derivative (…, 6, 6) of `log6_derivative` while the logarithm r (…, 6) changes at a rate (…, 6)."""
-    beta, slope, bend = _beta(r[..., 3:])
     v, w, dv, dw = r[..., :3], r[..., 3:], rate[..., :3], rate[..., 3:]
+    beta, slope, bend = (values[..., None] for values in _beta(w, 2))
     V, W, dV, dW = (skew(each) for each in (v, w, dv, dw))
-    square, along_v, along_w = W @ W, _along(w, v), _along(w, dw)
-    turn = 0.5 * dW + beta * _both(W, dW) + 2.0 * slope * along_w * square
-    moved = 0.5 * dV + beta * (_both(W, dV) + _both(dW, V)) + 2.0 * slope * along_w * _both(W, V)
-    moved += 2.0 * slope * along_v * _both(W, dW)
-    moved += (2.0 * slope * (_along(dw, v) + _along(w, dv)) + 4.0 * bend * along_w * along_v) * square
+    square, along_v, along_w = W @ W, 2.0 * _along(w, v)[..., None], 2.0 * _along(w, dw)[..., None]
+    turn = 0.5 * dW + beta * _both(W, dW) + slope * along_w * square
+    moved = 0.5 * dV + beta * (_both(W, dV) + _both(dW, V)) + slope * along_w * _both(W, V)
+    moved += slope * along_v * _both(W, dW)
+    moved += (2.0 * slope * (_along(dw, v) + _along(w, dv))[..., None] + bend * along_w * along_v) * square
     return _blocks(turn, moved)
 
 
 def exp6(v: Matrix) -> tuple[Matrix, Matrix]:
     """The rotations (…, 3, 3) and translations (…, 3), m, that twists (…, 6) lead to in unit time."""
-    (a, b), _ = _exponential(v[..., 3:])
     move, turn = v[..., :3], v[..., 3:]
+    (a, b), _ = _exponential(turn)
     across = cross(turn, move)
-    position = move + a[..., 0] * across + b[..., 0] * cross(turn, across)
-    return rotation_of(quaternion_exp(turn)), position
+    return rotation_of(quaternion_exp(turn)), move + a * across + b * cross(turn, across)
 
 
 def exp6_derivative(v: Matrix) -> Matrix:
     """The right Jacobian (…, 6, 6) of exp6: the twist in the axes of the moved frame over the change of v (…, 6)."""
-    (a, b), (a_slope, b_slope) = _exponential(v[..., 3:])
     V, W = skew(v[..., :3]), skew(v[..., 3:])
-    square, along = W @ W, 2.0 * _along(v[..., 3:], v[..., :3])
+    (a, b), (a_slope, b_slope) = ([value[..., None] for value in values] for values in _exponential(v[..., 3:]))
+    square, along = W @ W, 2.0 * _along(v[..., 3:], v[..., :3])[..., None]
     return _blocks(_ONE - a * W + b * square, -a * V - along * a_slope * W + b * _both(W, V) + along * b_slope * square)
 
 
 def _exponential(turn: Matrix) -> tuple[tuple[Vector, Vector], tuple[Vector, Vector]]:
-    """a = (1 - cos θ) / t and b = (θ - sin θ) / θ³, and a′(t), b′(t); the left Jacobian is 1 + a W + b W²."""
-    t = dot(turn, turn)[..., None, None]
+    """a = (1 - cos θ) / t and b = (θ - sin θ) / θ³ (…, 1), and a′(t), b′(t); the left Jacobian is 1 + a W + b W²."""
+    t = _along(turn, turn)
     angle = np.sqrt(t)
     a = 0.5 * np.sinc(0.5 * angle / np.pi) ** 2
     small = angle < 0.5
@@ -238,7 +258,12 @@ def _taylor(t: Matrix, first: int, factor: int = 0) -> Matrix:
 
 
 def _along(a: Matrix, b: Matrix) -> Vector:
-    return dot(a, b)[..., None, None]
+    return dot(a, b)[..., None]
+
+
+def _scalar(s: Vector) -> Matrix:
+    """s (…, 1) times the identity."""
+    return np.asarray(s[..., None] * _ONE)
 
 
 def _both(A: Matrix, B: Matrix) -> Matrix:

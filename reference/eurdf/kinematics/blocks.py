@@ -26,7 +26,7 @@ Progress = Callable[[int, int], None]
 Arrays = Sequence[npt.NDArray[Any]]
 
 # Memory of the arrays of one block, bytes, and the largest number of elements in one: more would not be faster.
-_BLOCK_BYTES = 2**25
+_BLOCK_BYTES = 2**22
 _LONGEST_BLOCK = 1000
 
 # Number of blocks that an executor is given at once, so that a long batch does not fill its queue.

@@ -7,7 +7,6 @@ give the same numbers. What overflows is inf or NaN.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -20,7 +19,7 @@ from eurdf.closures.se3 import velocity_of_origin
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.tree_many import ManyPairs, TreeMany
 from eurdf.mechanism.constraint import Constraint, Coupling
-from eurdf.pinocchio.tree_few import FewPairs, Pair, poses_once
+from eurdf.pinocchio.tree_few import FewPairs, Pair, as_slice, poses_once
 
 if TYPE_CHECKING:
     from eurdf.kinematics.tree_kinematics import TreeKinematics
@@ -36,6 +35,7 @@ class _Group(NamedTuple):
         members: Their indices among the constraints.
         pairs: Which pairs of frames are theirs.
         rows: Which rows of the residual.
+        size: Number of these rows.
     """
 
     kind: type[ClosureKind]
@@ -43,10 +43,10 @@ class _Group(NamedTuple):
     members: Indices
     pairs: slice
     rows: slice | Indices
+    size: int
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class State:
+class State(NamedTuple):
     """Constraints at some configurations.
 
     Attributes:
@@ -95,7 +95,7 @@ class Evaluator:
         for kind, found in members.items():
             own: list[Any] = [constraints[index] for index in found]
             rows = np.array([first[each] + row for each in found for row in range(own[0].rows)], dtype=np.intp)
-            indices, chosen = np.array(found, dtype=np.intp), _adjacent(rows)
+            indices, chosen = np.array(found, dtype=np.intp), as_slice(rows)
             if kind is Coupling:
                 self._couplings = Couplings(own, tree.coordinate, velocities), indices, chosen
                 continue
@@ -103,10 +103,12 @@ class Evaluator:
                 raise NotImplementedError(f"constraint '{own[0].name}' has the type '{kind.type}', which has no kind")
             pairs = slice(len(self._sites), len(self._sites) + len(own))
             self._sites += [(tree.site(each.a), tree.site(each.b)) for each in own]
-            self._groups.append(_Group(kind, kind.prepare(own), indices, pairs, chosen))
+            self._groups.append(_Group(kind, kind.prepare(own), indices, pairs, chosen, len(rows)))
         # The rows of the residual are those of one kind, in order.
         self._is_plain = self._couplings is None and len(self._groups) == 1
         self._tree: TreeKinematics | None = tree
+        self._key = b""  # of the configuration of the last state of one element
+        self._last: Any = None
         if not few:
             self._pairs = ManyPairs(derived(tree, TreeMany), self._sites, velocities)
             self._sites, self._tree = [], None  # what is Pinocchio's cannot be sent to another process
@@ -124,12 +126,24 @@ class Evaluator:
 
     @property
     def numbers(self) -> int:
-        """Numbers that the evaluation of one element takes, roughly."""
-        return int(self._pairs.numbers) + 3 * self.m * self.n + 2 * self.m * self.m
+        """Numbers that the residual and K of one element take, roughly."""
+        return self.numbers_of_residual + 3 * self.m * self.n + 2 * self.m * self.m
+
+    @property
+    def numbers_of_residual(self) -> int:
+        """Numbers that the residual of one element takes, roughly."""
+        return int(self._pairs.numbers)
 
     def at(self, q: Matrix) -> State:
         """The constraints at q (B, nq)."""
-        return self._state(q, self._pairs.at(q))
+        if self._tree is None or len(q) != 1:
+            return self._state(np.array(q))
+        # Solvers ask for the residual and for K at one configuration, in different places.
+        key = q.tobytes()
+        if key != self._key:
+            self._last, self._key = self._state(np.array(q)), key
+        state: State = self._last
+        return state
 
     def at_once(self, q: Matrix) -> State:
         """The constraints at q (1, nq), by Pinocchio, sooner than memory to evaluate them in is made."""
@@ -138,12 +152,13 @@ class Evaluator:
 
     def residual(self, at: State) -> Matrix:
         """The residual (B, m), m and rad."""
-        parts = [group.kind.residual(poses, group.fixed) for group, poses in zip(self._groups, at.by_kind, strict=True)]
+        B = len(at.q)
         if self._is_plain:
-            return parts[0].reshape(len(at.q), self.m)
-        r = np.empty((len(at.q), self.m))
-        for group, part in zip(self._groups, parts, strict=True):
-            r[:, group.rows] = _flat(part)
+            (group,), (poses,) = self._groups, at.by_kind
+            return np.array(group.kind.residual(poses, group.fixed)).reshape(B, self.m)  # poses are kept
+        r = np.empty((B, self.m))
+        for group, poses in zip(self._groups, at.by_kind, strict=True):
+            r[:, group.rows] = group.kind.residual(poses, group.fixed).reshape(B, group.size)
         if self._couplings is not None:
             couplings, _, rows = self._couplings
             r[:, rows] = couplings.residual(at.q)
@@ -151,13 +166,13 @@ class Evaluator:
 
     def jacobian(self, at: State) -> Matrix:
         """K (B, m, n), the derivative of the residual by the velocities."""
-        K = None if self._is_plain else np.empty((len(at.q), self.m, self.n))
+        jacobian: Callable[..., Matrix] = self._pairs.jacobian
+        if self._is_plain:
+            (group,), (poses,) = self._groups, at.by_kind
+            return jacobian(at.poses, group.pairs, group.kind.jacobian(poses, group.fixed))
+        K = np.empty((len(at.q), self.m, self.n))
         for group, poses in zip(self._groups, at.by_kind, strict=True):
-            part: Matrix = self._pairs.jacobian(at.poses, group.pairs, group.kind.jacobian(poses, group.fixed))
-            if K is None:
-                return part
-            K[:, group.rows] = part
-        assert K is not None
+            K[:, group.rows] = jacobian(at.poses, group.pairs, group.kind.jacobian(poses, group.fixed))
         if self._couplings is not None:
             couplings, _, rows = self._couplings
             K[:, rows] = couplings.K
@@ -170,7 +185,7 @@ class Evaluator:
             motions = self._pairs.motions(q, v)
             for group in self._groups:
                 part = group.kind.drift(motions.of(group.pairs), group.fixed)
-                d[:, group.rows] = _flat(part)
+                d[:, group.rows] = part.reshape(len(q), group.size)
         return d
 
     def openings(self, at: State) -> tuple[Matrix, Matrix]:
@@ -183,7 +198,8 @@ class Evaluator:
             lengths[:, members], angles[:, members] = couplings.opening(at.q)
         return lengths, angles
 
-    def _state(self, q: Matrix, poses: RelativePoses) -> State:
+    def _state(self, q: Matrix, poses: RelativePoses | None = None) -> State:
+        poses = self._pairs.at(q) if poses is None else poses
         return State(q, poses, [poses.of(group.pairs) for group in self._groups])
 
 
@@ -210,17 +226,6 @@ def _few_pairs(tree: TreeKinematics, sites: Sequence[Pair], velocities: Indices)
         return FewPairs(tree.model, tree.parents, sites, velocities)
     except NotImplementedError:
         return ManyPairs(derived(tree, TreeMany), sites, velocities)
-
-
-def _flat(part: Matrix) -> Matrix:
-    """Rows (B, k, r) of k constraints as (B, k r)."""
-    B, k, r = part.shape
-    return part.reshape(B, k * r)
-
-
-def _adjacent(rows: Indices) -> slice | Indices:
-    first, last = int(rows[0]), int(rows[-1])
-    return slice(first, last + 1) if np.array_equal(rows, np.arange(first, last + 1)) else rows
 
 
 class Frames:

@@ -7,8 +7,6 @@ K v = d/dt r(q ⊕ t v) at t = 0 (EU-CLO-010), at every configuration, closed or
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -38,8 +36,9 @@ def residual(robot: Robot, q: Vector) -> Vector:
         ValueError: ``q`` has another shape or is not finite.
         NumericalOverflow: Coordinates or lengths are so large that the residual is not finite.
     """
-    with _evaluated(robot, q) as (constraints, at):
-        r: Vector = constraints.residual(at)[0]
+    q = checked_array("q", q, (robot.tree.nq,))
+    with borrowed(robot, _constraints) as constraints:
+        r: Vector = constraints.residual(constraints.at(q[None]))[0]
     finite("the residual", r)
     return r
 
@@ -58,8 +57,10 @@ def residual_and_jacobian(robot: Robot, q: Vector) -> tuple[Vector, Matrix]:
         ValueError: As in `residual`.
         NumericalOverflow: As in `residual`, also of the derivative.
     """
-    with _evaluated(robot, q) as (constraints, at):
-        (r,), (K,) = constraints.residual(at), constraints.jacobian(at)
+    q = checked_array("q", q, (robot.tree.nq,))
+    with borrowed(robot, _constraints) as constraints:
+        at = constraints.at(q[None])
+        r, K = constraints.residual(at)[0], constraints.jacobian(at)[0]
     finite("the residual and its derivative", r, K)
     return r, K
 
@@ -103,8 +104,9 @@ def closure_openings(robot: Robot, q: Vector) -> tuple[Opening, ...]:
 
 def all_openings(robot: Robot, q: Vector) -> tuple[Opening, ...]:
     """As `closure_openings`, also where they are not finite: such a constraint is open."""
-    with _evaluated(robot, q) as (constraints, at):
-        return _named(robot, constraints, at)
+    q = checked_array("q", q, (robot.tree.nq,))
+    with borrowed(robot, _constraints) as constraints:
+        return _named(robot, constraints, constraints.at(q[None]))
 
 
 def openings_once(robot: Robot, q: Vector) -> tuple[Opening, ...]:
@@ -117,13 +119,6 @@ def _named(robot: Robot, constraints: Evaluator, at: State) -> tuple[Opening, ..
     (lengths,), (angles,) = constraints.openings(at)
     found = zip(robot.constraints, lengths.tolist(), angles.tolist(), strict=True)
     return tuple(Opening(of.name, length, angle) for of, length, angle in found)
-
-
-@contextmanager
-def _evaluated(robot: Robot, q: Vector) -> Iterator[tuple[Evaluator, State]]:
-    q = checked_array("q", q, (robot.tree.nq,))
-    with borrowed(robot, _constraints) as constraints:
-        yield constraints, constraints.at(q[None])
 
 
 def _constraints(robot: Robot) -> Evaluator:

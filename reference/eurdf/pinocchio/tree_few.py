@@ -7,7 +7,6 @@ have a model of their own, of the joints between the frames alone.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -41,42 +40,51 @@ _LARGEST = 60
 class FewPoses(RelativePoses):
     """Poses of pairs as Pinocchio has them: `pin.SE3`, which are computed again if others were in their place since."""
 
+    _rotation: Matrix | None = None
+    _position: Matrix | None = None
+
     def __init__(self, pairs: FewPairs, q: Matrix, which: slice) -> None:
         self.q = q
-        self._pairs, self._which = pairs, which
+        self._pairs, self._which, self._count = pairs, which, which.stop - which.start
 
     def of(self, which: slice) -> FewPoses:
         """Those of some of the pairs."""
         return self if which == self._which else FewPoses(self._pairs, self.q, which)
 
     @property
-    def position(self) -> Matrix:  # type: ignore[override]
-        """Origin p of B in A (B, k, 3), m."""
-        return self._array([aMb.translation for aMb in self._each()], 3)
-
-    @property
     def rotation(self) -> Matrix:  # type: ignore[override]
         """ᴬR_B (B, k, 3, 3)."""
-        return self._array([aMb.rotation for aMb in self._each()], 3, 3)
+        if self._rotation is None:
+            found = np.array([aMb.rotation for aMb in self._each()])
+            self._rotation = found.reshape(len(self.q), self._count, 3, 3)
+        return self._rotation
 
-    @cached_property
+    @property
+    def position(self) -> Matrix:  # type: ignore[override]
+        """Origin p of B in A (B, k, 3), m."""
+        if self._position is None:
+            found = np.array([aMb.translation for aMb in self._each()])
+            self._position = found.reshape(len(self.q), self._count, 3)
+        return self._position
+
     def logarithm(self) -> Matrix:
         """log6(ᴬM_B) (B, k, 6)."""
-        return self._array([pin.log6(aMb).vector for aMb in self._each()], 6)
+        if self._logarithm is None:
+            found = np.array([pin.log6(aMb).vector for aMb in self._each()])
+            self._logarithm = found.reshape(len(self.q), self._count, 6)
+        return self._logarithm
 
-    @cached_property
     def logarithm_by_twist(self) -> Matrix:
         """Jlog6(ᴮM_A) (B, k, 6, 6)."""
-        return self._array([pin.Jlog6(aMb.inverse()) for aMb in self._each()], 6, 6)
+        found = np.array([pin.Jlog6(aMb.inverse()) for aMb in self._each()])
+        return found.reshape(len(self.q), self._count, 6, 6)
 
-    def _each(self) -> list[Any]:
+    def _each(self) -> Sequence[Any]:
         pairs, q = self._pairs, self.q
         if len(q) == 1:
-            return pairs.placed(q, 0)[self._which]
+            placed = pairs.placed(q, 0)
+            return placed if self._which is pairs.all else placed[self._which]
         return [pin.SE3(aMb) for element in range(len(q)) for aMb in pairs.placed(q, element)[self._which]]
-
-    def _array(self, values: list[Any], *shape: int) -> Matrix:
-        return np.array(values).reshape(len(self.q), self._which.stop - self._which.start, *shape)
 
 
 class FewPairs:
@@ -99,13 +107,13 @@ class FewPairs:
             _Bundle(model, parents, pairs, sorted(which), sorted(joints), velocities.tolist())
             for which, joints in _bundled(model, (set(between(parents, a.joint, b.joint)) for a, b in pairs))
         ]
-        self._all = slice(0, self.count)
+        self.all = slice(0, self.count)
         self._at: tuple[Matrix | None, int] = None, 0  # what placements were computed of last
         self._placements: list[Any] = []
 
     def at(self, q: Matrix) -> FewPoses:
-        """The poses at q (B, nq)."""
-        return FewPoses(self, np.array(q), self._all)
+        """The poses at q (B, nq), which the caller leaves as it is."""
+        return FewPoses(self, q, self.all)
 
     def placed(self, q: Matrix, element: int) -> list[Any]:
         """ᴬM_B of each pair at one of q (B, nq), valid until they are computed at another configuration.
@@ -127,16 +135,26 @@ class FewPairs:
     def jacobian(self, at: FewPoses, which: slice, rows: Matrix) -> Matrix:
         """The derivative (B, k r, n) by the velocities of rows (B, k, r, 6) over the twists of some pairs."""
         B, k, r = rows.shape[:3]
-        if B == 1 and len(self._bundles) == 1 and self._bundles[0].is_whole:
+        if B == 1 and len(self._bundles) == 1:
+            (bundle,) = self._bundles
             self.placed(at.q, 0)
-            return np.asarray((rows @ self._bundles[0].jacobian()[which]).reshape(1, k * r, self.n))
+            J = bundle.jacobian()
+            part: Matrix = (rows @ (J if k == self.count else J[which])).reshape(1, k * r, -1)
+            if bundle.is_whole:
+                return part
+            K = np.zeros((1, k * r, self.n))
+            K[..., bundle.columns] = part
+            return K
         K = np.zeros((B, k, r, self.n))
         for element, (of_rows, block) in enumerate(zip(rows, K, strict=True)):
             self.placed(at.q, element)
             for bundle in self._bundles:
                 chosen, own = bundle.within(which)
-                part = np.matmul(of_rows[chosen], bundle.jacobian()[own])
-                block[chosen[:, None], :, bundle.columns] = np.swapaxes(part, 1, 2)
+                part = of_rows[chosen] @ bundle.jacobian()[own]
+                if isinstance(chosen, slice):
+                    block[chosen][..., bundle.columns] = part
+                else:
+                    block[chosen[:, None, None], np.arange(r)[:, None], bundle.columns] = part
         return K.reshape(B, k * r, self.n)
 
     def motions(self, q: Matrix, v: Matrix) -> RelativeMotions:
@@ -196,7 +214,7 @@ class _Bundle:
     Attributes:
         which: Their indices, ascending.
         columns: Columns of the Jacobian that the velocities of the model are.
-        is_whole: Whether these are all, and all pairs are in it.
+        is_whole: Whether these are all of them.
     """
 
     def __init__(
@@ -220,9 +238,10 @@ class _Bundle:
         column = {velocity: at for at, velocity in enumerate(velocities)}
         own = [at for at, velocity in enumerate(self._velocities.tolist()) if velocity in column]
         own.sort(key=lambda at: column[int(self._velocities[at])])
-        self.columns = np.array([column[velocity] for velocity in self._velocities[own].tolist()], np.intp)
+        columns = np.array([column[velocity] for velocity in self._velocities[own].tolist()], np.intp)
+        self.columns = as_slice(columns)
         self._own = None if own == list(range(small.nv)) else np.array(own, np.intp)
-        self.is_whole = len(which) == len(pairs) and len(own) == len(velocities)
+        self.is_whole = len(own) == len(velocities)
         # Constraint models of all six rows, also where only positions matter: they turn with A.
         self._models, self._datas = pin.StdVec_RigidConstraintModel(), pin.StdVec_RigidConstraintData()
         for a, b in self._pairs:
@@ -231,7 +250,7 @@ class _Bundle:
             self._datas.append(constraint.createData())
         self._each = list(zip(self._models, self._datas, strict=True))
         self._J: Matrix | None = None
-        self._within: dict[tuple[int, int], tuple[Indices, slice]] = {}
+        self._within: dict[tuple[int, int], tuple[slice | Indices, slice]] = {}
 
     def placements(self, q: Vector) -> list[Any]:
         """ᴬM_B of each pair at q (nq,)."""
@@ -250,12 +269,13 @@ class _Bundle:
             self._J = J if self._own is None else J[..., self._own]
         return self._J
 
-    def within(self, which: slice) -> tuple[Indices, slice]:
+    def within(self, which: slice) -> tuple[slice | Indices, slice]:
         """Those of some adjacent pairs that are in this bundle: their indices among these, and here."""
         key = which.start, which.stop
         if key not in self._within:
             first, last = np.searchsorted(self.which, key).tolist()
-            self._within[key] = np.array(self.which[first:last], np.intp) - which.start, slice(first, last)
+            chosen = np.array(self.which[first:last], np.intp) - which.start
+            self._within[key] = as_slice(chosen), slice(first, last)
         return self._within[key]
 
     def motions(self, q: Vector, v: Vector) -> Iterator[tuple[int, Any, Any, Any]]:
@@ -274,6 +294,13 @@ class _Bundle:
             carried = aMb.actInv(twist_a)
             twist = twist_b - carried
             yield which, aMb, twist, change_b - aMb.actInv(change_a) + twist.cross(carried)
+
+
+def as_slice(indices: Indices) -> slice | Indices:
+    """The same indices as a slice, which is faster, if they are adjacent and ascending."""
+    first = int(indices[0]) if len(indices) else 0
+    is_adjacent = np.array_equal(indices, np.arange(first, first + len(indices)))
+    return slice(first, first + len(indices)) if is_adjacent else indices
 
 
 def _joined(first: Sequence[int], count: Sequence[int], joints: Sequence[int]) -> Indices:
