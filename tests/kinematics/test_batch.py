@@ -6,8 +6,8 @@ import multiprocessing
 import re
 import tracemalloc
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -17,15 +17,8 @@ from hypothesis import strategies as st
 
 import eurdf
 from eurdf.collection import collection_names
-from eurdf.kinematics.batch import linear, rigid
-from eurdf.kinematics.batch.joints import motion
-from eurdf.kinematics.batch.problem import problem
-from eurdf.kinematics.batch.stack import BatchStack
-from eurdf.kinematics.batch.tree import BatchTree
-from eurdf.mechanism.constraint import Closure
-from eurdf.mechanism.joint_type import JointType
+from eurdf.kinematics.evaluate import many_tree
 from eurdf.pinocchio.robot import Robot, build_robot
-from support import by_hand
 from support.actuated import robot_called
 from support.closed_tree import closed_tree
 from support.described import body, load, revolute
@@ -508,27 +501,6 @@ def test_error_in_a_block_is_raised() -> None:
         eurdf.batch.forward_kinematics(robot, values, block=2, threads=2, progress=interrupt)
 
 
-def test_constraint_of_an_unknown_kind_is_refused() -> None:
-    @dataclass(frozen=True, slots=True)
-    class Belt(Closure):
-        type: ClassVar[str] = "belt"
-        units: ClassVar[tuple[Any, ...]] = ("m",)
-
-    robot = robot_called("digit_leg")
-    first = robot.mechanism.closures[0]
-    odd = replace(robot, mechanism=replace(robot.mechanism, closures=(Belt("belt", first.a, first.b),)))
-    with pytest.raises(NotImplementedError, match="does not support constraints of type 'belt'"):
-        BatchStack(BatchTree(robot), odd.constraints, np.arange(robot.model.nv), {})
-
-
-def test_every_joint_type_is_supported() -> None:
-    for kind in by_hand.MOVING:
-        joint = by_hand.some_joint(kind, np.random.default_rng(0))
-        assert motion(joint, unwrapped=False).nv == joint.coordinates.nv
-    with pytest.raises(NotImplementedError, match="does not support joints of type 'fixed'"):
-        motion(by_hand.some_joint(JointType.FIXED, np.random.default_rng(0)), unwrapped=False)
-
-
 # --- the tree --------------------------------------------------------------------------------------------------------
 
 
@@ -537,48 +509,10 @@ def test_every_joint_type_is_supported() -> None:
 def test_configurations_of_every_joint_move_as_in_pinocchio(seed: int, size: float) -> None:
     random = np.random.default_rng(seed)
     robot, q = closed_tree(random, (), "floating")
-    tree, model = problem(robot).tree, robot.model
-    v, force = random.uniform(-size, size, model.nv), random.uniform(-1.0, 1.0, model.nv)
+    tree, model = many_tree(robot), robot.model
+    v = random.uniform(-size, size, model.nv)
     other = pin.integrate(model, q, v)
-    at, there = q[:, None], other[:, None]
-    np.testing.assert_allclose(tree.integrate(at, v[:, None])[:, 0], pin.normalize(model, other), atol=EQUAL)
-    np.testing.assert_allclose(tree.difference(at, there)[:, 0], pin.difference(model, q, other), atol=EQUAL)
-    by_pinocchio = pin.dDifference(model, q, other, pin.ARG1).T @ force
-    np.testing.assert_allclose(
-        tree.difference_derivative_times(at, there, force[:, None])[:, 0], by_pinocchio, atol=1e-8
-    )
-
-
-@pytest.mark.parametrize("angle", [0.0, 1e-12, 1e-5, 0.099, 0.101, 1.0, 3.0, 3.14])
-def test_logarithms_and_their_derivatives_are_exact(angle: float) -> None:
-    random = np.random.default_rng(6)
-    axes = random.normal(size=(20, 3))
-    turns = angle * axes / np.linalg.norm(axes, axis=1)[:, None]
-    poses = [pin.SE3(pin.exp3(turn), random.normal(size=3)) for turn in turns]
-    R, p = np.stack([pose.rotation for pose in poses], axis=-1), np.stack([pose.translation for pose in poses], axis=-1)
-    linear, angular = rigid.log6(R, p)
-    np.testing.assert_allclose(angular, turns.T, atol=1e-12)
-    np.testing.assert_allclose(rigid.of_quaternion(rigid.quaternion_exp(angular)), R, atol=1e-14)
-    np.testing.assert_allclose(rigid.translation_exp(linear, angular), p, atol=1e-12)
-    J, h = rigid.jacobian_log6(R, p), 1e-5
-    for column, unit in enumerate(np.eye(6)):
-        ends = [pose * pin.exp6(sign * h * unit) for pose in poses for sign in (1.0, -1.0)]
-        logs = np.concatenate(
-            rigid.log6(np.stack([e.rotation for e in ends], axis=-1), np.stack([e.translation for e in ends], axis=-1))
-        )
-        np.testing.assert_allclose((logs[:, ::2] - logs[:, 1::2]) / (2.0 * h), J[:, column], atol=1e-6)
-
-
-@pytest.mark.parametrize("n", [1, 5, 61])  # the last one by LAPACK
-def test_systems_are_solved_and_those_without_full_rank_named(n: int) -> None:
-    random = np.random.default_rng(n)
-    A, b = random.normal(size=(n, n + 2, 4)), random.normal(size=(n, 2, 4))
-    A[-1, :, 1] = A[0, :, 1] if n > 1 else 0.0
-    G = np.array(linear.gram(A))
-    G[0, 0, 2] = np.nan
-    G[0, 0, 3] = -1.0
-    x, pivot = linear.solve(G, b)
-    np.testing.assert_allclose(G[:, :, 0] @ x[:, :, 0], b[:, :, 0], atol=1e-8)
-    assert pivot[0] > 1e-8
-    assert (pivot[1:] < 1e-12).all()
-    np.testing.assert_allclose(linear.solve(G, b[:, 0])[0][:, 0], x[:, 0, 0])
+    np.testing.assert_allclose(tree.integrate(q[None], v[None])[0], pin.normalize(model, other), atol=EQUAL)
+    np.testing.assert_allclose(tree.difference(q[None], other[None])[0], pin.difference(model, q, other), atol=EQUAL)
+    by_pinocchio = pin.dDifference(model, q, other, pin.ARG1)
+    np.testing.assert_allclose(tree.difference_derivative(q[None], other[None])[0], by_pinocchio, atol=1e-8)

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from eurdf.exceptions import EurdfError
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.exceptions import NotClosable
-from eurdf.kinematics.projection import project_acceleration, project_configuration, project_velocity
+from eurdf.kinematics.project import project_acceleration, project_configuration, project_velocity
 from eurdf.kinematics.residual import acceleration_drift, residual, residual_and_jacobian
 from support.actuated import ROBOTS, closed_near, robot_called
 from support.branching import JOINTS, MIMIC, branching, far_from_half_a_turn, somewhere

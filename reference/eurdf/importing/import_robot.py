@@ -27,9 +27,10 @@ from eurdf.importing.readme import licence_file, readme
 from eurdf.importing.recognition import recognized
 from eurdf.importing.robot_read import RobotRead
 from eurdf.kinematics.assembly import assemble
-from eurdf.kinematics.opening import CLOSED, Opening
+from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.residual import closure_openings, residual
+from eurdf.kinematics.tolerances import CLOSED
 from eurdf.linking.configurations import beyond_limits
 from eurdf.linking.description import Unlinked, describe
 from eurdf.loss import Effect, Loss, Losses, LossKind

@@ -7,13 +7,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pinocchio import LOCAL, LOCAL_WORLD_ALIGNED, WORLD
 
+from eurdf.array import Matrix, Vector
 from eurdf.closures.se3 import skew
-from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.evaluate import Frames, frames
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
+
+
+def frames_of(robot: Robot, *names: str) -> Frames:
+    """Frames for few configurations; see `eurdf.kinematics.evaluate.frames`."""
+    return frames(robot, names, few=True)
 
 
 def frame_jacobian(robot: Robot, q: Vector, frame: str, reference: Any) -> Matrix:
@@ -28,18 +33,30 @@ def frame_jacobian(robot: Robot, q: Vector, frame: str, reference: Any) -> Matri
     Raises:
         ValueError: The frame is unknown or ambiguous, or ``reference`` is none of the three.
     """
-    with borrowed(robot, _frame, frame) as frames_:
-        at = frames_.at(q[None])
-        J: Matrix = frames_.jacobians(at)[0, 0]
-        ((R,),), ((p,),) = frames_.poses(at)
-    if reference == LOCAL_WORLD_ALIGNED:
+    with borrowed(robot, frames_of, frame) as found:
+        J: Matrix = in_reference(found, q[None], checked_reference(reference))[0]
         return J
+
+
+def checked_reference(reference: Any) -> Any:
+    """The axes of a twist.
+
+    Raises:
+        ValueError: ``reference`` is none of the three.
+    """
+    if reference not in (LOCAL, WORLD, LOCAL_WORLD_ALIGNED):
+        raise ValueError(f"reference is {reference!r}; expected pin.LOCAL, pin.WORLD or pin.LOCAL_WORLD_ALIGNED")
+    return reference
+
+
+def in_reference(found: Frames, q: Matrix, reference: Any) -> Matrix:
+    """The Jacobians (B, 6, nv) of one frame at q (B, nq), in the axes of the reference."""
+    at = found.at(q)
+    J: Matrix = found.jacobians(at)[:, 0]
+    R, p = (part[:, 0] for part in found.poses(at))
     if reference == LOCAL:
-        return np.concatenate((R.T @ J[:3], R.T @ J[3:]))
+        inverse = R.swapaxes(1, 2)
+        return np.concatenate((inverse @ J[:, :3], inverse @ J[:, 3:]), axis=1)
     if reference == WORLD:
-        return np.concatenate((J[:3] + skew(p) @ J[3:], J[3:]))
-    raise ValueError(f"reference is {reference!r}; expected pin.LOCAL, pin.WORLD or pin.LOCAL_WORLD_ALIGNED")
-
-
-def _frame(robot: Robot, name: str) -> Frames:
-    return frames(robot, [name], few=True)
+        return np.concatenate((J[:, :3] + skew(p) @ J[:, 3:], J[:, 3:]), axis=1)
+    return J

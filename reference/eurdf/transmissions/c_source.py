@@ -13,21 +13,29 @@ from typing import TYPE_CHECKING
 
 from eurdf.closures.kind import MODULES
 from eurdf.kinematics.array import Vector
-from eurdf.kinematics.assembly import MOST_STEPS, RESTARTS, SPREADS
+from eurdf.kinematics.assembly import SPREADS
 from eurdf.kinematics.derived import derived
-from eurdf.kinematics.descent import MOST_IDLE_STEPS
-from eurdf.kinematics.forward_kinematics import LEAST_CORRECTION, LONGEST_MOTION, MOST_CORRECTION, SHORTEST_STEP
 from eurdf.kinematics.loop import find_loops
-from eurdf.kinematics.opening import CLOSED as STILL_CLOSED
 from eurdf.kinematics.scale import row_scale
 from eurdf.kinematics.tangent_space import TangentSpaces
+from eurdf.kinematics.tolerances import (
+    CLOSED,
+    FOLLOWED,
+    LEAST_CORRECTION,
+    LONGEST_MOTION,
+    MOST_CORRECTION,
+    MOST_IDLE_STEPS,
+    MOST_STEPS,
+    RESTARTS,
+    SHORTEST_STEP,
+)
 from eurdf.mechanism.constraint import Closure, Constraint, Coupling
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.pinocchio.mimic import following
-from eurdf.transmissions.drive import CLOSED, MOST_SUBSTEPS, SINGULAR, Drive
+from eurdf.transmissions.drive import MOST_SUBSTEPS, SINGULAR, Drive
 from eurdf.writing.output_folder import write_files
 
 if TYPE_CHECKING:
@@ -359,10 +367,10 @@ def _source(tables: _Tables, name: str, drives: Sequence[Drive], steps: int, sub
         "BALLS": int(-1 in tables.coordinates),
     }
     bounds = {
-        "CLOSED": CLOSED,
+        "CLOSED": FOLLOWED,
         "SINGULAR": SINGULAR,
         "DETERMINED": _DETERMINED,
-        "STILL_CLOSED": STILL_CLOSED,
+        "STILL_CLOSED": CLOSED,
         "LEAST_DAMPING": _LEAST_DAMPING,
         "SHORTEST_STEP": SHORTEST_STEP,
         "TURN": 2.0 * math.pi,
