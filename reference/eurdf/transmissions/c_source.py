@@ -31,7 +31,6 @@ from eurdf.kinematics.tolerances import (
 )
 from eurdf.mechanism.constraint import Closure, Constraint, Coupling
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.pinocchio.mimic import following
@@ -154,7 +153,7 @@ class _Tables:
             if name not in needed:
                 continue
             first[name] = len(self.start), len(self.units)
-            quaternion = slot.joint.coordinates.quaternion
+            quaternion = slot.joint.type.quaternion
             for k in range(slot.nv):
                 self.velocity[slot.idx_v + k] = len(self.units)
                 self.units.append(float(scale[slot.idx_v + k]))
@@ -176,7 +175,7 @@ class _Tables:
     def _add(self, joint: Joint, mimic: Mimic | None, first: Mapping[str, tuple[int, int]]) -> None:
         parent, pose = self.places.get(joint.parent, (0, IDENTITY))
         pose = pose * joint.placement
-        if joint.type is JointType.FIXED:
+        if joint.type.is_fixed:
             self.places[joint.child] = parent, pose * joint.offset
             self.of_body[joint.child] = range(0)
             return
@@ -223,43 +222,20 @@ def _screws(
     joint: Joint, parent: int, pose: Pose, coordinate: int, velocity: int, mimic: Mimic | None, number: int
 ) -> list[_Screw]:
     """A joint as joints of one coordinate and balls in a row; ``number`` is that of the first of them."""
-    axes = [direction(axis) for axis in joint.axes]
     factor, offset = (1.0, 0.0) if mimic is None else (mimic.multiplier, mimic.offset)
-    parts: list[tuple[Vector3 | None, bool, Vector3]]  # axis, whether it turns, advance
-    match joint.type:
-        case JointType.REVOLUTE | JointType.CONTINUOUS:
-            parts = [(axes[0], True, _HERE)]
-        case JointType.PRISMATIC:
-            parts = [(axes[0], False, axes[0])]
-        case JointType.HELICAL:
-            x, y, z = axes[0]
-            lead = joint.pitch / (2.0 * math.pi)
-            parts = [(axes[0], True, (lead * x, lead * y, lead * z))]
-        case JointType.UNIVERSAL:
-            parts = [(axis, True, _HERE) for axis in axes]
-        case JointType.CYLINDRICAL:
-            parts = [(axes[0], False, axes[0]), (axes[0], True, _HERE)]
-        case JointType.PLANAR:
-            parts = [(_X, False, _X), (_Y, False, _Y), (_Z, True, _HERE)]
-        case JointType.SPHERICAL:
-            parts = [(None, True, _HERE)]
-        case JointType.FLOATING:
-            parts = [(_X, False, _X), (_Y, False, _Y), (_Z, False, _Z), (None, True, _HERE)]
-        case _:
-            raise ValueError(f"joint '{joint.name}' is {joint.type}, which the generated C does not support")
     return [
         _Screw(
             parent if k == 0 else number + k - 1,
             pose if k == 0 else IDENTITY,
             axis,
             turns,
-            advance,
+            (advance * axis[0], advance * axis[1], advance * axis[2]) if axis and advance else _HERE,
             coordinate + k,
             velocity + k,
             factor,
             offset,
         )
-        for k, (axis, turns, advance) in enumerate(parts)
+        for k, (axis, turns, advance) in enumerate(joint.motions)
     ]
 
 
