@@ -16,7 +16,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-from eurdf.mechanism.constraint import Constraint, Coupling, HingeClosure
+from eurdf.closures.hinge import HingeClosure
+from eurdf.mechanism.constraint import Constraint, Coupling
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import Robot, build_robot
