@@ -15,7 +15,7 @@ import numpy as np
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.position_limit import PositionLimits
 from eurdf.kinematics.problem import Group, Problem
-from eurdf.kinematics.rank import diagonals, squares
+from eurdf.kinematics.rank import diagonals, solutions, squares
 from eurdf.kinematics.tolerances import (
     FIRST_DAMPING,
     GOOD_SHARE,
@@ -212,7 +212,7 @@ def _damped(A: Sequence[Matrix], b: Sequence[Matrix], damping: Vector) -> list[M
     for back, gram, rows, is_wide in zip(transposed, grams, b, wide, strict=True):
         diagonals(gram)[:] += damping
         column = rows[:, :, None]
-        step = back @ np.linalg.solve(gram, -column) if is_wide else np.linalg.solve(gram, back @ -column)
+        step = back @ solutions(gram, -column) if is_wide else solutions(gram, back @ -column)
         steps.append(np.asarray(step[:, :, 0]))
     return steps
 

@@ -145,23 +145,23 @@ class Driving(NamedTuple):
             Where the joints get (B, nq), what part (B,) of their paths that is, whether the springs are at rest there
             (B,), and where numbers overflow (B,).
         """
-        q, part, B = np.array(first), np.zeros(len(first)), len(first)
-        rests, overflows = np.zeros(B, dtype=bool), np.zeros(B, dtype=bool)
-        if self.resting is not None and self.at_rest is not None:
-            at_rest = np.array(goal)
-            at_rest[:, self.resting.coordinates] = self.resting.values
-            coordinates = np.concatenate((self.coordinates, self.resting.coordinates))
-            there, reached, _ = follow_given(
-                self.at_rest, first, at_rest, coordinates, self.tolerance, _SHORTEST_STEP_AT_REST
-            )
-            rests = reached == 1.0
-            q[rests], part[rests] = there[rests], 1.0
+        none = np.zeros(len(first), dtype=bool)
+        if self.resting is None or self.at_rest is None:
+            q, part, overflows = self._freely(first, goal, shortest)
+            return q, part, none, overflows
+        at_rest = np.array(goal)
+        at_rest[:, self.resting.coordinates] = self.resting.values
+        coordinates = np.concatenate((self.coordinates, self.resting.coordinates))
+        q, part, _ = follow_given(self.at_rest, first, at_rest, coordinates, self.tolerance, _SHORTEST_STEP_AT_REST)
+        rests, overflows = part == 1.0, none
         on = np.flatnonzero(~rests)
         if len(on):
-            q[on], part[on], overflows[on] = follow_given(
-                self.driven, first[on], goal[on], self.coordinates, self.tolerance, shortest, free=self.free
-            )
+            q[on], part[on], overflows[on] = self._freely(first[on], goal[on], shortest)
         return q, part, rests, overflows
+
+    def _freely(self, first: Matrix, goal: Matrix, shortest: float) -> tuple[Matrix, Vector, Mask]:
+        """As `moved`, whatever the springs do."""
+        return follow_given(self.driven, first, goal, self.coordinates, self.tolerance, shortest, free=self.free)
 
 
 @contextmanager
