@@ -104,16 +104,6 @@ def test_json_lists_every_loss_with_its_place(capsys: pytest.CaptureFixture[str]
     assert [each["file"] for each in refused["losses"]] == places
 
 
-def test_existing_file_is_kept_without_force(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (here / "out").mkdir()
-    (here / "out" / "README.md").write_text("mine")
-    assert main(["import", "four_bar.xml", "-o", "out"]) == 2
-    assert "already exists; --force replaces it" in capsys.readouterr().err
-    assert [path.name for path in (here / "out").iterdir()] == ["README.md"]
-    assert main(["import", "four_bar.xml", "-o", "out", "--force"]) == 0
-    assert (here / "out" / "README.md").read_text() != "mine"
-
-
 def test_strict_refuses_losses(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["import", "four_bar.xml", "-o", "out", "--strict"]) == 1
     out, err = capsys.readouterr()

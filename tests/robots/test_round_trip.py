@@ -13,8 +13,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import eurdf
-from eurdf.convert.coordinates import Part
 from eurdf.convert.losses import Effect
+from eurdf.convert.parts import Part
 from eurdf.convert.verification.read_model import without_armature
 from eurdf.mechanism.constraint import HingeClosure
 from eurdf.mechanism.frame import Anchor, Frame

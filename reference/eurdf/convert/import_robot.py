@@ -21,7 +21,7 @@ from eurdf.convert.losses import Effect, Loss, Losses, dropped, exact
 from eurdf.convert.readme import licence_file, readme
 from eurdf.convert.xml_elements import places_of_names, recognized
 from eurdf.diagnostics import Diagnostic, Severity, did_you_mean
-from eurdf.diagnostics.visible import visible
+from eurdf.diagnostics.wording import visible
 from eurdf.exceptions import RobotNotFound
 from eurdf.format.schema import FILES, SchemaVersion, json_schema, schema_text
 from eurdf.kinematics.array import Vector
