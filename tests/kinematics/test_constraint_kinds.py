@@ -283,7 +283,6 @@ STATING = (
     "loading.py",
     "convert/",
     "format/",
-    "importing/",
     "linking/",
     "kinematics/batch/",
     "transmissions/c_source.py",
