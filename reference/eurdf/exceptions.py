@@ -6,7 +6,7 @@ from typing import Any
 
 from eurdf.diagnostics import Diagnostic
 from eurdf.diagnostics.registry import Severity
-from eurdf.diagnostics.visible import no_command, visible
+from eurdf.diagnostics.wording import no_command, visible
 
 
 class Portable(BaseException):

@@ -15,7 +15,7 @@ from eurdf.diagnostics import REGISTRY, Diagnostic, Phase, Place, Rule, Severity
 from eurdf.diagnostics.lines import Lines
 from eurdf.diagnostics.report import Report, report_schema, reports_to_json
 from eurdf.diagnostics.text import cells, report_lines, summary_line, total_line
-from eurdf.diagnostics.visible import visible
+from eurdf.diagnostics.wording import visible
 
 SCHEMAS = Path(__file__).parents[2] / "schema"
 

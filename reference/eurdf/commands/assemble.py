@@ -7,7 +7,7 @@ from collections.abc import Collection
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
-from eurdf.commands.command import JSON, ROBOT, cannot_run, command, option
+from eurdf.commands.command import JSON, ROBOT, cannot_run, command, flag, option
 from eurdf.commands.output import write_result
 from eurdf.commands.selection import NEUTRAL, named_configuration
 from eurdf.commands.terminal import cell, new_table, write_notes, write_rendered
@@ -111,32 +111,22 @@ class AssemblyInfo:
 
 
 @command(
-    ROBOT,
-    option("--write", action="store_true", help="write it to the description as 'assembled'"),
-    option("--force", action="store_true", help="replace an existing, different 'assembled'"),
-    option("--hold", metavar="JOINT", action="append", default=[], help="do not move this joint (repeatable)"),
-    option("--limits", action="store_true", help="never exceed the joint limits"),
-    option(
-        "--from",
-        dest="start",
-        metavar="CONFIGURATION",
-        help=f"configuration to start from: one of the description, or {NEUTRAL}",
-    ),
-    JSON,
     summary="find a configuration that closes the loops, and write it to the description",
     description=_DESCRIPTION,
     exit_codes="0 the loops close, 1 they do not or the robot has errors, 2 the command cannot run.",
     examples=("eurdf assemble my_robot --hold motor_knee --write",),
 )
 def assemble(
-    path: str,
     options: dict[str, Any],
-    write: bool,
-    force: bool,
-    hold: list[str],
-    limits: bool,
-    start: str | None,
-    json: bool,
+    path: str = ROBOT,
+    write: bool = flag("write it to the description as 'assembled'"),
+    force: bool = flag("replace an existing, different 'assembled'"),
+    hold: list[str] = option("do not move this joint (repeatable)", metavar="JOINT", action="append", default=[]),
+    limits: bool = flag("never exceed the joint limits"),
+    start: str | None = option(
+        f"configuration to start from: one of the description, or {NEUTRAL}", "--from", metavar="CONFIGURATION"
+    ),
+    json: bool = JSON,
 ) -> int:
     """Assemble, show, and write."""
     from eurdf.linking.configurations import beyond_limits
@@ -258,7 +248,7 @@ def _messages(info: AssemblyInfo, assembly: Assembly, beyond: list[BeyondLimit])
 def _show(info: AssemblyInfo) -> None:
     from rich.text import Text
 
-    from eurdf.diagnostics.visible import visible
+    from eurdf.diagnostics.wording import visible
 
     word, style = ("closed", "green") if info.closes else ("open", "red")
     residual = f", residual {info.residual:.1e}" if math.isfinite(info.residual) else ""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from typing import Any
 
-from eurdf.commands.command import ROBOTS, command, option
+from eurdf.commands.command import ROBOTS, command, flag, option
 from eurdf.commands.selection import select, without_robot
 from eurdf.commands.terminal import progress_bar, write_json, write_lines, write_reports
 from eurdf.exceptions import CannotRun
@@ -30,10 +30,6 @@ _MANY = 4
 
 
 @command(
-    ROBOTS,
-    option("--format", dest="form", choices=("text", "json", "sarif"), default="text", help="default: text"),
-    option("--strict", action="store_true", help="treat warnings as errors"),
-    option("--allow-none", action="store_true", help="succeed if a folder contains no robot (for hooks)"),
     summary="check robots and report errors with file, line and hint",
     description=_DESCRIPTION,
     exit_codes="0 all robots pass, 1 errors found, 2 the check cannot run.",
@@ -44,11 +40,17 @@ _MANY = 4
         "xacro leg.urdf.xacro side:=left | eurdf check -",
     ),
 )
-def check(paths: list[str], options: dict[str, Any], form: str, strict: bool, allow_none: bool) -> int:
+def check(
+    options: dict[str, Any],
+    paths: list[str] = ROBOTS,
+    form: str = option("default: text", "--format", choices=("text", "json", "sarif"), default="text"),
+    strict: bool = flag("treat warnings as errors"),
+    allow_none: bool = flag("succeed if a folder contains no robot (for hooks)"),
+) -> int:
     """Check, and write the diagnostics."""
     import eurdf
     from eurdf.diagnostics import quoted
-    from eurdf.diagnostics.visible import visible
+    from eurdf.diagnostics.wording import visible
 
     skipped = without_robot(paths)
     robots = select([path for path in paths if path not in skipped], allow_none)

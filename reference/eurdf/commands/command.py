@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import inspect
 import os
 import sys
 from collections.abc import Callable, Iterator
@@ -25,32 +26,27 @@ _URDF_ENDINGS = (".urdf", ".xml", ".xacro")
 
 @dataclass(frozen=True, slots=True)
 class Option:
-    """One argument.
+    """An argument of a command: the default of a parameter of its function.
 
     Attributes:
-        names: Its name, or the names of an option.
+        names: Its names; those of an option are made of that of the parameter if there are none.
+        group: Options in succession that have the same one exclude each other.
         settings: The other parameters of `argparse.ArgumentParser.add_argument`.
     """
 
     names: tuple[str, ...]
+    group: str
     settings: dict[str, Any]
 
 
-@dataclass(frozen=True, slots=True)
-class OneOf:
-    """Options that exclude each other."""
-
-    options: tuple[Option, ...]
+def option(text: str, *names: str, group: str = "", **settings: Any) -> Any:
+    """An option with its help; see `Option` for the arguments."""
+    return Option(names, group, {**settings, "help": text})
 
 
-def option(*names: str, **settings: Any) -> Option:
-    """An argument, with the parameters of `argparse.ArgumentParser.add_argument`."""
-    return Option(names, settings)
-
-
-def one_of(*options: Option) -> OneOf:
-    """Options that exclude each other."""
-    return OneOf(options)
+def flag(text: str, *names: str, group: str = "") -> Any:
+    """An option without a value, which is False unless it is given."""
+    return option(text, *names, group=group, action="store_true")
 
 
 def _xacro_arg(text: str) -> tuple[str, str]:
@@ -61,80 +57,80 @@ def _xacro_arg(text: str) -> tuple[str, str]:
 
 
 #: Where a URDF, or a robot, may find other files: the function gets them as ``options``.
-URDF_OPTIONS = (
+_URDF_OPTIONS = (
     option(
+        "a folder with ROS packages, to find meshes and xacro files (repeatable)",
         "--package-dir",
         metavar="DIR",
         dest="package_dirs",
         action="append",
         default=[],
-        help="a folder with ROS packages, to find meshes and xacro files (repeatable)",
     ),
     option(
+        "an argument of the .xacro file that is given, or that the description names (repeatable)",
         "--xacro-arg",
         metavar="NAME:=VALUE",
         dest="xacro_args",
         type=_xacro_arg,
         action="append",
         default=[],
-        help="an argument of the .xacro file that is given, or that the description names (repeatable)",
     ),
 )
 
 _ROBOT_OPTIONS = (
-    option(
-        "--urdf",
-        metavar="FILE",
-        help="the URDF, instead of the one that the description names; - for standard input",
+    option("the URDF, instead of the one that the description names; - for standard input", "--urdf", metavar="FILE"),
+    flag(
+        "refuse a description that names a URDF outside its own folder or a xacro, and a URDF that names a mesh "
+        "outside the robot's folder",
+        "--confined",
+        group="places",
     ),
-    one_of(
-        option(
-            "--confined",
-            action="store_true",
-            help="refuse a description that names a URDF outside its own folder or a xacro, and a URDF that names a "
-            "mesh outside the robot's folder",
-        ),
-        option("--allow-outside", action="store_true", help="read meshes that are outside the robot's folder"),
-    ),
-    *URDF_OPTIONS,
+    flag("read meshes that are outside the robot's folder", "--allow-outside", group="places"),
+    *_URDF_OPTIONS,
 )
 
-#: One robot: the function gets its path as ``path``, and its other arguments as ``options``, those of `eurdf.load`.
-ROBOT = (option("path", metavar="PATH", help=_PATH), *_ROBOT_OPTIONS)
+#: One robot: the function gets its path, and its other arguments as ``options``, those of `eurdf.load`.
+ROBOT: Any = (option(_PATH, "path", metavar="PATH"), *_ROBOT_OPTIONS)
 
-#: Several robots: the function gets ``paths`` as they are given, and ``options``.
-ROBOTS = (
-    option("paths", nargs="+", metavar="PATH", help=f"{_PATH}; a folder can contain several robots"),
+#: Several robots: the function gets the paths as they are given, and ``options``.
+ROBOTS: Any = (
+    option(f"{_PATH}; a folder can contain several robots", "paths", nargs="+", metavar="PATH"),
     *_ROBOT_OPTIONS,
 )
 
-#: A URDF.
-URDF = option("urdf", metavar="URDF", help="a .urdf or .xacro file, or - for standard input")
+#: A URDF: the function gets what is given, and ``options``.
+URDF: Any = (option("a .urdf or .xacro file, or - for standard input", "urdf", metavar="URDF"), *_URDF_OPTIONS)
 
-ROOT = option("--root", choices=("fixed", "floating"), help="default: as the description says")
-JSON = option("--json", action="store_true", help="write one JSON object")
-FORMAT = option("--format", dest="form", choices=("text", "json"), default="text", help="format of the output")
-FORCE = option("--force", action="store_true", help="replace existing files")
-FORCE_FILE = option("--force", action="store_true", help="replace an existing file")
-FORCE_DESCRIPTION = option("--force", action="store_true", help="replace OUT and its schema if they exist")
+#: A URDF whose names a schema has; the function gets ``options``.
+SCHEMA_URDF: Any = (
+    option(
+        "include the names of the links and joints of this robot, so that editors complete them",
+        "--for",
+        metavar="URDF",
+    ),
+    *_URDF_OPTIONS,
+)
+
+ROOT: Any = option("default: as the description says", choices=("fixed", "floating"))
+JSON: Any = flag("write one JSON object")
+FORMAT: Any = option("format of the output", "--format", choices=("text", "json"), default="text")
+FORCE: Any = flag("replace existing files")
+FORCE_FILE: Any = flag("replace an existing file")
+FORCE_DESCRIPTION: Any = flag("replace OUT and its schema if they exist")
 
 #: The file to write; None is the standard output.
-OUTPUT = option(
+OUTPUT: Any = option(
+    "the file to write; default, or -: the standard output",
     "-o",
     "--output",
     metavar="OUT",
     type=lambda path: None if path == STDOUT else path,
-    help="the file to write; default, or -: the standard output",
 )
-OUTPUT_FOLDER = option("-o", "--output", required=True, metavar="FOLDER", help="the folder to write to")
+OUTPUT_FOLDER: Any = option("the folder to write to", "-o", "--output", required=True, metavar="FOLDER")
 
 #: The joints of a serial robot, and the motors that drive them.
-SERIAL_JOINTS = (
-    option("--joints", nargs="+", required=True, metavar="JOINT", help="joints of the serial robot"),
-    option(
-        "--motors", nargs="+", metavar="JOINT", help="the motors; default: the actuated joints that move the joints"
-    ),
-)
+SERIAL_JOINTS: Any = option("joints of the serial robot", nargs="+", required=True, metavar="JOINT")
+SERIAL_MOTORS: Any = option("the motors; default: the actuated joints that move the joints", nargs="+", metavar="JOINT")
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,9 +138,9 @@ class Command:
     """A command of the command line.
 
     Attributes:
-        function: What it does: from its arguments, by name, to the exit code. Of `InvalidRobot`, the diagnostics are
-            shown, and the exit code is 1; of `CannotRun`, the message, and the exit code is 2.
-        options: Its arguments, in the order of the help.
+        function: What it does: from its arguments, by name, to the exit code. The default of each of its parameters is
+            the option that gives its value. Of `InvalidRobot`, the diagnostics are shown, and the exit code is 1; of
+            `CannotRun`, the message, and the exit code is 2.
         summary: What it does, for the list of commands.
         description: What it does, at length.
         epilog: The end of its help: see `ending`.
@@ -152,7 +148,6 @@ class Command:
     """
 
     function: Callable[..., int]
-    options: tuple[Option | OneOf, ...]
     summary: str
     description: str
     epilog: str
@@ -167,13 +162,17 @@ class Command:
             epilog=self.epilog,
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
-        for each in self.options:
-            if isinstance(each, Option):
-                parser.add_argument(*each.names, **each.settings)
-            else:
-                group = parser.add_mutually_exclusive_group()
-                for option in each.options:
-                    group.add_argument(*option.names, **option.settings)
+        groups: dict[str, Any] = {"": parser}
+        for parameter in inspect.signature(self.function).parameters.values():
+            if parameter.default is parameter.empty:  # ``options``
+                continue
+            found = parameter.default if isinstance(parameter.default, tuple) else (parameter.default,)
+            for number, each in enumerate(found):
+                if each.group not in groups:
+                    groups[each.group] = parser.add_mutually_exclusive_group()
+                names = each.names or (f"--{parameter.name.replace('_', '-')}",)
+                dest = {"dest": parameter.name} if number == 0 and names[0].startswith("-") else {}
+                groups[each.group].add_argument(*names, **{**dest, **each.settings})
         parser.set_defaults(run=self.run)
 
     def run(self, args: argparse.Namespace) -> int:
@@ -193,16 +192,11 @@ class Command:
 
 
 def command(
-    *options: Option | OneOf | tuple[Option | OneOf, ...],
-    summary: str,
-    exit_codes: str,
-    examples: tuple[str, ...],
-    description: str,
-    has_output: bool = True,
+    *, summary: str, description: str, exit_codes: str, examples: tuple[str, ...], has_output: bool = True
 ) -> Callable[[Callable[..., int]], Command]:
     """Make a command of a function; see `Command` and `ending` for the arguments."""
-    flat = tuple(each for some in options for each in (some if isinstance(some, tuple) else (some,)))
-    return lambda function: Command(function, flat, summary, description, ending(exit_codes, *examples), has_output)
+    epilog = ending(exit_codes, *examples)
+    return lambda function: Command(function, summary, description, epilog, has_output)
 
 
 def ending(exit_codes: str, *examples: str) -> str:

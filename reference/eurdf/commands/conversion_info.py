@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from eurdf.convert.losses import Effect
+from eurdf.convert.verification.read_model import Finding
 from eurdf.json_schema import Keywords, NullIfInfinite
 from eurdf.kinematics.opening import Opening
 
@@ -20,18 +21,14 @@ if TYPE_CHECKING:
 class LossInfo:
     """Something that one of two formats does not say as the other one does."""
 
+    LIKE: ClassVar = "eurdf.convert.losses:Loss"
+
     code: Annotated[str, Keywords(pattern="^(export|import)(-[a-z0-9]+)+$")]
-    """Permanent name of the kind of loss."""
     effect: Effect
-    """What is left: exact, in other terms; approximate; dropped, nothing."""
     concept: str
-    """Kind of the element, such as '3d closure'; the rows of the table of losses."""
     name: str
-    """Name of the element."""
     message: str
-    """What happened."""
     hint: str
-    """What to do about it."""
     file: str | None
     """File that states the element; null if none does."""
     line: Annotated[int, Keywords(minimum=1)] | None
@@ -75,20 +72,10 @@ class ConstraintInfo:
 class FallInfo:
     """A simulation of 2 s from rest at the start, with gravity and without actuation."""
 
+    LIKE: ClassVar = "eurdf.convert.verification.fall:Fall"
+
     seconds: float
-    """Simulated time, s; less than 2 if it diverges."""
     diverged: bool
-    """Whether a number was not finite."""
-
-
-@dataclass(frozen=True, slots=True)
-class FindingInfo:
-    """Something that is wrong with the file."""
-
-    message: str
-    """What is wrong, with its values."""
-    causes: tuple[str, ...]
-    """What was seen of the cause, and what to do."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,8 +96,9 @@ class BeyondLimits:
 class VerificationInfo:
     """What a program reads of the exported file, against the robot."""
 
+    LIKE: ClassVar = "eurdf.convert.verification.verify:Verification"
+
     reader: Annotated[str, Keywords(examples=["MuJoCo 4.0.0"])]
-    """The program and its version."""
     refused: str | None
     """What the program says if it refuses the file; else null. If it does, the numbers below are 0."""
     mass_read: float
@@ -118,19 +106,13 @@ class VerificationInfo:
     mass: float
     """Mass of all bodies of the robot, kg."""
     mass_matrix_error: float
-    """Largest difference of the mass matrix at the start, relative to its largest entry."""
     constraints: tuple[ConstraintInfo, ...]
     """Closures, couplings and mimic joints that the file states."""
     beyond_limits: tuple[BeyondLimits, ...]
-    """Coordinates outside their limits at the start."""
     fall: FallInfo | None
-    """The simulation; null if the program simulates nothing."""
-    findings: tuple[FindingInfo, ...]
-    """What is wrong; empty if nothing is."""
+    findings: tuple[Finding, ...]
     listed: tuple[str, ...]
-    """What differs as losses say."""
     unverified: tuple[str, ...]
-    """What this program cannot compare."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -214,7 +196,7 @@ def verification_info(found: Verification) -> VerificationInfo:
             BeyondLimits(each.joint, each.value, each.lower, each.upper) for each in found.beyond_limits
         ),
         fall=None if fall is None else FallInfo(fall.seconds, fall.diverged),
-        findings=tuple(FindingInfo(each.message, each.causes) for each in found.findings),
+        findings=found.findings,
         listed=found.listed,
         unverified=found.unverified,
     )

@@ -24,7 +24,7 @@ def loss_lines(losses: Sequence[Loss], place_of: Callable[[Loss], Place | None])
         losses: In any order.
         place_of: Where the element of a loss is stated, if it is in a file.
     """
-    from eurdf.diagnostics.visible import visible
+    from eurdf.diagnostics.wording import visible
 
     groups: dict[str, list[Loss]] = {}
     for loss in losses:
@@ -50,7 +50,7 @@ def verification_lines(found: Verification) -> Iterator[Line]:
         found: The result of `Export.verify`.
     """
     from eurdf.convert.verification.fall import amount
-    from eurdf.diagnostics.visible import visible
+    from eurdf.diagnostics.wording import visible
 
     yield [(f"read back by {found.reader}", "bold")]
     if not found.refused:

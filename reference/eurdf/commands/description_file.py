@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from eurdf.commands.command import option
 from eurdf.commands.output_file import write_all_new
@@ -48,12 +48,11 @@ class EditorSchema:
 
 
 #: ``--schema`` of a command that writes a description.
-SCHEMA = option(
-    "--schema",
+SCHEMA: Any = option(
+    "the schema to write beside OUT and name in its first line, for editors: format, that of the format (the default); "
+    "robot, with the names of this robot; none, neither file nor line",
     choices=("format", "robot", "none"),
     default="format",
-    help="the schema to write beside OUT and name in its first line, for editors: format, that of "
-    "the format (the default); robot, with the names of this robot; none, neither file nor line",
 )
 
 

@@ -8,7 +8,7 @@ import sys
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from eurdf.commands.command import FORCE, FORMAT, ROBOT, command, option
+from eurdf.commands.command import FORCE, FORMAT, ROBOT, command, flag, option
 from eurdf.commands.conversion_lines import loss_lines, verification_lines
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import writing
@@ -31,43 +31,10 @@ MuJoCo, Drake, the library of USD or Pinocchio; MuJoCo and Drake also let the ro
 """
 
 
+_FORMATS: Any = (FORMAT, option("same as --format json", "--json", action="store_const", dest="form", const="json"))
+
+
 @command(
-    ROBOT,
-    option("--to", required=True, choices=EXPORTS, metavar="FORMAT", help=", ".join(EXPORTS)),
-    option("-o", "--output", metavar="OUT", help="the folder to write to; default: the robot's name, _ and the format"),
-    option(
-        "--configuration",
-        metavar="NAME",
-        default="assembled",
-        help="configuration to start simulations from; default: assembled, which is searched within the limits if "
-        "there is none",
-    ),
-    option(
-        "--actuators", choices=ACTUATORS, default="motor", help="what actuators become in MJCF and USD; default: motor"
-    ),
-    option(
-        "--closures",
-        choices=CLOSURES,
-        default="stated",
-        help="hinge: 3d closures become hinges where their bodies turn about one axis alone, for solvers that hold no "
-        "ball joint in a loop; default: stated",
-    ),
-    option(
-        "--mesh-files",
-        choices=MESH_FILES,
-        default="copy",
-        help="copy mesh files to meshes/, or reference them where they are by absolute paths; default: copy",
-    ),
-    option("--strict", action="store_true", help="write nothing if a loss is not exact"),
-    FORCE,
-    option(
-        "--verify",
-        action="store_true",
-        help="read the result back: compare mass, mass matrix, loops and limits with the robot, simulate 2 s where the "
-        "program can, and say which loops open by more than 5 mm, or what diverges, and why",
-    ),
-    FORMAT,
-    option("--json", action="store_const", dest="form", const="json", help="same as --format json"),
     summary="write a robot in the format of a simulator, and show what it loses",
     description=_DESCRIPTION,
     exit_codes="0 exported, 1 the robot has errors, losses with --strict, or an error with --verify, 2 the command "
@@ -79,18 +46,39 @@ MuJoCo, Drake, the library of USD or Pinocchio; MuJoCo and Drake also let the ro
     ),
 )
 def export(
-    path: str,
     options: dict[str, Any],
-    to: str,
-    output: str | None,
-    configuration: str,
-    actuators: Actuators,
-    closures: ClosureChoice,
-    mesh_files: MeshFileChoice,
-    strict: bool,
-    force: bool,
-    verify: bool,
-    form: str,
+    path: str = ROBOT,
+    to: str = option(", ".join(EXPORTS), required=True, choices=EXPORTS, metavar="FORMAT"),
+    output: str | None = option(
+        "the folder to write to; default: the robot's name, _ and the format", "-o", "--output", metavar="OUT"
+    ),
+    configuration: str = option(
+        "configuration to start simulations from; default: assembled, which is searched within the limits if there is "
+        "none",
+        metavar="NAME",
+        default="assembled",
+    ),
+    actuators: Actuators = option(
+        "what actuators become in MJCF and USD; default: motor", choices=ACTUATORS, default="motor"
+    ),
+    closures: ClosureChoice = option(
+        "hinge: 3d closures become hinges where their bodies turn about one axis alone, for solvers that hold no ball "
+        "joint in a loop; default: stated",
+        choices=CLOSURES,
+        default="stated",
+    ),
+    mesh_files: MeshFileChoice = option(
+        "copy mesh files to meshes/, or reference them where they are by absolute paths; default: copy",
+        choices=MESH_FILES,
+        default="copy",
+    ),
+    strict: bool = flag("write nothing if a loss is not exact"),
+    force: bool = FORCE,
+    verify: bool = flag(
+        "read the result back: compare mass, mass matrix, loops and limits with the robot, simulate 2 s where the "
+        "program can, and say which loops open by more than 5 mm, or what diverges, and why"
+    ),
+    form: str = _FORMATS,
 ) -> int:
     """Export, and show the losses."""
     from eurdf.linking.robot_files import read_valid

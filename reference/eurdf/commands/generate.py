@@ -7,17 +7,7 @@ from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING, Any, Literal
 
-from eurdf.commands.command import (
-    FORCE_DESCRIPTION,
-    OUTPUT,
-    URDF,
-    URDF_OPTIONS,
-    Option,
-    cannot_run,
-    command,
-    option,
-    require_urdf,
-)
+from eurdf.commands.command import FORCE_DESCRIPTION, OUTPUT, URDF, cannot_run, command, flag, option, require_urdf
 from eurdf.commands.description_file import (
     NOT_BESIDE,
     SCHEMA,
@@ -61,32 +51,11 @@ distinguishes the two frames, the group loop (optional) is their common part, an
 """
 
 
-def _pattern(name: str, what: str) -> Option:
-    return option(name, metavar="PATTERN", action="append", default=[], help=f"names of {what} (repeatable)")
+def _pattern(what: str) -> Any:
+    return option(f"names of {what} (repeatable)", metavar="PATTERN", action="append", default=[])
 
 
 @command(
-    URDF,
-    URDF_OPTIONS,
-    OUTPUT,
-    FORCE_DESCRIPTION,
-    SCHEMA,
-    _pattern("--closure", "the frames of closures"),
-    _pattern("--motor", "actuated joints"),
-    _pattern("--spherical", "spherical joints"),
-    option(
-        "--type",
-        dest="closure_type",
-        choices=("3d", "6d"),
-        help="type of all closures, instead of the type from name or motion",
-    ),
-    option("--root", choices=("fixed", "floating"), default="fixed", help="default: fixed"),
-    option(
-        "--version",
-        choices=("1", "2", "2.1"),
-        help="version of the format; 2 is 2.0; default: 2, or 2.1 if there is a hinge",
-    ),
-    option("--json", action="store_true", help="write one JSON object: the text, and what was found"),
     summary="write a description from the names in a URDF",
     description=_DESCRIPTION,
     exit_codes="0 written, 1 the URDF has errors or its names contradict each other, 2 the command cannot run.",
@@ -96,18 +65,22 @@ def _pattern(name: str, what: str) -> Option:
     ),
 )
 def generate(
-    urdf: str,
     options: dict[str, Any],
-    output: str | None,
-    force: bool,
-    schema: str,
-    closure: list[str],
-    motor: list[str],
-    spherical: list[str],
-    closure_type: Literal["3d", "6d"] | None,
-    root: Root,
-    version: GeneratedVersion | None,
-    json: bool,
+    urdf: str = URDF,
+    output: str | None = OUTPUT,
+    force: bool = FORCE_DESCRIPTION,
+    schema: str = SCHEMA,
+    closure: list[str] = _pattern("the frames of closures"),
+    motor: list[str] = _pattern("actuated joints"),
+    spherical: list[str] = _pattern("spherical joints"),
+    closure_type: Literal["3d", "6d"] | None = option(
+        "type of all closures, instead of the type from name or motion", "--type", choices=("3d", "6d")
+    ),
+    root: Root = option("default: fixed", choices=("fixed", "floating"), default="fixed"),
+    version: GeneratedVersion | None = option(
+        "version of the format; 2 is 2.0; default: 2, or 2.1 if there is a hinge", choices=("1", "2", "2.1")
+    ),
+    json: bool = flag("write one JSON object: the text, and what was found"),
 ) -> int:
     """Generate and write a description, and print notes."""
     from eurdf.diagnostics import Diagnostics

@@ -9,13 +9,13 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eurdf.commands.command import FORCE, FORMAT, OUTPUT_FOLDER, command, option
+from eurdf.commands.command import FORCE, FORMAT, OUTPUT_FOLDER, command, flag, option
 from eurdf.commands.conversion_info import ImportInfo, loss_infos
 from eurdf.commands.conversion_lines import loss_lines
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import writing
 from eurdf.commands.terminal import write_lines, write_notes, write_reports
-from eurdf.convert.formats import IMPORTS
+from eurdf.reading.other_formats import IMPORTED
 
 if TYPE_CHECKING:
     from eurdf.convert.import_robot import Import
@@ -33,39 +33,26 @@ What was written is checked, as by `eurdf check`.
 
 
 @command(
-    option("file", metavar="FILE", help="the file to import"),
-    OUTPUT_FOLDER,
-    option(
-        "--from",
-        dest="format_",
-        choices=IMPORTS,
-        metavar="FORMAT",
-        help=f"{', '.join(IMPORTS)}; default: recognized by the content",
-    ),
-    option(
-        "--within",
-        metavar="FOLDER",
-        help="a folder that the files may be in which FILE names, besides the robot's folder: the nearest one with a "
-        "package.xml, or else that of FILE",
-    ),
-    option("--allow-outside", action="store_true", help="read files that are outside these folders"),
-    option("--strict", action="store_true", help="write nothing if a loss is not exact, or the robot has errors"),
-    FORCE,
-    FORMAT,
     summary="describe a robot that is in a file of a simulator, and show what is lost",
     description=_DESCRIPTION,
     exit_codes="0 imported, 1 the file or the robot has errors, or losses with --strict, 2 the command cannot run.",
     examples=("eurdf import cassie.xml -o cassie", "eurdf import scene/arm.xml -o arm --within ."),
 )
 def import_robot(
-    file: str,
-    output: str,
-    format_: str | None,
-    within: str | None,
-    allow_outside: bool,
-    strict: bool,
-    force: bool,
-    form: str,
+    file: str = option("the file to import", "file", metavar="FILE"),
+    output: str = OUTPUT_FOLDER,
+    format_: str | None = option(
+        f"{', '.join(IMPORTED)}; default: recognized by the content", "--from", choices=IMPORTED, metavar="FORMAT"
+    ),
+    within: str | None = option(
+        "a folder that the files may be in which FILE names, besides the robot's folder: the nearest one with a "
+        "package.xml, or else that of FILE",
+        metavar="FOLDER",
+    ),
+    allow_outside: bool = flag("read files that are outside these folders"),
+    strict: bool = flag("write nothing if a loss is not exact, or the robot has errors"),
+    force: bool = FORCE,
+    form: str = FORMAT,
 ) -> int:
     """Import, and show the losses."""
     import eurdf

@@ -26,16 +26,13 @@ _MOST_MOTIONS = 12
 
 
 @command(
-    ROBOT,
-    ROOT,
-    JSON,
     summary="show a robot's dimensions, its closures, and how it can move",
     description="Show what a robot is made of, whether its loops close, and what motions that leaves.",
     exit_codes="0 shown, 1 the robot has errors that keep it from being built, 2 the command cannot run.",
     examples=("eurdf info digit_leg --root floating",),
     has_output=False,
 )
-def info(path: str, options: dict[str, Any], root: Root | None, json: bool) -> int:
+def info(options: dict[str, Any], path: str = ROBOT, root: Root | None = ROOT, json: bool = JSON) -> int:
     """Load, analyse and show a robot."""
     import eurdf
     from eurdf.commands.robot_info import robot_info
@@ -76,7 +73,7 @@ def _show(info: RobotInfo) -> None:
 def _heading(info: RobotInfo) -> Text:
     from rich.text import Text
 
-    from eurdf.diagnostics.visible import visible
+    from eurdf.diagnostics.wording import visible
 
     format_name = f"Extended URDF {info.version}" if info.version else "URDF"
     mass = f", {info.mass:.6g} kg" if math.isfinite(info.mass) else ""

@@ -80,7 +80,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return _BROKEN_PIPE
     except (CannotRun, CannotExpand, MissingExtra, OSError) as reason:  # OSError: also RobotNotFound
-        from eurdf.diagnostics.visible import visible
+        from eurdf.diagnostics.wording import visible
 
         said = str(reason)
         if isinstance(reason, OSError) and reason.errno in _FULL and reason.filename is None:  # no file
@@ -101,7 +101,7 @@ class _Parser(argparse.ArgumentParser):
     """A parser of arguments whose errors cannot control a terminal or a log."""
 
     def error(self, message: str) -> NoReturn:
-        from eurdf.diagnostics.visible import visible
+        from eurdf.diagnostics.wording import visible
 
         super().error(visible(message))
 

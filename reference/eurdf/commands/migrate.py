@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 from typing import Any
 
-from eurdf.commands.command import FORCE_DESCRIPTION, OUTPUT, ROBOT, command, option
+from eurdf.commands.command import FORCE_DESCRIPTION, OUTPUT, ROBOT, command, flag
 from eurdf.commands.description_file import (
     NOT_BESIDE,
     SCHEMA,
@@ -31,17 +31,19 @@ model differs, nothing is written.
 
 
 @command(
-    ROBOT,
-    OUTPUT,
-    FORCE_DESCRIPTION,
-    SCHEMA,
-    option("--json", action="store_true", help="write one JSON object: the text, and what was done"),
     summary="convert a description from version 1 to version 2",
     description=_DESCRIPTION,
     exit_codes="0 written or nothing to do, 1 the robot has errors, 2 the command cannot run.",
     examples=("eurdf migrate robot.v1.yaml -o robot.yaml",),
 )
-def migrate(path: str, options: dict[str, Any], output: str | None, force: bool, schema: str, json: bool) -> int:
+def migrate(
+    options: dict[str, Any],
+    path: str = ROBOT,
+    output: str | None = OUTPUT,
+    force: bool = FORCE_DESCRIPTION,
+    schema: str = SCHEMA,
+    json: bool = flag("write one JSON object: the text, and what was done"),
+) -> int:
     """Migrate and write a description, and print notes."""
     from eurdf.linking.robot_files import read_valid
     from eurdf.writing import migration

@@ -14,10 +14,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from importlib import import_module
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import Any, cast, get_args, get_type_hints
 
 from eurdf.commands.terminal import write_json
-from eurdf.diagnostics.report import encodable, report_schema
+from eurdf.diagnostics.report import report_schema
+from eurdf.diagnostics.wording import encodable
 
 #: The results by the names of their schemas: the module and the class of each.
 RESULTS = {
@@ -26,7 +28,7 @@ RESULTS = {
     "import": ("conversion_info", "ImportInfo"),
     "info": ("robot_info", "RobotInfo"),
     "robots": ("robots", "Collection"),
-    "serial": ("serial", "SerialInfo"),
+    "serial": ("serial_info", "SerialInfo"),
     "transmission": ("transmission_info", "TransmissionInfo"),
 }
 
@@ -40,6 +42,8 @@ def to_json(result: Any) -> Any:
         return encodable(str(result))
     if isinstance(result, float):
         return float(result) if math.isfinite(result) else None
+    if hasattr(result, "tolist"):  # an array
+        return to_json(result.tolist())
     if isinstance(result, Mapping):
         return {key: to_json(value) for key, value in result.items()}
     return [to_json(value) for value in result] if isinstance(result, (list, tuple)) else result
@@ -62,7 +66,7 @@ def _schema(result: type) -> dict[str, Any]:
     """The JSON Schema of a result, and of the classes of its parts.
 
     The sentence of a field is the text below it, or what the docstring of its class says under ``Attributes``, or that
-    of the class which the result is ``LIKE``. It says None where JSON has null.
+    of the class which the result is ``LIKE``, by module and name. It says None or inf where JSON has null.
     """
     from pydantic import ConfigDict, TypeAdapter
 
@@ -70,13 +74,14 @@ def _schema(result: type) -> dict[str, Any]:
     # The configuration of a tuple is also that of its members, which are classes without one.
     parts = TypeAdapter(tuple[result], config=config).json_schema(mode="serialization")["$defs"]  # type: ignore[valid-type]
     for own in parts.values():
-        own["description"] = own["description"].partition("\n\nAttributes:")[0].replace("\n", " ")
+        own["description"] = " ".join(own["description"].partition("\n\nAttributes:")[0].split())
     for part in _parts(result):
         own = parts[part.__name__]
-        sentences = _sentences(*part.__mro__, getattr(part, "LIKE", object))
+        like = [resolve_name(part.LIKE)] if hasattr(part, "LIKE") else []
+        sentences = _sentences(*part.__mro__, *like)
         for name, field in own["properties"].items():
             text = field.get("description") or sentences[name]
-            text = re.sub(r"(^|[.] )None", r"\1Null", text).replace("None", "null")
+            text = re.sub(r"\b(None|inf)\b", "null", re.sub(r"(^|[.] )None", r"\1Null", text))
             field.pop("default", None)  # a result has every field
             own["properties"][name] = dict(sorted({**field, "description": text}.items()))
         own["required"] = list(own["properties"])

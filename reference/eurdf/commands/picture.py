@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from eurdf.commands.command import FORCE_FILE, ROBOT, cannot_run, command, option
+from eurdf.commands.command import FORCE_FILE, ROBOT, cannot_run, command, flag, option
 from eurdf.commands.output_file import refuse_to_replace, writing
 from eurdf.commands.selection import NEUTRAL, named_configuration
 from eurdf.commands.terminal import write_notes
@@ -19,16 +19,6 @@ With --graph, draw the graph of its links, joints, closures and couplings to an 
 
 
 @command(
-    ROBOT,
-    option("-o", "--output", required=True, metavar="OUT", help="the PNG or SVG file to write"),
-    option(
-        "--configuration",
-        metavar="NAME",
-        help=f"one of the description, or {NEUTRAL}; default: assembled, which is searched if there is none",
-    ),
-    option("--loops", action="store_true", help="show the closures, and the shapes translucent"),
-    option("--graph", action="store_true", help="draw the graph of links and loops as SVG"),
-    FORCE_FILE,
     summary="draw a robot, or its graph of links and loops, to a file",
     description=_DESCRIPTION,
     exit_codes="0 drawn, 1 the robot has errors, 2 the command cannot run.",
@@ -40,7 +30,15 @@ With --graph, draw the graph of its links, joints, closures and couplings to an 
     has_output=False,
 )
 def picture(
-    path: str, options: dict[str, Any], output: str, configuration: str | None, loops: bool, graph: bool, force: bool
+    options: dict[str, Any],
+    path: str = ROBOT,
+    output: str = option("the PNG or SVG file to write", "-o", "--output", required=True, metavar="OUT"),
+    configuration: str | None = option(
+        f"one of the description, or {NEUTRAL}; default: assembled, which is searched if there is none", metavar="NAME"
+    ),
+    loops: bool = flag("show the closures, and the shapes translucent"),
+    graph: bool = flag("draw the graph of links and loops as SVG"),
+    force: bool = FORCE_FILE,
 ) -> int:
     """Draw."""
     if graph and (loops or configuration):

@@ -118,7 +118,7 @@ class ConfigurationInfo:
 class RobotInfo:
     """The output of 'eurdf info --json' for one robot; dimensions are for the chosen root."""
 
-    LIKE: ClassVar = Analysis
+    LIKE: ClassVar = "eurdf.kinematics.analysis:Analysis"
 
     name: str
     """Name of the robot in the URDF."""

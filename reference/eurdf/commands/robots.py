@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from dataclasses import dataclass
-from typing import Literal
+from typing import ClassVar, Literal
 
 from eurdf.commands.command import JSON, command
 from eurdf.commands.output import write_result
@@ -17,26 +17,23 @@ _WIDE = 120
 
 @dataclass(frozen=True, slots=True)
 class CollectedRobot:
-    """A robot of the collection; dimensions are for the root that its description states."""
+    """A robot of the collection; dimensions are for the root that it states, and null if it cannot be built."""
+
+    LIKE: ClassVar = "eurdf.kinematics.analysis:Analysis"
 
     name: str
     """Name of the robot, for eurdf.load."""
     description: str | None = None
     """Description from its metadata; null if it has none or cannot be built."""
     root: Literal["fixed", "floating"] | None = None
-    """Whether its root link is fixed to the world or floats in it; null if it cannot be built."""
+    """Whether its root link is fixed to the world or floats in it."""
     nv: Count | None = None
-    """Number of velocities of the spanning tree; null if it cannot be built."""
     closures: Count | None = None
-    """Number of loop closures; null if it cannot be built."""
+    """Number of loop closures."""
     nc: Count | None = None
-    """Number of constraint rows of all closures; null if it cannot be built."""
     mobility: Count | None = None
-    """Degrees of freedom of the closed mechanism; null if the loops do not close or it cannot be built."""
     actuated: Count | None = None
-    """Number of actuated velocities; null if it cannot be built."""
     uncontrolled: Count | None = None
-    """Degrees of freedom left with every actuator held; null if the loops do not close or it cannot be built."""
     error: str | None = None
     """Why it cannot be built, or null."""
 
@@ -50,13 +47,12 @@ class Collection:
 
 
 @command(
-    JSON,
     summary="list the robots of the collection",
     description="List the robots of this package. All commands and eurdf.load accept their names.",
     exit_codes="0 listed, 1 a robot cannot be built, 2 the command cannot run.",
     examples=("eurdf robots --json",),
 )
-def robots(json: bool) -> int:
+def robots(json: bool = JSON) -> int:
     """List them."""
     import eurdf
 
@@ -91,7 +87,7 @@ def _collected(name: str) -> CollectedRobot:
 
 
 def _show(collection: Collection) -> None:
-    from eurdf.diagnostics.visible import visible
+    from eurdf.diagnostics.wording import visible
 
     counts = ("nv", "closures", "nc", "mobility", "actuated", "uncontrolled")
     described = not is_terminal(sys.stdout) or columns() >= _WIDE

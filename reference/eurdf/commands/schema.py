@@ -4,30 +4,26 @@ from __future__ import annotations
 
 from typing import Any
 
-from eurdf.commands.command import OUTPUT, URDF_OPTIONS, command, option, require_urdf
+from eurdf.commands.command import OUTPUT, SCHEMA_URDF, command, flag, option, require_urdf
 from eurdf.commands.output_file import write_new
 from eurdf.commands.terminal import write_notes, write_text
 from eurdf.exceptions import CannotRun
 
 
 @command(
-    option("--version", choices=("1", "2", "2.1"), default="2", help="version of the format; default: 2, which is 2.0"),
-    option(
-        "--for",
-        dest="urdf",
-        metavar="URDF",
-        help="include the names of the links and joints of this robot, so that editors complete them",
-    ),
-    URDF_OPTIONS,
-    OUTPUT,
-    option("--force", action="store_true", help="replace OUT if it exists"),
     summary="write the JSON Schema of a description, for editors",
     description="Write the JSON Schema (2020-12) of Extended URDF. The first line of a description names it:\n\n"
     "  # yaml-language-server: $schema=./robot.schema.json",
     exit_codes="0 written, 1 the URDF has errors, 2 the command cannot run.",
     examples=("eurdf schema --for robot.urdf -o robot.schema.json",),
 )
-def schema(version: Any, urdf: str | None, options: dict[str, Any], output: str | None, force: bool) -> int:
+def schema(
+    options: dict[str, Any],
+    version: Any = option("version of the format; default: 2, which is 2.0", choices=("1", "2", "2.1"), default="2"),
+    urdf: str | None = SCHEMA_URDF,
+    output: str | None = OUTPUT,
+    force: bool = flag("replace OUT if it exists"),
+) -> int:
     """Write the schema."""
     from eurdf.diagnostics import Diagnostics
     from eurdf.format.schema import json_schema, names_of, schema_text

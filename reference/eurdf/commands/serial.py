@@ -6,13 +6,20 @@ import argparse
 import math
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Any
 
-from eurdf.commands.command import FORCE, OUTPUT_FOLDER, ROBOT, SERIAL_JOINTS, cannot_run, command, option
+from eurdf.commands.command import (
+    FORCE,
+    OUTPUT_FOLDER,
+    ROBOT,
+    SERIAL_JOINTS,
+    SERIAL_MOTORS,
+    cannot_run,
+    command,
+    option,
+)
 from eurdf.commands.output_file import writing
 from eurdf.commands.terminal import cell, new_table, write_notes, write_rendered
-from eurdf.json_schema import Keywords
 
 if TYPE_CHECKING:
     from eurdf.kinematics.array import Matrix, Vector
@@ -23,87 +30,6 @@ Write the serial robot that stands for one whose joints are moved through rods, 
 training: without rods and cranks, with limits and armatures that follow from the motors. transmission.json has the
 same numbers, polynomials that give the positions of the motors, and what the serial robot neglects.
 """
-
-Range = tuple[float, float]
-Row = tuple[float, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class NeglectedInfo:
-    """What the serial robot neglects, over the points of the workspace; one entry for each joint."""
-
-    mass: float
-    """Mass of the bodies that are lumped onto others, kg."""
-    armature: tuple[Range, ...]
-    """Smallest and largest armature that would be exact for the joint alone, kg·m² or kg."""
-    rotors: tuple[Range, ...]
-    """Smallest and largest part of it that comes from the rotors, kg·m² or kg."""
-    linkage: tuple[Range, ...]
-    """Smallest and largest part of it that comes from the bodies of the linkage, kg·m² or kg."""
-    coupling: tuple[Row, ...]
-    """Largest inertia between two joints that no armature can state, one row for each joint."""
-    inertia: float
-    """Largest relative error of the inertia matrix."""
-    gravity: Row
-    """Largest error of the torque that holds the joint against gravity, N·m or N."""
-    torque: tuple[Range, ...] | None
-    """Smallest and largest torque of the joint alone, N·m or N; null where a motor has no limit."""
-    velocity: tuple[Range, ...] | None
-    """Smallest and largest velocity of the joint alone, rad/s or m/s; null where a motor has no limit."""
-    covered: Annotated[float, Keywords(minimum=0.0, maximum=1.0)]
-    """Part of the points that are inside the position limits of the serial robot."""
-
-
-@dataclass(frozen=True, slots=True)
-class MapInfo:
-    """Motor positions as Chebyshev polynomials of joint positions, each scaled from its range to -1…1."""
-
-    lower: Row
-    """Smallest position of each joint, rad or m."""
-    upper: Row
-    """Largest position of each joint, rad or m."""
-    coefficients: tuple[Any, ...]
-    """For each motor an array of numbers with one dimension for each joint, of degree + 1 entries, rad or m."""
-    error: Row
-    """Largest error of the position of each motor at the points tested, rad or m."""
-    error_of_G: tuple[Row, ...]  # noqa: N815 - the field's own symbol
-    """Largest error of their derivative there, one row for each motor."""
-
-
-@dataclass(frozen=True, slots=True)
-class SerialInfo:
-    """The transmission.json that 'eurdf serial' writes."""
-
-    joints: tuple[str, ...]
-    """Name of each joint velocity of the serial robot; what follows has one entry for each."""
-    motors: tuple[str, ...]
-    """Name of each motor velocity of the parallel robot."""
-    lumped: tuple[str, ...]
-    """Bodies left out; their masses are lumped onto those that carry them."""
-    lumped_at: dict[str, Row]
-    """Coordinates of the joints of the parallel robot at which they are lumped, as in files."""
-    chosen: Literal["conservative", "fitted"]
-    """How limits and armature are chosen."""
-    position: tuple[Range, ...]
-    """Smallest and largest position, rad or m."""
-    torque: tuple[float | None, ...]
-    """Largest torque or force, N·m or N; null where a motor has no limit."""
-    velocity: tuple[float | None, ...]
-    """Largest velocity, rad/s or m/s; null where a motor has no limit."""
-    armature: Row
-    """Armature, kg·m² or kg."""
-    damping: Row
-    """Viscous damping, N·m·s/rad or N·s/m."""
-    friction: Row
-    """Dry friction, N·m or N."""
-    neglected: NeglectedInfo
-    """What the serial robot neglects."""
-    stops: dict[str, int]
-    """Number of points at the edge of the workspace, by what ends the motion there."""
-    map: MapInfo
-    """The positions of the motors as polynomials."""
-    notes: tuple[str, ...]
-    """What was left out for want of numbers."""
 
 
 def _value(text: str) -> tuple[str, float]:
@@ -119,27 +45,6 @@ def _value(text: str) -> tuple[str, float]:
 
 
 @command(
-    ROBOT,
-    SERIAL_JOINTS,
-    OUTPUT_FOLDER,
-    option(
-        "--limits",
-        choices=("conservative", "fitted"),
-        default="conservative",
-        help="conservative: limits that the motors can always keep, and the largest armature; fitted: means; default: "
-        "conservative",
-    ),
-    option(
-        "--armature",
-        nargs="+",
-        default=(),
-        metavar="MOTOR=VALUE",
-        type=_value,
-        help="inertia of a motor after its gear, kg·m² or kg, in place of that of the description",
-    ),
-    option("--grid", type=int, metavar="N", help="number of positions of each joint in the workspace"),
-    option("--degree", type=int, default=8, metavar="N", help="degree of the polynomials; default: 8"),
-    FORCE,
     summary="write the serial robot that stands for one with rods, and show what it neglects",
     description=_DESCRIPTION,
     exit_codes="0 written, 1 the robot has errors, 2 the command cannot run.",
@@ -149,16 +54,27 @@ def _value(text: str) -> tuple[str, float]:
     ),
 )
 def serial(
-    path: str,
     options: dict[str, Any],
-    joints: list[str],
-    motors: list[str] | None,
-    output: str,
-    limits: Choice,
-    armature: list[tuple[str, float]],
-    grid: int | None,
-    degree: int,
-    force: bool,
+    path: str = ROBOT,
+    joints: list[str] = SERIAL_JOINTS,
+    motors: list[str] | None = SERIAL_MOTORS,
+    output: str = OUTPUT_FOLDER,
+    limits: Choice = option(
+        "conservative: limits that the motors can always keep, and the largest armature; fitted: means; default: "
+        "conservative",
+        choices=("conservative", "fitted"),
+        default="conservative",
+    ),
+    armature: list[tuple[str, float]] = option(
+        "inertia of a motor after its gear, kg·m² or kg, in place of that of the description",
+        nargs="+",
+        default=(),
+        metavar="MOTOR=VALUE",
+        type=_value,
+    ),
+    grid: int | None = option("number of positions of each joint in the workspace", type=int, metavar="N"),
+    degree: int = option("degree of the polynomials; default: 8", type=int, default=8, metavar="N"),
+    force: bool = FORCE,
 ) -> int:
     """Write the serial robot, and show what it neglects."""
     import eurdf

@@ -56,7 +56,7 @@ def write_json(value: dict[str, Any]) -> None:
 
 def write_lines(lines: Iterable[Line], stream: TextIO) -> None:
     """Write styled lines without wrapping; none of them is a command of a workflow."""
-    from eurdf.diagnostics.visible import no_command
+    from eurdf.diagnostics.wording import no_command
 
     if not is_terminal(stream):
         for line in lines:
@@ -73,7 +73,7 @@ def write_lines(lines: Iterable[Line], stream: TextIO) -> None:
 
 def write_notes(sentences: Iterable[str]) -> None:
     """Write to the standard error, a line each."""
-    from eurdf.diagnostics.visible import no_command, visible
+    from eurdf.diagnostics.wording import no_command, visible
 
     for sentence in sentences:
         sys.stderr.write(f"{no_command(visible(sentence))}\n")
@@ -129,7 +129,7 @@ def progress_bar(what: str, wanted: bool = True) -> Iterator[Callable[[float, fl
 
 def write_rendered(*renderables: RenderableType) -> None:
     """Write rich renderables to the standard output, separated by empty lines; no line is a command of a workflow."""
-    from eurdf.diagnostics.visible import no_command
+    from eurdf.diagnostics.wording import no_command
 
     console = _console(sys.stdout)
     with console.capture() as captured:
@@ -171,7 +171,7 @@ def cell(text: str, style: str = "") -> Text:
     """A table cell: text without markup, with control characters made visible."""
     from rich.text import Text
 
-    from eurdf.diagnostics.visible import visible
+    from eurdf.diagnostics.wording import visible
 
     return Text(visible(text), style=style)
 

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
-from eurdf.commands.command import JSON, ROBOT, SERIAL_JOINTS, cannot_run, command, one_of, option
+from eurdf.commands.command import JSON, ROBOT, SERIAL_JOINTS, SERIAL_MOTORS, cannot_run, command, flag, option
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import refuse_to_replace, write_new, writing
 from eurdf.commands.terminal import cell, new_table, write_notes, write_rendered
@@ -38,28 +38,6 @@ _MOST_POSES = 1_000_000
 
 
 @command(
-    ROBOT,
-    SERIAL_JOINTS,
-    one_of(
-        option(
-            "--at",
-            metavar="POSE",
-            help="a configuration of the description, or a JSON file with coordinates by joint; the joints that it "
-            "leaves out follow; default: assembled",
-        ),
-        option("--grid", type=int, metavar="N", help="N positions of each joint, from its lower to its upper limit"),
-    ),
-    JSON,
-    option("--csv", dest="table", metavar="FILE", help="write a table with one row for each pose"),
-    option(
-        "--plot",
-        metavar="FILE",
-        help="draw what the joints reach, with limits and inertia there, as .png, .svg or .pdf; needs the extra plot",
-    ),
-    option(
-        "--c", metavar="FOLDER", help="write the map as C99 without dependencies, for controllers; it starts at --at"
-    ),
-    option("--force", action="store_true", help="replace files of --csv, --plot and --c"),
     summary="show how motors drive joints through loops: velocities, torques, limits, inertia",
     description=_DESCRIPTION,
     exit_codes="0 shown, 1 the robot has errors or the map does not exist there, 2 the command cannot run.",
@@ -70,17 +48,29 @@ _MOST_POSES = 1_000_000
     ),
 )
 def transmission(
-    path: str,
     options: dict[str, Any],
-    joints: list[str],
-    motors: list[str] | None,
-    at: str | None,
-    grid: int | None,
-    json: bool,
-    table: str | None,
-    plot: str | None,
-    c: str | None,
-    force: bool,
+    path: str = ROBOT,
+    joints: list[str] = SERIAL_JOINTS,
+    motors: list[str] | None = SERIAL_MOTORS,
+    at: str | None = option(
+        "a configuration of the description, or a JSON file with coordinates by joint; the joints that it leaves out "
+        "follow; default: assembled",
+        group="pose",
+        metavar="POSE",
+    ),
+    grid: int | None = option(
+        "N positions of each joint, from its lower to its upper limit", group="pose", type=int, metavar="N"
+    ),
+    json: bool = JSON,
+    table: str | None = option("write a table with one row for each pose", "--csv", metavar="FILE"),
+    plot: str | None = option(
+        "draw what the joints reach, with limits and inertia there, as .png, .svg or .pdf; needs the extra plot",
+        metavar="FILE",
+    ),
+    c: str | None = option(
+        "write the map as C99 without dependencies, for controllers; it starts at --at", metavar="FOLDER"
+    ),
+    force: bool = flag("replace files of --csv, --plot and --c"),
 ) -> int:
     """Show the transmission."""
     import eurdf
@@ -238,7 +228,7 @@ def _has_rotors(pose: PoseInfo) -> bool:
 def _show(info: TransmissionInfo) -> None:
     from rich.text import Text
 
-    from eurdf.diagnostics.visible import visible
+    from eurdf.diagnostics.wording import visible
 
     names = (", ".join(axis.name for axis in axes) for axes in (info.motors, info.joints))
     motors, joints = map(visible, names)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
@@ -52,19 +52,19 @@ class LimitsInfo:
 class InertiaInfo:
     """Terms of the inertia that the joints feel, in kg·m², kg·m or kg."""
 
+    LIKE: ClassVar = "eurdf.transmissions.inertia:ReflectedInertia"
+
     rotors: Matrix
-    """Armature of the motors, Gᵀ I_m G."""
     linkage: Matrix
-    """Cranks, rods and other bodies that a serial robot does not have."""
     serial: Matrix
-    """The other bodies."""
     other_armature: Matrix
-    """Armature of the joints that are not motors."""
 
 
 @dataclass(frozen=True, slots=True)
 class PoseInfo:
     """The transmission at one configuration."""
+
+    LIKE: ClassVar = "eurdf.transmissions.transmission:Transmission"
 
     joints: tuple[float, ...]
     """Positions of the joints."""
@@ -75,19 +75,12 @@ class PoseInfo:
     beyond: tuple[str, ...] = ()
     """Joints beyond their position limits there; none at the poses of a grid."""
     G: Matrix | None = None
-    """Velocities of the motors by those of the joints, one row for each motor; null if it does not exist."""
     B_J: Matrix | None = None
-    """Velocities of the joints by those of the motors, one row for each joint; null if it does not exist."""
     rank_motors: Count | None = None
-    """Number of independent motor velocities."""
     rank_joints: Count | None = None
-    """Number of independent joint velocities."""
     condition: float | None = None
-    """Condition number of G, in units of the characteristic length; null if there is none."""
     reason: str | None = None
-    """Why G does not exist, or null."""
     inverse_reason: str | None = None
-    """Why B_J does not exist, or null."""
     limits: LimitsInfo | None = None
     """Limits of the joints; null where there are none, see limits_reason of the robot."""
     inertia: InertiaInfo | None = None

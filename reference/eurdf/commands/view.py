@@ -7,7 +7,7 @@ import sys
 import threading
 from typing import Any
 
-from eurdf.commands.command import FORCE_FILE, ROBOT, ROOT, cannot_run, command, option
+from eurdf.commands.command import FORCE_FILE, ROBOT, ROOT, cannot_run, command, flag, option
 from eurdf.commands.output_file import refuse_to_replace, write_new
 from eurdf.commands.terminal import write_lines, write_notes
 from eurdf.exceptions import CannotRun
@@ -34,26 +34,6 @@ def _port(text: str) -> int:
 
 
 @command(
-    ROBOT,
-    ROOT,
-    option(
-        "--port", type=_port, metavar="PORT", help="port to listen on, 0 for any; default: 8080 or the next free one"
-    ),
-    option(
-        "--host",
-        default=_LOOPBACK,
-        metavar="ADDRESS",
-        help=f"address to listen on; default: {_LOOPBACK}, for this machine alone. With another one, other machines "
-        "can move the robot, and save configurations to its file",
-    ),
-    option(
-        "--trajectory",
-        metavar="FILE",
-        help="a CSV file to replay: the first line names the columns, time and joints; the other joints follow",
-    ),
-    option("--no-browser", action="store_true", help="do not open the page"),
-    option("-o", "--output", metavar="OUT", help="write a page that needs no server to this HTML file"),
-    FORCE_FILE,
     summary="show a robot in the browser, and move it with its loops closed",
     description=_DESCRIPTION,
     exit_codes="0 ended or written, 1 the robot has errors, 2 the command cannot run.",
@@ -66,15 +46,25 @@ def _port(text: str) -> int:
     has_output=False,
 )
 def view(
-    path: str,
     options: dict[str, Any],
-    root: str | None,
-    port: int | None,
-    host: str,
-    trajectory: str | None,
-    no_browser: bool,
-    output: str | None,
-    force: bool,
+    path: str = ROBOT,
+    root: str | None = ROOT,
+    port: int | None = option(
+        "port to listen on, 0 for any; default: 8080 or the next free one", type=_port, metavar="PORT"
+    ),
+    host: str = option(
+        f"address to listen on; default: {_LOOPBACK}, for this machine alone. With another one, other machines can "
+        "move the robot, and save configurations to its file",
+        default=_LOOPBACK,
+        metavar="ADDRESS",
+    ),
+    trajectory: str | None = option(
+        "a CSV file to replay: the first line names the columns, time and joints; the other joints follow",
+        metavar="FILE",
+    ),
+    no_browser: bool = flag("do not open the page"),
+    output: str | None = option("write a page that needs no server to this HTML file", "-o", "--output", metavar="OUT"),
+    force: bool = FORCE_FILE,
 ) -> int:
     """Show the page until the command is interrupted, or write it."""
     import eurdf

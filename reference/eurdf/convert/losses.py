@@ -218,12 +218,12 @@ class Loss:
     """One loss of one export or import.
 
     Attributes:
-        code: Name of its kind.
-        effect: What is left.
-        concept: Kind of the element, such as ``3d closure``.
+        code: Permanent name of its kind.
+        effect: What is left: exact, in other terms; approximate; dropped, nothing.
+        concept: Kind of the element, such as ``3d closure``: a row of the table of losses.
         name: Name of the element: of a joint, a link, a closure, an actuator.
         message: What happened, with values.
-        hint: What the user can do.
+        hint: What to do about it.
     """
 
     code: str

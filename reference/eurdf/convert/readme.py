@@ -7,7 +7,7 @@ from pathlib import Path
 
 from eurdf.convert.import_format import ImportFormat, RobotRead
 from eurdf.convert.losses import Loss
-from eurdf.diagnostics.visible import visible
+from eurdf.diagnostics.wording import visible
 from eurdf.kinematics.opening import Opening
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mesh_files.folders import Folders

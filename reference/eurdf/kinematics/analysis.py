@@ -126,7 +126,7 @@ class Analysis:
             is singular, at a configuration near it.
         singularity: Distance to singularity at the analysed configuration: singular value number ``rank`` of K, in
             units of the characteristic length. It is the least change of K that lowers its rank (Eckart, Young, 1936),
-            and 0 at a singular configuration. The smallest of all groups of loops; not finite if no closure constrains,
+            and 0 at a singular configuration. The smallest of all groups of loops; inf if no closure constrains,
             None without loops.
         actuation_singularity: The same for the constraint Jacobian stacked with the rows that select the actuated
             velocities, [K; Sᵀ]: 0 if the held actuators leave one more motion there.

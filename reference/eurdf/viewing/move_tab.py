@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from eurdf.diagnostics.visible import visible
+from eurdf.diagnostics.wording import visible
 from eurdf.kinematics.assembly import Assembly
 from eurdf.viewing.page import Page
 from eurdf.viewing.scene import Placed, wxyz

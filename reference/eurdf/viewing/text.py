@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 
 from eurdf.diagnostics import Diagnostic
 from eurdf.diagnostics.registry import Severity
-from eurdf.diagnostics.visible import visible
+from eurdf.diagnostics.wording import visible
 from eurdf.kinematics.analysis import FIGURES, Analysis
 from eurdf.kinematics.opening import Opening
 from eurdf.transmissions.passive_limits import PassiveLimit

@@ -14,7 +14,7 @@ from typing import Any, Literal
 
 from lxml import etree
 
-from eurdf.diagnostics.visible import visible
+from eurdf.diagnostics.wording import visible
 from eurdf.format.own_key import is_own_key
 from eurdf.format.yaml_text import Value, entries_of, modeline, text_of
 from eurdf.mechanism.body import Body
