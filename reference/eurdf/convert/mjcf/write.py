@@ -35,7 +35,7 @@ from eurdf.convert.mjcf.facts import (
     is_readable,
 )
 from eurdf.convert.names import UniqueNames
-from eurdf.convert.parts import Part
+from eurdf.convert.parts import Part, part_of
 from eurdf.convert.steps import AXES, ExportedJoint, in_series
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.constraint import Closure, Coupling, DistanceClosure, HingeClosure
@@ -151,7 +151,7 @@ class _MjcfWriter:
             etree.SubElement(element, "joint", attributes)
         ratios = ((step.velocities[0], step.lead or 1.0, 0.0) for step in found.values())
         mimic = self.mimics.get(joint.name)
-        self.parts.append(Part.of(joint, tuple(found), ratios, mimic, turn=joint.offset.quaternion))
+        self.parts.append(part_of(joint, tuple(found), ratios, mimic, turn=joint.offset.quaternion))
         self._content(body, element, LEAST)
 
     def _fixed(self, body: Body, host: etree._Element, pose: Pose) -> None:
