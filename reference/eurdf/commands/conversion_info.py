@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from eurdf.convert.losses import Effect
-from eurdf.convert.verification.finding import Finding
+from eurdf.convert.verification.read_model import Finding
 from eurdf.json_schema import Keywords, NullIfInfinite
 from eurdf.kinematics.opening import Opening
 
