@@ -22,7 +22,7 @@ from eurdf.format.urdf.data import Urdf
 from eurdf.linking.mesh_files import FoundFiles, find_meshes, place_of_file
 from eurdf.linking.robot_files import ReadRobot, inertia_diagnostics, read_robot
 from eurdf.mechanism.mechanism import Root
-from eurdf.mesh_files.kinds import KINDS, LOADED, suffix_of
+from eurdf.mesh_files.kinds import KINDS, suffix_of
 from eurdf.pinocchio.meshes import Mesh, read_meshes
 from eurdf.reading.robot_source import RobotSource
 
@@ -232,7 +232,8 @@ def _read_mesh_files(urdf: Urdf, files: FoundFiles) -> tuple[dict[str, Mesh], Di
     """
     paths = files.paths
     scaled = [(shape.filename, shape.size) for shape in urdf.shapes if shape.kind == "mesh" and shape.filename in paths]
-    others = [uri for uri in dict.fromkeys(uri for uri, _ in scaled) if suffix_of(paths[uri]) not in LOADED]
+    loaded = {suffix: kind.name for suffix, kind in KINDS.items() if kind.is_loaded}
+    others = [uri for uri in dict.fromkeys(uri for uri, _ in scaled) if suffix_of(paths[uri]) not in loaded]
     meshes, reasons = read_meshes((each for each in scaled if each[0] not in others), paths, files.folders)
     diagnostics = Diagnostics()
     if others:
@@ -241,7 +242,7 @@ def _read_mesh_files(urdf: Urdf, files: FoundFiles) -> tuple[dict[str, Mesh], Di
             "x-mesh-format",
             f"{count} a format that is not read: {quoted(others)}",
             partial(place_of_file, urdf, "mesh", others[0]),
-            f"convert them to one of {', '.join(KINDS[suffix][0] for suffix in LOADED)}",
+            f"convert them to one of {', '.join(loaded.values())}",
         )
     for uri, reason in reasons.items():
         place = partial(place_of_file, urdf, "mesh", uri)

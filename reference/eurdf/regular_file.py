@@ -11,6 +11,11 @@ from typing import BinaryIO
 _READ_NOW = os.O_RDONLY | sum(getattr(os, name, 0) for name in ("O_NONBLOCK", "O_NOCTTY", "O_BINARY"))
 
 
+def reason_of(error: OSError) -> str:
+    """What the system says of an error, as a part of a sentence."""
+    return (error.strerror or str(error)).lower()
+
+
 def open_now(path: str | os.PathLike[str]) -> int:
     """A descriptor of a file, to read from, without waiting: to open a pipe would wait for someone to write into it.
 

@@ -64,18 +64,6 @@ def test_json_lists_every_loss_with_its_place(capsys: pytest.CaptureFixture[str]
             assert f'<joint name="{joint}"' in Path(each["file"]).read_text().splitlines()[each["line"] - 1]
 
 
-def test_existing_file_is_kept_without_force(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (here / "out").mkdir()
-    (here / "out" / "robot.xml").write_text("mine")
-    arguments = ["export", "four_bar", "--to", "mjcf", "-o", "out"]
-    assert main(arguments) == 2
-    assert "already exists; --force replaces it" in capsys.readouterr().err
-    assert (here / "out" / "robot.xml").read_text() == "mine"
-    assert main([*arguments, "--force"]) == 0
-    assert (here / "out" / "robot.xml").read_bytes() == eurdf.export("four_bar", "mjcf").main
-    assert os.listdir(here / "out") == ["robot.xml"]
-
-
 def test_strict_refuses_losses(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["export", "four_bar", "--to", "mjcf", "--strict", "--format", "json"]) == 1
     found = json.loads(capsys.readouterr().out)

@@ -14,9 +14,9 @@ import eurdf
 from benchmarks.fuzz.watched import Watched
 from eurdf.commands.main import main
 from eurdf.commands.output import output_schemas
-from eurdf.convert.formats import IMPORTS
 from eurdf.convert.import_format import import_format
 from eurdf.convert.import_robot import COMMON
+from eurdf.reading.other_formats import IMPORTED
 
 BODY = '<geom type="sphere" size="0.1" mass="1"/>'
 FOUR_BAR = f"""\
@@ -55,7 +55,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize("name", [*IMPORTS, "common"])
+@pytest.mark.parametrize("name", [*IMPORTED, "common"])
 def test_losses_are_registered_well(name: str) -> None:
     losses = COMMON if name == "common" else import_format(name).losses
     codes = [kind.code for kind in losses]
@@ -102,16 +102,6 @@ def test_json_lists_every_loss_with_its_place(capsys: pytest.CaptureFixture[str]
     assert "it has losses" in refused["refused"]
     assert [each["code"] for each in refused["losses"]] == [each["code"] for each in found["losses"]]
     assert [each["file"] for each in refused["losses"]] == places
-
-
-def test_existing_file_is_kept_without_force(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (here / "out").mkdir()
-    (here / "out" / "README.md").write_text("mine")
-    assert main(["import", "four_bar.xml", "-o", "out"]) == 2
-    assert "already exists; --force replaces it" in capsys.readouterr().err
-    assert [path.name for path in (here / "out").iterdir()] == ["README.md"]
-    assert main(["import", "four_bar.xml", "-o", "out", "--force"]) == 0
-    assert (here / "out" / "README.md").read_text() != "mine"
 
 
 def test_strict_refuses_losses(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -242,5 +232,5 @@ def test_damaged_files_are_refused_or_imported_as_they_are(tmp_path: Path) -> No
     with Watched() as worker:
         outcomes = [worker.try_number(7, number, "import") for number in range(60)]
     assert not [outcome for outcome in outcomes if outcome.trouble]
-    assert {outcome.kind for outcome in outcomes} == {f"import-{format_}" for format_ in IMPORTS}
+    assert {outcome.kind for outcome in outcomes} == {f"import-{format_}" for format_ in IMPORTED}
     assert {"refused", "imported"} <= {outcome.word for outcome in outcomes}

@@ -494,17 +494,6 @@ def test_command_writes_to_standard_output(folder: Path, capsys: pytest.CaptureF
     assert "wrist_z" in err
 
 
-def test_command_replaces_file_only_with_force(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    file = folder / "robot.yaml"
-    assert main(["migrate", str(file), "-o", str(file)]) == 2
-    assert "--force" in capsys.readouterr().err
-    assert file.read_text(encoding="utf-8") == COMMENTED
-    assert main(["migrate", str(file), "-o", str(file), "--force"]) == 0
-    # The schema is not where the old first line looks for it.
-    assert file.read_text(encoding="utf-8") == MIGRATED.replace("../schema/", "./")
-    assert (folder / "extended-urdf-2.0.schema.json").is_file()
-
-
 def test_new_file_names_urdf_relatively(folder: Path) -> None:
     (folder / "new").mkdir()
     out = folder / "new" / "bench.yaml"

@@ -56,23 +56,6 @@ def test_schema_none_writes_no_schema(folder: Path, argv: list[str]) -> None:
 
 
 @command
-def test_other_file_is_replaced_only_with_force(
-    folder: Path, argv: list[str], capsys: pytest.CaptureFixture[str]
-) -> None:
-    mine = folder / schema_file(argv)
-    mine.write_text("mine", encoding="utf-8")
-    assert main(argv) == 2
-    said = capsys.readouterr().err
-    assert f"'{mine.name}' already exists" in said
-    assert "--force" in said
-    assert "--schema none" in said
-    assert not (folder / "new.yaml").exists()
-    assert mine.read_text(encoding="utf-8") == "mine"
-    assert main([*argv, "--force"]) == 0
-    assert json.loads(mine.read_text(encoding="utf-8"))["$id"]
-
-
-@command
 def test_same_schema_is_unchanged(folder: Path, argv: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     path = folder / schema_file(argv)
     laid_out = json.dumps(json_schema("1" if "1" in argv else "2"), separators=(",", ":"))

@@ -7,11 +7,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from eurdf.collection.near_paths import near_path
-from eurdf.diagnostics import FileError, Place
 from eurdf.exceptions import RobotNotFound
 from eurdf.mesh_files.folders import MANIFEST
 from eurdf.reading.robot_source import STDIN, RobotSource, display_name, is_stream, is_xml, source_of
-from eurdf.reading.source import Source
+from eurdf.reading.source import Source, unreadable
 
 _HERE = Path(__file__).parent
 _YAML = (".yaml", ".yml")
@@ -110,9 +109,7 @@ def _files(folder: Path) -> list[Path]:
     try:
         names = os.listdir(folder)
     except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        place = Place(os.fspath(folder))
-        raise FileError("file-unreadable", f"the folder '{folder}' cannot be read: {reason}", place) from None
+        raise unreadable(os.fspath(folder), f"the folder '{folder}'", error) from None
     return sorted(folder / name for name in names if not os.path.isdir(folder / name))
 
 

@@ -14,7 +14,7 @@ from eurdf.commands.conversion_lines import loss_lines
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import writing
 from eurdf.commands.terminal import write_lines, write_notes, write_reports
-from eurdf.convert.formats import IMPORTS
+from eurdf.reading.other_formats import IMPORTED
 
 if TYPE_CHECKING:
     from eurdf.convert.import_robot import Import
@@ -41,7 +41,7 @@ def import_robot(
     file: str = option("the file to import", "file", metavar="FILE"),
     output: str = OUTPUT_FOLDER,
     format_: str | None = option(
-        f"{', '.join(IMPORTS)}; default: recognized by the content", "--from", choices=IMPORTS, metavar="FORMAT"
+        f"{', '.join(IMPORTED)}; default: recognized by the content", "--from", choices=IMPORTED, metavar="FORMAT"
     ),
     within: str | None = option(
         "a folder that the files may be in which FILE names, besides the robot's folder: the nearest one with a "

@@ -10,7 +10,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from eurdf.convert.common_losses import BEYOND_LIMITS, UNKNOWN
-from eurdf.convert.coordinates import Coordinates, OwnVectors, Place
+from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.exceptions import CannotExport
 from eurdf.convert.export_format import ExportInput, Triangles, export_format
 from eurdf.convert.formats import (
@@ -24,6 +24,7 @@ from eurdf.convert.formats import (
 )
 from eurdf.convert.hinges import with_hinges
 from eurdf.convert.losses import Effect, Loss, Losses
+from eurdf.convert.parts import OwnVectors, VectorPlace
 from eurdf.convert.verification.verify import Verification, verify
 from eurdf.diagnostics import did_you_mean
 from eurdf.exceptions import InvalidRobot
@@ -268,9 +269,9 @@ def _triangles(folders: Folders, path: Path) -> Triangles | None:
 
 
 def _own_vectors(robot: Robot) -> OwnVectors:
-    places = {name: Place(slot.idx_q, slot.nq, slot.idx_v) for name, slot in robot.slots.items()}
+    places = {name: VectorPlace(slot.idx_q, slot.nq, slot.idx_v) for name, slot in robot.slots.items()}
     if robot.mechanism.root == "floating":
-        places[ROOT_JOINT] = Place(0, 7, 0)
+        places[ROOT_JOINT] = VectorPlace(0, 7, 0)
     return OwnVectors(robot.model.nq, robot.model.nv, MappingProxyType(places))
 
 

@@ -11,9 +11,10 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from eurdf.convert.coordinates import Coordinates, OwnVectors
+from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.formats import Actuators, MeshFileChoice
 from eurdf.convert.losses import Losses, LossKind
+from eurdf.convert.parts import OwnVectors
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.mimic import Mimic, drivers

@@ -7,9 +7,6 @@ from typing import Literal, get_args
 #: The formats to export to. One is the package here of its name, with ``_`` for ``-``.
 EXPORTS = ("mjcf", "usd", "drake", "loop-joint", "sdf", "urdf")
 
-#: The formats to import from, likewise.
-IMPORTS = ("mjcf", "sdf", "loop-joint", "drake", "urdf-plus")
-
 #: What actuators become.
 Actuators = Literal["motor", "position", "none"]
 

@@ -15,7 +15,6 @@ from types import MappingProxyType
 import numpy as np
 
 from eurdf.convert.exceptions import CannotImport
-from eurdf.convert.formats import IMPORTS
 from eurdf.convert.import_format import ImportFormat, ImportInput, RobotRead, import_format, loss_kinds
 from eurdf.convert.loop_axes import allowed_axes, with_axes
 from eurdf.convert.losses import Effect, Loss, Losses, dropped, exact
@@ -35,6 +34,7 @@ from eurdf.loading import check
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.spanning_tree import rigid_poses
 from eurdf.pinocchio.robot import build_robot
+from eurdf.reading.other_formats import IMPORTED
 from eurdf.reading.resource import FileFinder
 from eurdf.writing.description import DescriptionFiles, NotWritable, describe_mechanism, version_needed
 from eurdf.writing.joined_closures import join_points
@@ -174,8 +174,8 @@ def import_robot(
     file = Path(path)
     if not file.is_file():
         raise RobotNotFound(os.fspath(path), f"'{file}' is not a file")
-    if format is not None and format not in IMPORTS:
-        hint = did_you_mean(format, IMPORTS) or f"the formats are: {', '.join(IMPORTS)}"
+    if format is not None and format not in IMPORTED:
+        hint = did_you_mean(format, IMPORTED) or f"the formats are: {', '.join(IMPORTED)}"
         raise ValueError(f"there is no format '{format}'; {hint}")
     name = format or recognized(file)
     finder = FileFinder(file.absolute().parent, [] if within is None else [within], allow_outside=allow_outside)

@@ -21,7 +21,7 @@ _OF_COORDINATES = {"lower", "upper", "stiffness", "rest"}
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class ExportedJoint:
     """One joint of those, from the parent outwards, that a joint becomes.
 
     Attributes:
@@ -70,7 +70,7 @@ def suffixes(kind: JointType) -> tuple[str, ...]:
 SCREW_SLIDE = "_slide"
 
 
-def in_series(joint: Joint, whole: Collection[str]) -> tuple[Step, ...]:
+def in_series(joint: Joint, whole: Collection[str]) -> tuple[ExportedJoint, ...]:
     """The joints that a joint becomes.
 
     Args:
@@ -80,28 +80,28 @@ def in_series(joint: Joint, whole: Collection[str]) -> tuple[Step, ...]:
     """
     kind = joint.type
     if kind.is_axial or kind.is_fixed or (kind in whole and not (kind == "universal" and is_skew(joint))):
-        return (Step(joint, tuple(range(kind.nv))),)
+        return (ExportedJoint(joint, tuple(range(kind.nv))),)
     return tuple(_elementary(joint, "spherical" in whole))
 
 
-def _elementary(joint: Joint, has_balls: bool) -> Iterator[Step]:
+def _elementary(joint: Joint, has_balls: bool) -> Iterator[ExportedJoint]:
     for index, (motion, end) in enumerate(zip(joint.type.steps, suffixes(joint.type), strict=True)):
         if motion.kind == "ball":
             indices = (index, index + 1, index + 2)
             if has_balls:
-                yield Step(_part(joint, end, JointType.SPHERICAL, (), indices), indices)
+                yield ExportedJoint(_part(joint, end, JointType.SPHERICAL, (), indices), indices)
                 continue
             for letter, axis in zip("xyz", AXES, strict=True):
-                yield Step(_part(joint, f"{end}_{letter}", JointType.CONTINUOUS, (axis,), ()), ())
+                yield ExportedJoint(_part(joint, f"{end}_{letter}", JointType.CONTINUOUS, (axis,), ()), ())
             continue
         axes = (joint.axes[motion.axis] if isinstance(motion.axis, int) else motion.axis,)
         turn = turn_type(joint, index)
         if motion.kind == "screw":
             slide = _part(joint, end + SCREW_SLIDE, JointType.PRISMATIC, axes, ())
-            yield Step(slide, (index,), joint.pitch / (2.0 * math.pi))
+            yield ExportedJoint(slide, (index,), joint.pitch / (2.0 * math.pi))
             turn = JointType.REVOLUTE  # its full turns count
         kind = JointType.PRISMATIC if motion.kind == "slide" else turn
-        yield Step(_part(joint, end, kind, axes, (index,)), (index,))
+        yield ExportedJoint(_part(joint, end, kind, axes, (index,)), (index,))
 
 
 def _part(joint: Joint, suffix: str, kind: JointType, axes: tuple[Vector3, ...], velocities: tuple[int, ...]) -> Joint:

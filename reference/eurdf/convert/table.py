@@ -12,10 +12,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from eurdf.convert.export_format import export_format
-from eurdf.convert.formats import EXPORTS, IMPORTS
+from eurdf.convert.formats import EXPORTS
 from eurdf.convert.import_format import import_format
 from eurdf.convert.import_robot import COMMON
 from eurdf.convert.losses import ELEMENTS, Effect, LossKind
+from eurdf.reading.other_formats import IMPORTED
 
 _PLACE = re.compile(r"(<!-- table: [^\n]*-->\n).*?(<!-- end of table -->)", re.DOTALL)
 
@@ -48,7 +49,7 @@ def details(name: str) -> str:
 
 def imports() -> str:
     """Tables in Markdown of the losses of imports: one for each format, and one for what all share."""
-    formats = [import_format(name) for name in IMPORTS]
+    formats = [import_format(name) for name in IMPORTED]
     parts = [(each.title, each.losses) for each in formats] + [("Every format", COMMON)]
     return "\n".join(_of_imports(title, losses) for title, losses in parts)
 

@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from eurdf.mesh_files.folders import Folders, folders_of_files
 from eurdf.mesh_files.reader import MeshReader, RefusedFile
+from eurdf.regular_file import reason_of
 from eurdf.sandbox import run
 
 #: Triangles that the meshes of a robot may have together, where those of each scale of a mesh count.
@@ -137,7 +138,7 @@ def _read_files(paths: Iterable[str], reader: MeshReader) -> dict[str, Mesh | st
             except RefusedFile as reason:
                 read[path] = str(reason)
             except OSError as error:  # it was there a moment ago
-                read[path] = (error.strerror or str(error)).lower()
+                read[path] = reason_of(error)
         read |= _read(files)
     return read | {path: read[one[0]] for one in same.values() for path in one[1:]}
 

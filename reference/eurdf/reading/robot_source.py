@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from eurdf.diagnostics import FileError, Place
-from eurdf.reading.source import BOM, FILE_LIMIT, Source, decoded, too_large
+from eurdf.reading.source import BOM, FILE_LIMIT, Source, decoded, too_large, unreadable
 from eurdf.regular_file import open_now
 
 #: What is given: a path, ``-`` for standard input, or the text itself.
@@ -107,8 +107,7 @@ def _read_stdin(limit: int) -> bytes:
     try:
         return sys.stdin.buffer.read(limit + 1)
     except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise FileError("file-unreadable", f"standard input cannot be read: {reason}", Place("<stdin>")) from None
+        raise unreadable("<stdin>", "standard input", error) from None
 
 
 def _read_pipe(file: str, limit: int) -> bytes:
@@ -123,8 +122,7 @@ def _read_pipe(file: str, limit: int) -> bytes:
         finally:
             os.close(descriptor)
     except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise FileError("file-unreadable", f"'{file}' cannot be read: {reason}", Place(file)) from None
+        raise unreadable(file, f"'{file}'", error) from None
 
 
 def _first_chunk(descriptor: int, file: str) -> bytes:

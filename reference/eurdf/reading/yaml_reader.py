@@ -113,11 +113,11 @@ def _read_nodes(source: Source) -> Collection:
     if data.count(b"\n%TAG") + data.count(b"\r%TAG") + data.startswith(b"%TAG") > DIRECTIVE_LIMIT:
         raise too_large(source.file, f"{DIRECTIVE_LIMIT} %TAG directives")
     try:
-        root = _Reader(source, CSafeLoader(data).get_event, original).read()
+        root = _NodeReader(source, CSafeLoader(data).get_event, original).read()
     except (YAMLError, UnicodeDecodeError) as error:
         if isinstance(error, MarkedYAMLError) and error.problem == _TOO_DEEP_TO_SCAN and error.problem_mark:
             start = data.decode()[: error.problem_mark.index].encode()
-            _Reader(source, CSafeLoader(start).get_event, original).read()  # which refuses less depth
+            _NodeReader(source, CSafeLoader(start).get_event, original).read()  # which refuses less depth
         raise syntax_error(source, error) from None
     if "\ufeff" in source.text and (mark := stray_mark(source, data)) is not None:
         raise mark
@@ -143,7 +143,7 @@ def without_other_breaks(source: Source) -> tuple[str, dict[int, str]]:
     return replaced, original
 
 
-class _Reader:
+class _NodeReader:
     """Builds the nodes of one document from libyaml's events, without recursion."""
 
     def __init__(self, source: Source, next_event: Any, original: dict[int, str]) -> None:

@@ -16,12 +16,13 @@ from pathlib import PurePosixPath
 from lxml import etree
 
 from eurdf.convert.conventions import point_on
-from eurdf.convert.coordinates import Coordinates, Part
+from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.drake.facts import CLOSURES, EXACT, LEAST, ROWS, STIFFNESS, can_have_actuator, has_one_acceleration
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format
 from eurdf.convert.inertia import accepted_inertia, has_inertia
 from eurdf.convert.losses import Losses
-from eurdf.convert.steps import AXES, Step
+from eurdf.convert.parts import Part
+from eurdf.convert.steps import AXES, ExportedJoint
 from eurdf.convert.urdf.tree import UrdfTree
 from eurdf.mechanism.body import Body, Inertia
 from eurdf.mechanism.constraint import Closure, Coupling, FrameClosure, HingeClosure
@@ -110,12 +111,12 @@ class _DrakeTree(UrdfTree):
 
     # -- joints -----------------------------------------------------------------------------------------------------
 
-    def add_part(self, joint: Joint, names: Sequence[str], steps: Sequence[Step]) -> None:
+    def add_part(self, joint: Joint, names: Sequence[str], steps: Sequence[ExportedJoint]) -> None:
         ratios = ((step.velocities[0], 1.0, 0.0) for step in steps)
         rotation = "quaternion" if joint.type is JointType.PLANAR else "rpy"
         self.parts.append(Part.of(joint, names, ratios, self.mimics.get(joint.name), rotation=rotation))
 
-    def add_properties(self, joint: Joint, step: Step, element: etree._Element) -> None:
+    def add_properties(self, joint: Joint, step: ExportedJoint, element: etree._Element) -> None:
         kind, properties = step.joint.type, step.joint.properties
         if kind in self.whole:
             element.tag, element.attrib["type"] = _tag("joint"), _KINDS[kind]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import PurePosixPath
 
 from eurdf.convert.common_losses import (
     ACCELERATION,
@@ -18,6 +19,7 @@ from eurdf.convert.common_losses import (
 from eurdf.convert.losses import approximate, by_writer, dropped, exact
 from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint_types import JointType
 
 #: kg and kg·m² that a moving body without inertia gets: ten times the larger of MuJoCo's bounds, and far below any of a
 #: robot.
@@ -35,6 +37,17 @@ SOLREF, SOLIMP = (2.0 * TIMESTEP, 1.0), (0.9999, 0.9999, 0.001, 0.5, 2.0)
 
 #: The bound of a side without limit, where the other side has one: rad or m.
 UNLIMITED = 1e10
+
+#: The types of joint that are one of MuJoCo, beside those of one axis.
+WHOLE = (JointType.SPHERICAL,)
+
+#: The kind of joint of MuJoCo that a joint is.
+KINDS = {
+    JointType.REVOLUTE: "hinge",
+    JointType.CONTINUOUS: "hinge",
+    JointType.PRISMATIC: "slide",
+    JointType.SPHERICAL: "ball",
+}
 
 #: The element that holds a closure.
 CLOSURES = {"3d": "connect", "6d": "weld", "hinge": "connect", "distance": "tendon"}
@@ -63,6 +76,14 @@ _MEASURE = "run `eurdf export --verify`: it shows how far the loops open in 2 s 
 _KEYFRAME = "let the simulation start at a keyframe, which meets the equality"
 
 _DRIVEN = ("motor", "position")
+
+
+def is_readable(file: str, content: bytes) -> bool:
+    """Whether MuJoCo reads a mesh: a binary STL has 80 bytes, the number of triangles, and 50 bytes of each."""
+    suffix = PurePosixPath(file).suffix.lower()
+    if suffix == ".stl":
+        return len(content) >= 84 and len(content) == 84 + 50 * int.from_bytes(content[80:84], "little")
+    return suffix in (".obj", ".msh")
 
 
 def _compliance(closure: Closure) -> str:

@@ -22,7 +22,7 @@ from eurdf.convert.mjcf.read_actuators import read_actuators
 from eurdf.convert.mjcf.read_bodies import read_body
 from eurdf.convert.mjcf.read_constraints import movable, read_closures, read_couplings
 from eurdf.convert.mjcf.read_joints import coordinates_at, read_joints
-from eurdf.convert.mjcf.reading import (
+from eurdf.convert.mjcf.read_state import (
     WORLD,
     MjcfReading,
     NoDirection,
@@ -267,10 +267,10 @@ def _coordinates(reading: MjcfReading, qpos: Sequence[float], mechanism: Mechani
             *qpos[joint.qposadr : joint.qposadr + 3],
             *xyzw(qpos[joint.qposadr + 3 : joint.qposadr + 7]),
         )
-    steps = {step.name: step for step in reading.steps.values()}
+    whole = {each.name: each for each in reading.whole.values()}
     for each in mechanism.joints:
-        if each.name in steps and each.type is not JointType.FIXED and each.mimic is None:
-            found[each.name] = coordinates_at(steps[each.name], qpos)
+        if each.name in whole and each.type is not JointType.FIXED and each.mimic is None:
+            found[each.name] = coordinates_at(whole[each.name], qpos)
     return MappingProxyType(found)
 
 

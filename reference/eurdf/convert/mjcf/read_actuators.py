@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from eurdf.convert.mjcf.compiled import Element
 from eurdf.convert.mjcf.read_joints import largest_effort
-from eurdf.convert.mjcf.reading import MjcfReading
+from eurdf.convert.mjcf.read_state import MjcfReading
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.motor import Motor
 
@@ -22,13 +22,13 @@ def read_actuators(reading: MjcfReading) -> tuple[tuple[str, ...], dict[str, Mot
             joint = _joint_of_tendon(reading, actuator)
             if joint is None:
                 continue
-        step = None if joint is None else reading.steps.get(joint.index)
-        if joint is None or step is None:
+        whole = None if joint is None else reading.whole.get(joint.index)
+        if joint is None or whole is None:
             reading.losses.add("import-actuator", _name_of(actuator))
             continue
-        group = groups.setdefault(step.name, [])
+        group = groups.setdefault(whole.name, [])
         is_driven = joint in [each for _, each in group] and joint.type != "ball"
-        if (group and step.type.nv == 1) or is_driven:
+        if (group and whole.type.nv == 1) or is_driven:
             reading.losses.add("import-second-actuator", _name_of(actuator))
         else:
             group.append((actuator, joint))

@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 
 from eurdf.convert.mjcf.compiled import Element
-from eurdf.convert.mjcf.reading import WORLD, MjcfReading, flat, pose_from, vector
+from eurdf.convert.mjcf.read_state import WORLD, MjcfReading, flat, pose_from, vector
 from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.pose import Pose
 from eurdf.mesh_files.reader import RefusedFile

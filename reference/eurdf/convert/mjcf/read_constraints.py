@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from eurdf.convert.mjcf.compiled import Element
-from eurdf.convert.mjcf.reading import MjcfReading, pose_from, vector
+from eurdf.convert.mjcf.read_state import MjcfReading, pose_from, vector
 from eurdf.mechanism.constraint import Closure, Coupling, DistanceClosure, FrameClosure, PointClosure
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint import Joint
@@ -131,11 +131,11 @@ def _terms(reading: MjcfReading, equality: Element) -> tuple[dict[str, float], f
             reading.wraps(element) if equality.type == "tendon" else (Element(type="joint", objid=element, prm=1.0),)
         )
         for wrap in wraps:
-            step = reading.steps.get(wrap.objid)
-            if wrap.type != "joint" or step is None or step.type.nv != 1:
+            whole = reading.whole.get(wrap.objid)
+            if wrap.type != "joint" or whole is None or whole.type.nv != 1:
                 return None
             coefficient = factor * wrap.prm
-            coefficients[step.name] = coefficients.get(step.name, 0.0) + coefficient
+            coefficients[whole.name] = coefficients.get(whole.name, 0.0) + coefficient
             offset += coefficient * reading.model.qpos0[reading.model["jnt"][wrap.objid].qposadr]
     return {name: float(value) for name, value in coefficients.items() if value}, float(offset)
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import cast
 
 from eurdf.convert.mjcf.compiled import Element
-from eurdf.convert.mjcf.reading import MjcfReading, Step, flat, usable, vector, xyzw
+from eurdf.convert.mjcf.read_state import MjcfReading, WholeJoint, flat, usable, vector, xyzw
 from eurdf.convert.steps import SCREW_SLIDE, suffixes
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint, JointProperties
@@ -41,66 +41,66 @@ def read_joints(reading: MjcfReading, body: int) -> None:
     link = reading.bodies[body].name
     parent = reading.bodies[reading.model["body"][body].parentid].name
     pose = reading.pose_of(body)
-    steps = _steps(reading, body)
-    if not steps:
+    found = _whole_joints(reading, body)
+    if not found:
         name = reading.joint_names.new(f"{link}_fixed")
         reading.joints[name] = Joint(name, JointType.FIXED, parent, link, pose)
         return
     # The coordinates of a free joint are the pose in the world.
     before = IDENTITY if reading.kinds(body) == ["free"] else pose
-    for step in steps:
-        last = step is steps[-1]
-        here = Pose(step.anchor) * step.turn
+    for whole in found:
+        last = whole is found[-1]
+        here = Pose(whole.anchor) * whole.turn
         placement = before * here
-        moved = _reference(reading, step)
+        moved = _reference(reading, whole)
         if moved is not IDENTITY:
             placement = placement * moved.inverse()
         child = link
         if not last:
-            child = reading.links.new(f"{step.name}_link")
+            child = reading.links.new(f"{whole.name}_link")
             reading.extra.append(Body(child))
         offset = here.inverse() if last and here != IDENTITY else IDENTITY
-        properties = _properties(reading, step)
-        reading.joints[step.name] = Joint(
-            step.name, step.type, parent, child, placement, offset, step.axes, step.pitch, properties
+        properties = _properties(reading, whole)
+        reading.joints[whole.name] = Joint(
+            whole.name, whole.type, parent, child, placement, offset, whole.axes, whole.pitch, properties
         )
-        reading.steps |= {joint.index: step for joint in step.joints}
+        reading.whole |= {joint.index: whole for joint in whole.joints}
         parent, before = child, here.inverse()
 
 
-def _reference(reading: MjcfReading, step: Step) -> Pose:
+def _reference(reading: MjcfReading, whole: WholeJoint) -> Pose:
     """How far a joint has moved its child at qpos0."""
-    if step.type.quaternion is not None:
+    if whole.type.quaternion is not None:
         return IDENTITY
-    coordinates = coordinates_at(step, reading.model.qpos0)
-    bare = Joint(step.name, step.type, "", "", axes=step.axes, pitch=step.pitch)
+    coordinates = coordinates_at(whole, reading.model.qpos0)
+    bare = Joint(whole.name, whole.type, "", "", axes=whole.axes, pitch=whole.pitch)
     return bare.transform(coordinates) if any(coordinates) else IDENTITY
 
 
-def coordinates_at(step: Step, qpos: Sequence[float]) -> tuple[float, ...]:
+def coordinates_at(whole: WholeJoint, qpos: Sequence[float]) -> tuple[float, ...]:
     """The coordinates of a joint, as files have them, at a configuration of MuJoCo."""
     found: list[float] = []
-    for joint in _moving(step):
+    for joint in _moving(whole):
         at = joint.qposadr
         if joint.type == "free":
             found += qpos[at : at + 3]
             at += 3
         found += xyzw(qpos[at : at + 4]) if joint.type in ("free", "ball") else (float(qpos[at]),)
-    if step.type.quaternion is not None and step.turn is not IDENTITY:
-        turned = step.turn.inverse() * Pose(quaternion=cast(Quaternion, tuple(found[-4:]))) * step.turn
+    if whole.type.quaternion is not None and whole.turn is not IDENTITY:
+        turned = whole.turn.inverse() * Pose(quaternion=cast(Quaternion, tuple(found[-4:]))) * whole.turn
         found[-4:] = turned.quaternion
     return tuple(found)
 
 
-def _moving(step: Step) -> tuple[Element, ...]:
+def _moving(whole: WholeJoint) -> tuple[Element, ...]:
     """The joints of MuJoCo that have the coordinates of a joint: the slide of a helical one follows its hinge."""
-    return step.joints[1:] if step.type is JointType.HELICAL else step.joints
+    return whole.joints[1:] if whole.type is JointType.HELICAL else whole.joints
 
 
 # -- one joint of several ---------------------------------------------------------------------------------------------
 
 
-def _steps(reading: MjcfReading, body: int) -> list[Step]:
+def _whole_joints(reading: MjcfReading, body: int) -> list[WholeJoint]:
     """The joints of a body. Those that an export made of one joint, by their names, are that joint again."""
     joints = reading.joints_of[body]
     for kind, parts in _EXPORTED.items():
@@ -111,23 +111,25 @@ def _steps(reading: MjcfReading, body: int) -> list[Step]:
     return [_single(reading, joint, body) for joint in joints]
 
 
-def _single(reading: MjcfReading, joint: Element, body: int) -> Step:
+def _single(reading: MjcfReading, joint: Element, body: int) -> WholeJoint:
     is_first = joint is reading.joints_of[body][0]
     made = f"{reading.bodies[body].name}_joint" if is_first else f"joint_{joint.index}"
     name = reading.new_name(reading.joint_names, joint, "joint", made)
     anchor, axis = vector(joint.pos), vector(joint.axis)
     match joint.type:
         case "free":
-            return Step(name, JointType.FLOATING, (joint,))
+            return WholeJoint(name, JointType.FLOATING, (joint,))
         case "ball":
-            return Step(name, JointType.SPHERICAL, (joint,), anchor)
+            return WholeJoint(name, JointType.SPHERICAL, (joint,), anchor)
         case "slide":
-            return Step(name, JointType.PRISMATIC, (joint,), axes=(axis,))
+            return WholeJoint(name, JointType.PRISMATIC, (joint,), axes=(axis,))
     kind = JointType.REVOLUTE if any(map(math.isfinite, _range(joint))) else JointType.CONTINUOUS
-    return Step(name, kind, (joint,), anchor, (axis,))
+    return WholeJoint(name, kind, (joint,), anchor, (axis,))
 
 
-def _exported(reading: MjcfReading, joints: Sequence[Element], kind: JointType, ends: Sequence[str]) -> Step | None:
+def _exported(
+    reading: MjcfReading, joints: Sequence[Element], kind: JointType, ends: Sequence[str]
+) -> WholeJoint | None:
     """The one joint that an export splits into these; None if they are not such joints."""
     stem = joints[0].name.removesuffix(ends[0])
     if not stem or [stem + end for end in ends] != [joint.name for joint in joints] or usable(stem) != stem:
@@ -153,7 +155,7 @@ def _exported(reading: MjcfReading, joints: Sequence[Element], kind: JointType, 
         if math.dist(_cross(x, y), z) > _SAME or abs(x[0] * y[0] + x[1] * y[1] + x[2] * y[2]) > _SAME:
             return None
         turn, axes = _orientation(x, y, z), []
-    return Step(reading.joint_names.new(stem), kind, tuple(joints), anchors[0], tuple(axes), turn, pitch)
+    return WholeJoint(reading.joint_names.new(stem), kind, tuple(joints), anchors[0], tuple(axes), turn, pitch)
 
 
 def _is_one(reading: MjcfReading, joints: Sequence[Element], kind: JointType) -> bool:
@@ -215,19 +217,19 @@ def _range(joint: Element) -> tuple[float, float]:
     return (lower if lower > -UNLIMITED else -math.inf), (upper if upper < UNLIMITED else math.inf)
 
 
-def _properties(reading: MjcfReading, step: Step) -> JointProperties:
+def _properties(reading: MjcfReading, whole: WholeJoint) -> JointProperties:
     """What a joint has beside its axes and its motor, which `read_actuators` reads."""
-    free = JointProperties.unlimited(step.type)
-    joints = _moving(step)
+    free = JointProperties.unlimited(whole.type)
+    joints = _moving(whole)
     dofs = [dof for joint in joints for dof in _dofs(reading, joint)]
-    if any(any(flat(joint.stiffnesspoly)) for joint in step.joints) or any(any(flat(dof.dampingpoly)) for dof in dofs):
-        reading.losses.add("import-nonlinear-spring", step.name)
+    if any(any(flat(joint.stiffnesspoly)) for joint in whole.joints) or any(any(flat(dof.dampingpoly)) for dof in dofs):
+        reading.losses.add("import-nonlinear-spring", whole.name)
     springs = {}
-    if step.type.moving_frame:
+    if whole.type.moving_frame:
         if any(joint.stiffness for joint in joints):
-            reading.losses.add("import-ball-spring", step.name)
+            reading.losses.add("import-ball-spring", whole.name)
         if any(joint.limited for joint in joints):
-            reading.losses.add("import-ball-limit", step.name)
+            reading.losses.add("import-ball-limit", whole.name)
         bounds = list(zip(free.lower, free.upper, strict=True))
     else:
         bounds = list(map(_range, joints))

@@ -15,27 +15,37 @@ from pathlib import PurePosixPath
 from lxml import etree
 
 from eurdf.convert.conventions import neighbours, point_on, position_gain
-from eurdf.convert.coordinates import Coordinates, Part
+from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format
 from eurdf.convert.inertia import accepted_inertia, along_principal_axes, has_inertia
 from eurdf.convert.losses import Losses
-from eurdf.convert.mesh_file import MeshFiles
-from eurdf.convert.mjcf.facts import CLOSURES, EXACT, LEAST, ROWS, SOLIMP, SOLREF, TIMESTEP, TOLERANCE, UNLIMITED
+from eurdf.convert.meshes import MeshFiles
+from eurdf.convert.mjcf.facts import (
+    CLOSURES,
+    EXACT,
+    KINDS,
+    LEAST,
+    ROWS,
+    SOLIMP,
+    SOLREF,
+    TIMESTEP,
+    TOLERANCE,
+    UNLIMITED,
+    WHOLE,
+    is_readable,
+)
 from eurdf.convert.names import UniqueNames
-from eurdf.convert.steps import AXES, Step, in_series
+from eurdf.convert.parts import Part
+from eurdf.convert.steps import AXES, ExportedJoint, in_series
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.constraint import Closure, Coupling, DistanceClosure, HingeClosure
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
-from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.writing.xml_text import file_content, numbers, representable
 
 _WORLD = "world"
-
-#: The types of joint that are one of MuJoCo, beside those of one axis.
-_WHOLE = (JointType.SPHERICAL,)
 
 
 def write(given: ExportInput, losses: Losses) -> ExportOutput:
@@ -63,9 +73,9 @@ class _MjcfWriter:
         #: For each link, the element that has it, and its pose there.
         self.hosts: dict[str, tuple[etree._Element, Pose]] = {}
         #: The MuJoCo joints of each joint, by their names.
-        self.steps: dict[str, dict[str, Step]] = {}
+        self.steps: dict[str, dict[str, ExportedJoint]] = {}
         self.parts: list[Part] = []
-        self.meshes = MeshFiles(given, losses, _is_readable)
+        self.meshes = MeshFiles(given, losses, is_readable)
         self.used_meshes: dict[tuple[str, tuple[float, ...]], str] = {}
         self.mimics = given.mimics
 
@@ -130,9 +140,9 @@ class _MjcfWriter:
             return
         element = etree.SubElement(host, "body", {"name": self.bodies.new(body.name), **_placed(pose)})
         back = joint.offset.inverse()
-        self.steps[joint.name] = found = {self.joints.new(step.joint.name): step for step in in_series(joint, _WHOLE)}
+        self.steps[joint.name] = found = {self.joints.new(step.joint.name): step for step in in_series(joint, WHOLE)}
         for name, step in found.items():
-            attributes = {"name": name, "type": _KINDS[step.joint.type]}
+            attributes = {"name": name, "type": KINDS[step.joint.type]}
             if joint.offset is not IDENTITY and any(back.xyz):
                 attributes["pos"] = numbers(back.xyz)
             if step.joint.axes:
@@ -158,14 +168,11 @@ class _MjcfWriter:
     @cached_property
     def _branches(self) -> int:
         """Number of bodies on the base and on the links without mass that are fixed to it."""
-        base, number = {self.mechanism.bodies[0].name}, 0
-        for joint, body in zip(self.mechanism.joints, self.mechanism.bodies[1:], strict=True):
-            if joint.parent in base:
-                if joint.type.is_fixed and not has_inertia(body):
-                    base.add(body.name)
-                else:
-                    number += 1
-        return number
+        base, joints = {self.mechanism.bodies[0].name}, self.mechanism.joints
+        for joint, body in zip(joints, self.mechanism.bodies[1:], strict=True):
+            if joint.parent in base and joint.type.is_fixed and not has_inertia(body):
+                base.add(body.name)
+        return sum(joint.parent in base and joint.child not in base for joint in joints)
 
     def _content(self, body: Body, element: etree._Element, least: float) -> None:
         """Inertia and shapes of a link, which the element is; mass and principal moments are at least ``least``."""
@@ -237,7 +244,7 @@ class _MjcfWriter:
 
     # -- joints -----------------------------------------------------------------------------------------------------
 
-    def _properties(self, joint: Joint, step: Step) -> dict[str, str]:
+    def _properties(self, joint: Joint, step: ExportedJoint) -> dict[str, str]:
         """The attributes of a MuJoCo joint, one of those that a joint is."""
         found = {}
         for attribute in ("armature", "damping", "friction"):
@@ -279,17 +286,14 @@ class _MjcfWriter:
         steps = self.steps.get(joint.name, {})
         for name, step in steps.items():
             if step.lead:
-                self._mimic(name, Mimic(self._scalar(joint.name), step.lead))
-        mimic = self.mimics.get(joint.name)
-        if mimic is not None:
-            self._mimic(self._scalar(joint.name), Mimic(self._scalar(mimic.joint), mimic.multiplier, mimic.offset))
+                self._joint_equality(f"{name}/mimic", (name, self._scalar(joint.name)), 0.0, step.lead)
+        if mimic := self.mimics.get(joint.name):
+            joints = self._scalar(joint.name), self._scalar(mimic.joint)
+            self._joint_equality(f"{joints[0]}/mimic", joints, mimic.offset, mimic.multiplier)
         for name, step in steps.items():
             for lower, upper in step.joint.ranges:
                 if lower == upper:
                     self._joint_equality(f"{name}/locked", (name,), lower, 0.0)
-
-    def _mimic(self, follower: str, mimic: Mimic) -> None:
-        self._joint_equality(f"{follower}/mimic", (follower, mimic.joint), mimic.offset, mimic.multiplier)
 
     def _joint_equality(self, name: str, joints: tuple[str, ...], offset: float, ratio: float) -> None:
         """Let a joint be at an offset, plus a ratio times another one if there is one."""
@@ -306,8 +310,8 @@ class _MjcfWriter:
         if isinstance(closure, DistanceClosure):
             path = self.tendons.new(closure.name)
             spatial = etree.SubElement(self.tendon, "spatial", name=path)
-            for site in (a, b):
-                etree.SubElement(spatial, "site", site=site)
+            etree.SubElement(spatial, "site", site=a)
+            etree.SubElement(spatial, "site", site=b)
             # The equality is relative to the length at the reference configuration.
             excess = closure.length - math.dist(*(self._origin(end.body, end.pose) for end in closure.anchors))
             self._tendon_equality(name, path, excess)
@@ -383,14 +387,6 @@ class _MjcfWriter:
             etree.SubElement(self.actuator, "position" if is_position else "motor", attributes)
 
 
-_KINDS = {
-    JointType.REVOLUTE: "hinge",
-    JointType.CONTINUOUS: "hinge",
-    JointType.PRISMATIC: "slide",
-    JointType.SPHERICAL: "ball",
-}
-
-
 def _placed(pose: Pose) -> dict[str, str]:
     """The attributes of a pose; those at their default are left out."""
     attributes = {}
@@ -400,14 +396,6 @@ def _placed(pose: Pose) -> dict[str, str]:
     if (x, y, z) != (0.0, 0.0, 0.0):
         attributes["quat"] = numbers((w, x, y, z))
     return attributes
-
-
-def _is_readable(file: str, content: bytes) -> bool:
-    """Whether MuJoCo reads a mesh: a binary STL has 80 bytes, the number of triangles, and 50 bytes of each."""
-    suffix = PurePosixPath(file).suffix.lower()
-    if suffix == ".stl":
-        return len(content) >= 84 and len(content) == 84 + 50 * int.from_bytes(content[80:84], "little")
-    return suffix in (".obj", ".msh")
 
 
 FORMAT = Format("mjcf", "MJCF, for MuJoCo and what reads its format", write, ROWS, EXACT)

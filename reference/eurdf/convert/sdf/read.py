@@ -139,10 +139,10 @@ def read(given: ImportInput) -> RobotRead:
         CannotImport: It is not such a file, has an error, or its links do not hang together.
     """
     inside(given.path, given.path.resolve(), given.folders)
-    return _Reader(given, read_root(given.path)).read()
+    return _SdfReader(given, read_root(given.path)).read()
 
 
-class _Reader:
+class _SdfReader:
     """A file while it is read."""
 
     def __init__(self, given: ImportInput, root: etree._Element) -> None:

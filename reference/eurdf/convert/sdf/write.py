@@ -15,13 +15,14 @@ from dataclasses import replace
 
 from lxml import etree
 
-from eurdf.convert.coordinates import Coordinates, Part
+from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.exceptions import CannotExport
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format, coordinates_at
 from eurdf.convert.inertia import accepted_inertia
 from eurdf.convert.losses import Losses
-from eurdf.convert.mesh_file import MeshFiles
+from eurdf.convert.meshes import MeshFiles
 from eurdf.convert.names import UniqueNames
+from eurdf.convert.parts import Part
 from eurdf.convert.sdf.facts import CLOSURES, EXACT, LEAST, ROWS, VERSION
 from eurdf.convert.steps import AXES, in_series, turn_type
 from eurdf.mechanism.body import Body, Inertia, Shape
@@ -209,7 +210,7 @@ class _SdfWriter:
             mimic = replace(mimic, offset=mimic.offset - at[0])
         zero = () if at == joint.type.neutral else at
         ratios = ((index, 1.0, -value) for index, value in enumerate(at))
-        self.parts.append(Part.of(joint, names, ratios, mimic, zero=zero, turn=joint.offset.quaternion))
+        self.parts.append(Part.of(joint, names, ratios, mimic, zero=zero))
 
     # -- relations --------------------------------------------------------------------------------------------------
 

@@ -6,12 +6,12 @@ from collections.abc import Callable, Sequence
 
 from lxml import etree
 
-from eurdf.convert.coordinates import Part
 from eurdf.convert.export_format import ExportInput
 from eurdf.convert.losses import Losses
-from eurdf.convert.mesh_file import MeshFiles
+from eurdf.convert.meshes import MeshFiles
 from eurdf.convert.names import UniqueNames
-from eurdf.convert.steps import Step, Z, in_series
+from eurdf.convert.parts import Part
+from eurdf.convert.steps import ExportedJoint, Z, in_series
 from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
@@ -104,14 +104,14 @@ class UrdfTree:
         self.joints[joint.name] = tuple(names)
         self.add_part(joint, names, steps)
 
-    def type(self, joint: Joint, step: Step) -> JointType:
+    def type(self, joint: Joint, step: ExportedJoint) -> JointType:
         """The type of one of the joints that a joint becomes."""
         return step.joint.type
 
-    def add_properties(self, joint: Joint, step: Step, element: etree._Element) -> None:
+    def add_properties(self, joint: Joint, step: ExportedJoint, element: etree._Element) -> None:
         """Add what the file states of one of the joints that a joint becomes."""
         raise NotImplementedError
 
-    def add_part(self, joint: Joint, names: Sequence[str], steps: Sequence[Step]) -> None:
+    def add_part(self, joint: Joint, names: Sequence[str], steps: Sequence[ExportedJoint]) -> None:
         """Add the joint to `parts`, unless it has no coordinates of its own."""
         raise NotImplementedError

@@ -9,10 +9,11 @@ from functools import cached_property
 
 from lxml import etree
 
-from eurdf.convert.coordinates import Coordinates, Part
+from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format
 from eurdf.convert.losses import Losses
-from eurdf.convert.steps import Step, turn_type
+from eurdf.convert.parts import Part
+from eurdf.convert.steps import ExportedJoint, turn_type
 from eurdf.convert.urdf.facts import EXACT, ROWS
 from eurdf.convert.urdf.tree import UrdfTree
 from eurdf.mechanism.joint import Joint
@@ -55,7 +56,7 @@ class PlainTree(UrdfTree):
         """Names of the joints that others mimic."""
         return frozenset(joint.mimic.joint for joint in self.mechanism.joints if joint.mimic is not None)
 
-    def type(self, joint: Joint, step: Step) -> JointType:
+    def type(self, joint: Joint, step: ExportedJoint) -> JointType:
         """Of a turn without limits, ``continuous``.
 
         Not where joints mimic: Pinocchio lets no revolute or prismatic joint mimic a continuous one.
@@ -64,7 +65,7 @@ class PlainTree(UrdfTree):
         is_alone = joint.type is JointType.REVOLUTE and joint.mimic is None and joint.name not in self._leaders
         return turn_type(joint) if is_alone else kind
 
-    def add_properties(self, joint: Joint, step: Step, element: etree._Element) -> None:
+    def add_properties(self, joint: Joint, step: ExportedJoint, element: etree._Element) -> None:
         """Add limits and losses; of planar and floating joints, those of the first axis."""
         properties = step.joint.properties
 
@@ -80,7 +81,7 @@ class PlainTree(UrdfTree):
             add_limit(element, position, effort, velocity, rates)
         add_dynamics(element, first(properties.damping, 0.0), first(properties.friction, 0.0))
 
-    def add_part(self, joint: Joint, names: Sequence[str], steps: Sequence[Step]) -> None:
+    def add_part(self, joint: Joint, names: Sequence[str], steps: Sequence[ExportedJoint]) -> None:
         """Add the joint: Pinocchio's q has cosine and sine of the angle of a continuous or planar joint."""
         if joint.mimic is not None:
             return

@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, UsdShade
 
+from eurdf.convert.export_format import Triangles
 from eurdf.mechanism.pose import IDENTITY, Pose, Quaternion, Vector3
 
 Matrix = npt.NDArray[np.float64]
@@ -264,22 +265,17 @@ class UsdStage:
         prim.CreateAttribute(name, Sdf.ValueTypeNames.Float, custom=False).Set(value)
 
 
-def mesh_file(vertices: Matrix, triangles: npt.NDArray[np.int64]) -> bytes:
-    """The content of a file with one mesh.
-
-    Args:
-        vertices: Shape (n, 3).
-        triangles: Shape (m, 3), indices of vertices.
-    """
+def mesh_file(triangles: Triangles) -> bytes:
+    """The content of a file with one mesh."""
     stage = Usd.Stage.CreateInMemory("mesh.usdc")
     UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.z)
     UsdGeom.SetStageMetersPerUnit(stage, 1.0)
     mesh = UsdGeom.Mesh.Define(stage, "/mesh")
     stage.SetDefaultPrim(mesh.GetPrim())
-    points = vertices.astype(np.float32)
+    points = triangles.vertices.astype(np.float32)
     mesh.CreatePointsAttr(points)
-    mesh.CreateFaceVertexCountsAttr(np.full(len(triangles), 3, np.int32))
-    mesh.CreateFaceVertexIndicesAttr(triangles.astype(np.int32).ravel())
+    mesh.CreateFaceVertexCountsAttr(np.full(len(triangles.triangles), 3, np.int32))
+    mesh.CreateFaceVertexIndicesAttr(triangles.triangles.astype(np.int32).ravel())
     mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
     mesh.CreateExtentAttr(np.array((points.min(axis=0), points.max(axis=0))))
     with tempfile.TemporaryDirectory(prefix="eurdf-") as folder:

@@ -8,23 +8,23 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from importlib.util import find_spec
 from itertools import combinations, permutations
 
 import numpy as np
-import numpy.typing as npt
 
 from eurdf.convert.conventions import neighbours, position_gain
-from eurdf.convert.coordinates import Coordinates, Part
+from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format, coordinates_at
 from eurdf.convert.inertia import about_centre, accepted_inertia, has_inertia
 from eurdf.convert.losses import Losses
-from eurdf.convert.mesh_file import mesh_names, report_unread
+from eurdf.convert.meshes import MeshFiles
 from eurdf.convert.names import UniqueNames
-from eurdf.convert.steps import AXES, in_series
+from eurdf.convert.parts import UPRIGHT, Part
+from eurdf.convert.steps import in_series
 from eurdf.convert.usd.facts import CLOSURES, DAMPING_TIME, EXACT, LEAST, LEAST_MOMENT, ROWS
+from eurdf.convert.usd.joints import KINDS, WHOLE, Freedom, axis_and_frame, freedoms
 from eurdf.diagnostics.extras import install_command
 from eurdf.exceptions import MissingExtra
 from eurdf.mechanism.body import Body, Shape
@@ -33,53 +33,10 @@ from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.mimic import Mimic
-from eurdf.mechanism.pose import IDENTITY, Pose, Quaternion, direction, turn_from_x
+from eurdf.mechanism.pose import IDENTITY, Pose, turn_from_x
 from eurdf.mechanism.spanning_tree import rigid_roots
 
 _DEGREES = 180.0 / math.pi
-_UPRIGHT: Quaternion = (0.0, 0.0, 0.0, 1.0)
-
-#: Axis tokens of directions that need no turn of the frame.
-_TOKENS = dict(zip(AXES, "XYZ", strict=True))
-
-#: The types of joint that are one of USD, beside those of one axis; but for spherical ones, a D6 joint.
-_WHOLE = (
-    JointType.SPHERICAL,
-    JointType.UNIVERSAL,
-    JointType.CYLINDRICAL,
-    JointType.HELICAL,
-    JointType.PLANAR,
-    JointType.FLOATING,
-)
-
-#: The kinds of the other joints of USD.
-_KINDS = {
-    JointType.FIXED: "fixed",
-    JointType.REVOLUTE: "revolute",
-    JointType.CONTINUOUS: "revolute",
-    JointType.PRISMATIC: "prismatic",
-    JointType.SPHERICAL: "spherical",
-}
-
-
-@dataclass(frozen=True, slots=True)
-class _Freedom:
-    """A free axis of a USD joint.
-
-    Attributes:
-        axis: Its name: ``angular`` or ``linear`` of a joint with one axis, else ``transX`` to ``rotZ``.
-        index: Index of the velocity of the joint that it has, and of its coordinate unless it turns a ball.
-        lead: Of the translation of a helical joint its length for 1 rad, m; else None.
-    """
-
-    axis: str
-    index: int
-    lead: float | None = None
-
-    @property
-    def turns(self) -> bool:
-        """Whether it is a rotation."""
-        return self.axis == "angular" or self.axis.startswith("rot")
 
 
 def write(given: ExportInput, losses: Losses) -> ExportOutput:
@@ -99,7 +56,7 @@ class _UsdWriter:
     """A stage while it is written."""
 
     def __init__(self, given: ExportInput, losses: Losses) -> None:
-        from eurdf.convert.usd.stage import UsdStage  # loads the libraries of USD
+        from eurdf.convert.usd.stage import UsdStage, mesh_file  # loads the libraries of USD
 
         self.given, self.mechanism, self.losses = given, given.mechanism, losses
         self.bodies, self.joints, self.closures, self.shapes = (
@@ -116,9 +73,7 @@ class _UsdWriter:
         self.followers: set[str] = set()
         self.parts: list[Part] = []
         self.mimics = given.mimics
-        self.mesh_names = mesh_names(given.meshes)
-        self.meshes: dict[str, str | None] = {}
-        self.files: dict[str, bytes] = {}
+        self.meshes = MeshFiles(given, losses, lambda name, content: False, (".usdc", mesh_file))
 
     def write(self) -> ExportOutput:
         mechanism, losses = self.mechanism, self.losses
@@ -142,7 +97,7 @@ class _UsdWriter:
         for name in others:
             losses.add("export-configurations", name)
         coordinates = Coordinates(tuple(self.parts), self.given.own, "xyzw", at_rest=False)
-        return ExportOutput({"robot.usda": self.stage.content(), **self.files}, coordinates)
+        return ExportOutput({"robot.usda": self.stage.content(), **self.meshes.files}, coordinates)
 
     # -- bodies -----------------------------------------------------------------------------------------------------
 
@@ -193,7 +148,7 @@ class _UsdWriter:
         host, at = self.hosts[joint.parent]
         pose, placement = self.poses[joint.parent], joint.placement
         names, ratios = [], []
-        steps = in_series(joint, _WHOLE)
+        steps = in_series(joint, WHOLE)
         for step in steps:
             last = step is steps[-1]
             offset = joint.offset if last else IDENTITY
@@ -205,23 +160,23 @@ class _UsdWriter:
             else:
                 child = self.stage.body(self.bodies.new(f"{name}_body"), pose)
                 self.stage.mass(child, LEAST, (0.0, 0.0, 0.0), LEAST * np.eye(3))
-            kind, (axis, orientation) = _KINDS.get(step.joint.type, "d6"), _frame(step.joint)
+            kind, (axis, orientation) = KINDS.get(step.joint.type, "d6"), axis_and_frame(step.joint)
             turn = Pose(quaternion=orientation)
             ends = (host, at * placement * turn), (child, offset.inverse() * turn)
             shown = joint.name if len(steps) == 1 else ""
             path = self.stage.joint("joints", name, kind, ends, axis=axis, shown=shown)
             self.jointed.add(frozenset((host, child)))
             self.first.setdefault(joint.name, (path, kind))
-            freedoms = list(_freedoms(step.joint))
-            self._axes(joint.name, step.joint, kind, path, own, freedoms)
+            free = list(freedoms(step.joint))
+            self._axes(joint.name, step.joint, kind, path, own, free)
             names.append(name)
-            ratios += [(step.velocities[each.index], each.lead or 1.0, 0.0) for each in freedoms]
+            ratios += [(step.velocities[each.index], each.lead or 1.0, 0.0) for each in free]
             host, at, placement = child, IDENTITY, IDENTITY
         if not joint.type.is_fixed:
             self.parts.append(Part.of(joint, names, ratios, self.mimics.get(joint.name)))
 
     def _axes(
-        self, name: str, joint: Joint, kind: str, path: str, own: Sequence[float], freedoms: Sequence[_Freedom]
+        self, name: str, joint: Joint, kind: str, path: str, own: Sequence[float], freedoms: Sequence[Freedom]
     ) -> None:
         """Limits, drives and states of the axes of a USD joint, and what only schemas of simulators have."""
         if kind == "d6":
@@ -242,7 +197,7 @@ class _UsdWriter:
         if kind != "fixed":
             self._numbers_of_simulators(name, joint.properties, freedoms, path)
 
-    def _drive(self, name: str, properties: JointProperties, path: str, freedom: _Freedom, position: float) -> None:
+    def _drive(self, name: str, properties: JointProperties, path: str, freedom: Freedom, position: float) -> None:
         index = freedom.index
         damping = properties.damping[index] if properties.damping else 0.0
         stiffness = properties.stiffness[index] if properties.stiffness else 0.0
@@ -269,7 +224,7 @@ class _UsdWriter:
         self.stage.drive(path, freedom.axis, stiffness, damping, target, most)
 
     def _numbers_of_simulators(
-        self, name: str, properties: JointProperties, freedoms: Sequence[_Freedom], path: str
+        self, name: str, properties: JointProperties, freedoms: Sequence[Freedom], path: str
     ) -> None:
         """What Newton and PhysX have of a joint, and USD does not; it is one number for all axes."""
         mine = [freedom.index for freedom in freedoms] or range(3)  # a spherical joint
@@ -322,7 +277,7 @@ class _UsdWriter:
     # -- constraints ------------------------------------------------------------------------------------------------
 
     def _closure(self, closure: Closure) -> None:
-        axis, turns = "", (_UPRIGHT, _UPRIGHT)
+        axis, turns = "", (UPRIGHT, UPRIGHT)
         if isinstance(closure, HingeClosure):
             axis, turns = "X", (turn_from_x(closure.axes[0]), turn_from_x(closure.axes[1]))
         ends = []
@@ -363,27 +318,6 @@ class _UsdWriter:
 
     # -- shapes -----------------------------------------------------------------------------------------------------
 
-    def _mesh(self, uri: str) -> str | None:
-        """The path of the file of a mesh, made if there is none yet; None if the mesh is left out."""
-        from eurdf.convert.usd.stage import mesh_file
-
-        if uri in self.meshes:
-            return self.meshes[uri]
-        path = self.meshes[uri] = None
-        if report_unread(self.given, uri, self.losses):
-            return None
-        if (triangles := self.given.read_mesh(self.given.meshes[uri])) is None:
-            self.losses.add("export-mesh-format", uri)
-        else:
-            path = self.meshes[uri] = f"meshes/{self.mesh_names[uri]}.usdc"
-            self.files[path] = mesh_file(triangles.vertices, triangles.triangles)
-            self.losses.add("export-mesh-converted", uri)
-            if self.given.mesh_files == "reference":
-                self.losses.add("export-mesh-not-referenced", uri)
-            if uri.startswith("package://"):
-                self.losses.add("export-mesh-path", uri, f"becomes '{path}'")
-        return path
-
     def _shapes(self, body: Body) -> None:
         host, pose = self.hosts[body.name]
         for use, shapes in (("visual", body.visuals), ("collision", body.collisions)):
@@ -392,7 +326,7 @@ class _UsdWriter:
 
     def _shape(self, host: str, pose: Pose, name: str, shape: Shape, use: str) -> None:
         if shape.kind == "mesh":
-            file = self._mesh(shape.filename)
+            file = self.meshes.path(shape.filename)
             if file is None:
                 return
             path = self.stage.mesh(host, self._shape_name(name), file, shape.size, pose * shape.pose)
@@ -408,44 +342,6 @@ class _UsdWriter:
     def _shape_name(self, name: str) -> str:
         """A name that nobody gave: that it changes is no loss."""
         return self.shapes.new(_identifier(name))
-
-
-def _frame(joint: Joint) -> tuple[str, Quaternion]:
-    """The axis token of a joint with one axis, and the orientation of the frames of the USD joint in those of it."""
-    if not joint.axes:
-        return "", _UPRIGHT
-    first, *others = map(direction, joint.axes)
-    if others:
-        columns = np.array((first, others[0]))
-        return "", _columns(np.stack((*columns, np.cross(*columns)), axis=1))
-    if joint.type.is_axial and first in _TOKENS:
-        return _TOKENS[first], _UPRIGHT
-    return "X" if joint.type.is_axial else "", turn_from_x(first)
-
-
-def _freedoms(joint: Joint) -> Iterator[_Freedom]:
-    """The free axes of the USD joint that a joint is; a spherical one has none that could be limited or driven."""
-    if joint.type is JointType.SPHERICAL:
-        return
-    for index, (step, motion) in enumerate(zip(joint.type.steps, joint.motions, strict=True)):
-        if step.kind == "ball":
-            yield from (_Freedom(f"rot{letter}", index + number) for number, letter in enumerate("XYZ"))
-        elif joint.type.is_axial:
-            yield _Freedom("angular" if motion.turns else "linear", index)
-        else:
-            letter = "XYZ"[step.axis] if isinstance(step.axis, int) else _TOKENS[step.axis]
-            if motion.advance:
-                yield _Freedom(f"trans{letter}", index, motion.advance if motion.turns else None)
-            if motion.turns:
-                yield _Freedom(f"rot{letter}", index)
-
-
-def _columns(R: npt.NDArray[np.float64]) -> Quaternion:
-    """The quaternion of a rotation matrix."""
-    one = Pose(quaternion=turn_from_x((R[0, 0], R[1, 0], R[2, 0])))
-    y = one.inverse().rotate((R[0, 1], R[1, 1], R[2, 1]))
-    half = math.atan2(y[2], y[1]) / 2.0
-    return (one * Pose(quaternion=(math.sin(half), 0.0, 0.0, math.cos(half)))).quaternion
 
 
 def _identifier(name: str) -> str:

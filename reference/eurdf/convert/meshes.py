@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 
 from eurdf.convert.export_format import ExportInput, Triangles
@@ -12,24 +12,8 @@ from eurdf.convert.names import FileNames
 from eurdf.mesh_files.reader import RefusedFile
 from eurdf.writing.xml_text import numbers
 
-
-def mesh_names(paths: Mapping[str, Path]) -> dict[str, str]:
-    """A name for each mesh file, by URI: those of `FileNames`. Files with equal names get a number."""
-    files = FileNames()
-    return {uri: files.new(path.stem, path.suffix) for uri, path in paths.items()}
-
-
-def report_unread(given: ExportInput, uri: str, losses: Losses) -> bool:
-    """Whether a mesh is not there to be read, which is a loss."""
-    if uri in given.refused:
-        losses.add(
-            "export-mesh-refused", uri, f"is left out: it is outside the folder of the robot, {given.refused[uri]}"
-        )
-    elif uri not in given.meshes:
-        losses.add("export-mesh-missing", uri)
-    else:
-        return False
-    return True
+#: Makes the content of a file of triangles: vertices (n, 3), m, and their indices (m, 3).
+Writer = Callable[[Triangles], bytes]
 
 
 class MeshFiles:
@@ -41,7 +25,11 @@ class MeshFiles:
     """
 
     def __init__(
-        self, given: ExportInput, losses: Losses, is_readable: Callable[[str, bytes], bool] | None = None
+        self,
+        given: ExportInput,
+        losses: Losses,
+        is_readable: Callable[[str, bytes], bool] | None = None,
+        conversion: tuple[str, Writer] | None = None,
     ) -> None:
         """Prepare the files.
 
@@ -50,10 +38,13 @@ class MeshFiles:
             losses: Where to record losses: the common ones, that of `NAMED_FILE` and, with ``is_readable``, those of
                 `CONVERSION`.
             is_readable: Whether the program reads a file, of some name and content; None if it reads every file.
+            conversion: What the names of converted files end with, and what writes them; an OBJ file by default.
         """
         self.files: dict[str, bytes] = {}
         self._given, self._losses, self._is_readable = given, losses, is_readable
-        self._names = mesh_names(given.meshes)
+        self._ending, self._converted = conversion or (".obj", _wavefront)
+        names = FileNames()
+        self._names = {uri: names.new(path.stem, path.suffix) for uri, path in given.meshes.items()}
         self._paths: dict[str, str | None] = {}
 
     def path(self, uri: str) -> str | None:
@@ -64,7 +55,12 @@ class MeshFiles:
 
     def _written(self, uri: str) -> str | None:
         given, losses = self._given, self._losses
-        if report_unread(given, uri, losses):
+        if uri in given.refused:
+            where = given.refused[uri]
+            losses.add("export-mesh-refused", uri, f"is left out: it is outside the folder of the robot, {where}")
+            return None
+        if uri not in given.meshes:
+            losses.add("export-mesh-missing", uri)
             return None
         try:
             mesh = given.reader.read(given.meshes[uri])
@@ -78,8 +74,8 @@ class MeshFiles:
             if triangles is None:
                 losses.add("export-mesh-format", uri)
                 return None
-            path += ".obj"
-            self.files[path] = _wavefront(triangles)
+            path += self._ending
+            self.files[path] = self._converted(triangles)
             losses.add("export-mesh-converted", uri)
             if given.mesh_files == "reference":
                 losses.add("export-mesh-not-referenced", uri)
@@ -88,12 +84,9 @@ class MeshFiles:
         else:
             for other, reason in mesh.place(path, self.files).items():
                 losses.add("export-mesh-names", f"{uri}: {other}", f"is left out: {reason}")
-        self._report_package(uri, path)
-        return path
-
-    def _report_package(self, uri: str, path: str) -> None:
         if uri.startswith("package://"):
-            self._losses.add("export-mesh-path", uri, f"becomes '{path}'")
+            losses.add("export-mesh-path", uri, f"becomes '{path}'")
+        return path
 
 
 def _wavefront(triangles: Triangles) -> bytes:

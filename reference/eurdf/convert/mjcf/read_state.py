@@ -20,7 +20,7 @@ WORLD = "world"
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class WholeJoint:
     """A joint of the mechanism that one or several joints of a body are.
 
     Attributes:
@@ -59,7 +59,7 @@ class MjcfReading:
         bodies: Link of each body, by its index.
         extra: Links without mass between the joints of a body.
         joints: The joints of the mechanism, by name.
-        steps: For each joint of MuJoCo, by its index, the joint of the mechanism that it is a part of.
+        whole: For each joint of MuJoCo, by its index, the joint of the mechanism that it is a part of.
         consumed: Indices of the equalities that are read.
     """
 
@@ -78,7 +78,7 @@ class MjcfReading:
         self.bodies: dict[int, Body] = {}
         self.extra: list[Body] = []
         self.joints: dict[str, Joint] = {}
-        self.steps: dict[int, Step] = {}
+        self.whole: dict[int, WholeJoint] = {}
         self.consumed: set[int] = set()
 
     def names(self, *reserved: str) -> UniqueNames:
