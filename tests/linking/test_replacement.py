@@ -204,7 +204,7 @@ def test_any_joint_can_be_locked_at_zero(kind: str) -> None:
     assert loaded.model.names.tolist() == ["universe", "wrist"]
     assert loaded.model.frames[loaded.model.getFrameId("j")].type == pin.FrameType.FIXED_JOINT
     before, after = frame_poses(plain.model, pin.neutral(plain.model)), frame_poses(loaded.model, np.zeros(1))
-    assert before.keys() == after.keys()
+    assert before.keys() == {name for name in after if not name[0].endswith("/1")}  # the first of two joints in series
     for name, pose in before.items():
         np.testing.assert_allclose(after[name], pose, atol=1e-12)
 
@@ -271,7 +271,7 @@ def test_neutral_poses_match_plain_urdf(data: st.DataObject, urdf: str, root: Ro
     loaded = load(urdf, _entries(replacements, plain), root=root)
     model = pinocchios_own(urdf, root)
     before, after = frame_poses(model, pin.neutral(model)), frame_poses(loaded.model, pin.neutral(loaded.model))
-    assert before.keys() == after.keys()
+    assert before.keys() == {name for name in after if not name[0].endswith("/1")}  # the first of two joints in series
     for name, pose in before.items():
         np.testing.assert_allclose(after[name], pose, atol=1e-12)
     fixed = "fixed" in replacements.values()  # to a fixed root, perhaps, whose mass is not in the model

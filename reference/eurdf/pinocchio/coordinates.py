@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
+from eurdf.pinocchio.joint_model import is_circular
 from eurdf.pinocchio.mimic import following
 
 
@@ -43,8 +43,7 @@ def slots(mechanism: Mechanism) -> dict[str, Slot]:
         if kind.is_fixed or name in mimics or name in found:
             continue
         nq, nv = len(kind.coordinates), kind.nv
-        if kind is JointType.PLANAR or (kind is JointType.CONTINUOUS and name not in unwrapped):
-            nq += 1  # Pinocchio has their angle as (cos, sin)
+        nq += is_circular(kind, unwrapped=name in unwrapped)
         found[name] = Slot(joint, idx_q, nq, idx_v, nv)
         idx_q, idx_v = idx_q + nq, idx_v + nv
     return {joint.name: found[joint.name] for joint in mechanism.joints if joint.name in found} if led.late else found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from eurdf.mechanism.mechanism import Mechanism
+from eurdf.pinocchio.joint_model import number_of_models
 
 
 def body_frame_ids(mechanism: Mechanism) -> dict[str, int]:
@@ -14,6 +15,6 @@ def body_frame_ids(mechanism: Mechanism) -> dict[str, int]:
     last = 2 if mechanism.root == "floating" else 1  # after 'universe' and, where it floats, 'root_joint'
     ids = {mechanism.bodies[0].name: last}
     for joint, body in zip(mechanism.joints, mechanism.bodies[1:], strict=True):
-        last += 1 if body.virtual else 2
+        last += number_of_models(joint.type) + (not body.virtual)
         ids[joint.child] = last
     return ids

@@ -7,17 +7,13 @@ the moving frame, in its own axes (EU-JNT-026).
 
 from __future__ import annotations
 
-import math
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
 
 import numpy as np
 
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.batch import rigid
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.pose import direction
 
 
 class Motion(ABC):
@@ -105,47 +101,6 @@ class Continuous(Motion):
     def normalized(self, q: Matrix) -> Matrix:
         """See `Motion`."""
         return np.asarray(q / np.hypot(q[0], q[1]))
-
-
-class Universal(Motion):
-    """Two turns about axes that meet."""
-
-    nq = nv = 2
-
-    def __init__(self, first: Vector, second: Vector) -> None:
-        self._axes = first, second
-        self._rotations = _Rotation(first), _Rotation(second)
-
-    def pose(self, q: Matrix) -> tuple[Matrix, Matrix]:
-        """See `Motion`."""
-        first, second = (turn(np.cos(angle), np.sin(angle)) for turn, angle in zip(self._rotations, q, strict=True))
-        return rigid.product(first, second), np.zeros((3, q.shape[1]))
-
-    def twists(self, q: Matrix) -> tuple[Matrix, Matrix]:
-        """See `Motion`."""
-        second = self._rotations[1](np.cos(q[1]), np.sin(q[1]))
-        first_axis = rigid.turned_back(second, _repeated(self._axes[0], q))
-        return np.zeros((3, 2, q.shape[1])), np.stack((first_axis, _repeated(self._axes[1], q)), axis=1)
-
-
-class Cylindrical(Motion):
-    """A length along an axis, and a turn about it."""
-
-    nq = nv = 2
-
-    def __init__(self, axis: Vector) -> None:
-        self._axis = axis
-        self._rotation = _Rotation(axis)
-        none = np.zeros(3)
-        self._linear, self._angular = np.stack((axis, none), axis=1), np.stack((none, axis), axis=1)
-
-    def pose(self, q: Matrix) -> tuple[Matrix, Matrix]:
-        """See `Motion`."""
-        return self._rotation(np.cos(q[1]), np.sin(q[1])), self._axis[:, None] * q[0]
-
-    def twists(self, q: Matrix) -> tuple[Matrix, Matrix]:
-        """See `Motion`."""
-        return _repeated(self._linear, q), _repeated(self._angular, q)
 
 
 class Planar(Motion):
@@ -250,38 +205,19 @@ class Floating(Motion):
         return np.concatenate((q[:3], q[3:] / rigid.norm(q[3:])))
 
 
-def motion(joint: Joint, *, unwrapped: bool) -> Motion:
-    """How a joint that is not fixed moves.
+def motions(joint: Joint, *, unwrapped: bool) -> list[Motion]:
+    """How a joint that is not fixed moves: its motions in series.
 
     Args:
         joint: The joint.
         unwrapped: Whether the coordinate of a continuous joint is an unwrapped angle instead of (cos, sin).
-
-    Raises:
-        NotImplementedError: Its type is not known here.
     """
-    axes: Sequence[Vector] = [np.array(direction(axis)) for axis in joint.axes]
-    match joint.type:
-        case JointType.REVOLUTE:
-            return Screw(axes[0], 1.0, 0.0)
-        case JointType.CONTINUOUS:
-            return Screw(axes[0], 1.0, 0.0) if unwrapped else Continuous(axes[0])
-        case JointType.PRISMATIC:
-            return Screw(axes[0], 0.0, 1.0)
-        case JointType.HELICAL:
-            return Screw(axes[0], 1.0, joint.pitch / (2.0 * math.pi))
-        case JointType.UNIVERSAL:
-            return Universal(axes[0], axes[1])
-        case JointType.CYLINDRICAL:
-            return Cylindrical(axes[0])
-        case JointType.PLANAR:
-            return Planar()
-        case JointType.SPHERICAL:
-            return Spherical()
-        case JointType.FLOATING:
-            return Floating()
-        case _:
-            raise NotImplementedError(f"eurdf.batch does not support joints of type '{joint.type}' ('{joint.name}')")
+    kind = joint.type
+    if kind.moving_frame:
+        return [Planar() if kind.quaternion is None else Floating() if kind.slides else Spherical()]
+    if not kind.limited and not unwrapped:
+        return [Continuous(np.array(joint.motions[0].axis))]
+    return [Screw(np.array(axis), float(turns), advance) for axis, turns, advance in joint.motions]
 
 
 class _Rotation:

@@ -13,7 +13,7 @@ import numpy as np
 
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.batch import rigid
-from eurdf.kinematics.batch.joints import Floating, Motion, Screw, motion
+from eurdf.kinematics.batch.joints import Floating, Motion, Screw, motions
 from eurdf.mechanism.pose import IDENTITY, Pose
 from eurdf.pinocchio.coordinates import slots
 from eurdf.pinocchio.mimic import following
@@ -105,18 +105,19 @@ class BatchTree:
                 continue
             mimic = led.mimics.get(joint.name)
             slot = at[joint.name if mimic is None else mimic.joint]
-            self.joints.append(
-                MovingJoint(
-                    parent,
-                    *_numbers(pose),
-                    # A mimic joint of a (cos, sin) pair turns with an integer multiple of its leader.
-                    motion(joint, unwrapped=mimic is not None or slot.nq == 1),
-                    slot.idx_q,
-                    slot.idx_v,
-                    *((1.0, 0.0) if mimic is None else (mimic.multiplier, mimic.offset)),
-                    mimics=mimic is not None,
+            # A mimic joint of a (cos, sin) pair turns with an integer multiple of its leader.
+            for number, part in enumerate(motions(joint, unwrapped=mimic is not None or slot.nq == 1)):
+                self.joints.append(
+                    MovingJoint(
+                        len(self.joints) - 1 if number else parent,
+                        *_numbers(IDENTITY if number else pose),
+                        part,
+                        slot.idx_q + number,
+                        slot.idx_v + number,
+                        *((1.0, 0.0) if mimic is None else (mimic.multiplier, mimic.offset)),
+                        mimics=mimic is not None,
+                    )
                 )
-            )
             places[joint.child] = len(self.joints) - 1, joint.offset
         self.sites = {name: Site(joint, *_numbers(pose)) for name, (joint, pose) in places.items()}
         self._leaders = {joint.idx_q: joint.motion for joint in self.joints[1:] if not joint.mimics}
