@@ -21,6 +21,7 @@ from eurdf.commands.robot_info import robot_info
 from eurdf.kinematics.constraints import KINDS
 from eurdf.kinematics.constraints.vector import plane_across
 from eurdf.kinematics.residual import acceleration_drift
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import (
     Closure,
     Constraint,
@@ -30,7 +31,6 @@ from eurdf.mechanism.constraint import (
     HingeClosure,
     PointClosure,
 )
-from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import Robot, build_robot

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import IDENTITY, Pose
+from eurdf.pinocchio.frames import placement_of
 from eurdf.pinocchio.joint_model import joint_models
-from eurdf.pinocchio.placement import placement_of
 from support import by_hand
 
 Z = (0.0, 0.0, 1.0)

@@ -20,13 +20,11 @@ from eurdf.kinematics.exceptions import CannotLock, LockedOpen
 from eurdf.kinematics.locked_mechanism import lock_joints
 from eurdf.kinematics.locking import LockedRobot, lock
 from eurdf.kinematics.residual import residual, residual_and_jacobian
-from eurdf.mechanism.body import Shape
+from eurdf.mechanism.body import Anchor, Frame, Shape
 from eurdf.mechanism.constraint import FrameClosure, PointClosure
-from eurdf.mechanism.frame import Anchor, Frame
-from eurdf.mechanism.joint import Joint, JointProperties
+from eurdf.mechanism.joint import Joint, JointProperties, Mimic
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose
 from eurdf.mechanism.spanning_tree import rigid_roots
 from eurdf.pinocchio.robot import Robot, build_robot

@@ -13,13 +13,11 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from eurdf.mechanism.body import Body
+from eurdf.mechanism.body import Anchor, Body, Frame
 from eurdf.mechanism.constraint import FrameClosure, PointClosure
-from eurdf.mechanism.frame import Anchor, Frame
-from eurdf.mechanism.joint import Joint, JointProperties
+from eurdf.mechanism.joint import Joint, JointProperties, Mimic
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.actuation import build_actuation
 from eurdf.pinocchio.configuration import configuration_vector, joint_coordinates

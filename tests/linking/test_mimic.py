@@ -12,7 +12,7 @@ import pytest
 import eurdf
 from eurdf.commands.main import main
 from eurdf.diagnostics import did_you_mean
-from eurdf.mechanism.mimic import Mimic, drivers
+from eurdf.mechanism.joint import Mimic, drivers
 from support.described import LIMITED, body, codes, load, revolute, written
 from support.plain_urdf import inertial, joint_element, link_element, pinocchios_own, robot
 

@@ -19,13 +19,11 @@ import pytest
 import eurdf
 from eurdf.exporting.formats import FORMATS
 from eurdf.exporting.hinges import with_hinges
-from eurdf.mechanism.body import Inertia, Shape
+from eurdf.mechanism.body import Frame, Inertia, Shape
 from eurdf.mechanism.constraint import Compliance, Coupling
-from eurdf.mechanism.frame import Frame
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.motor import Motor
+from eurdf.mechanism.mechanism import Mechanism, Motor
 from eurdf.mechanism.pose import IDENTITY, Vector3
 from eurdf.pinocchio.meshes import read_meshes
 from eurdf.pinocchio.robot import Robot, build_robot

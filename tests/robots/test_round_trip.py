@@ -16,8 +16,8 @@ import eurdf
 from eurdf.exporting.coordinates import Part
 from eurdf.exporting.verification.read_model import without_armature
 from eurdf.loss import Effect
+from eurdf.mechanism.body import Anchor, Frame
 from eurdf.mechanism.constraint import HingeClosure
-from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from eurdf.mechanism.body import Body
+from eurdf.mechanism.body import Anchor, Body
 from eurdf.mechanism.constraint import (
     Closure,
     Coupling,
@@ -17,11 +17,10 @@ from eurdf.mechanism.constraint import (
     HingeClosure,
     PointClosure,
 )
-from eurdf.mechanism.frame import Anchor
+from eurdf.mechanism.joint import Mimic
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism, Root
-from eurdf.mechanism.mimic import Mimic
-from eurdf.pinocchio.coordinates import slots
+from eurdf.pinocchio.configuration import slots
 from eurdf.pinocchio.frames import body_frame_ids
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand

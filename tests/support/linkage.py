@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import CLOSURES, Closure, Constraint
-from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.actuation import Actuation
 from eurdf.pinocchio.constraint import build_constraint_models

@@ -7,13 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 
 import eurdf
-from eurdf.mechanism.body import Body
+from eurdf.mechanism.body import Anchor, Body
 from eurdf.mechanism.constraint import CLOSURES, Closure, Coupling
-from eurdf.mechanism.frame import Anchor
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose
 from eurdf.pinocchio.robot import build_robot
 

@@ -14,10 +14,9 @@ from eurdf.exporting.mesh_file import MeshFiles
 from eurdf.exporting.written import Exportable
 from eurdf.loss import ACCELERATION, COMMON, NAMED_FILE, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Inertia, Shape
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
-from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Vector3
 from eurdf.writing.names import UniqueNames
 from eurdf.writing.urdf_elements import (

@@ -10,10 +10,9 @@ from types import MappingProxyType
 
 from eurdf.kinematics.exceptions import CannotLock
 from eurdf.mechanism.constraint import Constraint
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import Joint, Mimic, drivers
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.mimic import Mimic, drivers
 from eurdf.mechanism.pose import Pose
 from eurdf.mechanism.spanning_tree import rigid_roots
 

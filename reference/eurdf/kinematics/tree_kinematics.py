@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from typing import Any, Protocol
 
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
-from eurdf.mechanism.frame import Anchor
+from eurdf.mechanism.body import Anchor
 
 
 class Coordinate(Protocol):

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping
 
 from eurdf.format.extension import ClosureEntry
 from eurdf.linking.frame_names import FrameNames
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import CLOSURES, RIGID, Closure, Compliance, DistanceClosure, HingeClosure
-from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.pose import Pose, Vector3
 from eurdf.reading.reporter import YamlReporter
 

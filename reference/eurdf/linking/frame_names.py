@@ -9,7 +9,7 @@ from itertools import chain
 from eurdf.diagnostics import did_you_mean
 from eurdf.format.extension import FrameEntry, FrameReference
 from eurdf.format.urdf.data import Urdf
-from eurdf.mechanism.frame import Anchor, Frame
+from eurdf.mechanism.body import Anchor, Frame
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.pose import Pose
 from eurdf.reading.reporter import YamlReporter

@@ -12,9 +12,8 @@ import pinocchio as pin
 from eurdf.exceptions import EurdfError
 from eurdf.mechanism.body import Shape
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.pinocchio.frames import body_frame_ids
+from eurdf.pinocchio.frames import body_frame_ids, placement_of
 from eurdf.pinocchio.meshes import Mesh, read_meshes
-from eurdf.pinocchio.placement import placement_of
 
 Resolve = Callable[[str], str | None]
 #: Cache of the geometry of meshes, by path and scale.

@@ -13,15 +13,14 @@ from itertools import count
 
 import pinocchio as pin
 
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
-from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY
+from eurdf.pinocchio.frames import placement_of
 from eurdf.pinocchio.inertia import inertias_of, is_zero
 from eurdf.pinocchio.joint_model import joint_models
 from eurdf.pinocchio.limits import set_limits
 from eurdf.pinocchio.mimic import following, with_followers
-from eurdf.pinocchio.placement import placement_of
 
 _Indices = tuple[int, int, int, int]  # of a joint: its own, and where its q, its v and its v with mimic joints start
 

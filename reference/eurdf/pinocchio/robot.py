@@ -14,9 +14,8 @@ from eurdf.diagnostics import Diagnostic
 from eurdf.mechanism.constraint import Constraint
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.actuation import Actuation, build_actuation
-from eurdf.pinocchio.configuration import Vector, configuration_vector, joint_coordinates, own_coordinates
+from eurdf.pinocchio.configuration import Slot, Vector, configuration_vector, joint_coordinates, own_coordinates, slots
 from eurdf.pinocchio.constraint import build_constraint_models
-from eurdf.pinocchio.coordinates import Slot, slots
 from eurdf.pinocchio.geometry import MeshCache, Resolve, build_geometry, meshes_of
 from eurdf.pinocchio.meshes import Mesh
 from eurdf.pinocchio.model import build_model

@@ -12,14 +12,12 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from eurdf.mechanism.frame import Anchor
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.pinocchio.arguments import checked_data
-from eurdf.pinocchio.coordinates import Slot, slots
-from eurdf.pinocchio.frame_index import frame_index
+from eurdf.pinocchio.configuration import Slot, slots
 from eurdf.pinocchio.frame_pairs import FramePairs, Indices, Matrix, Site, Vector
-from eurdf.pinocchio.frames import body_frame_ids
-from eurdf.pinocchio.placement import placement_of
+from eurdf.pinocchio.frames import body_frame_ids, frame_index, placement_of
 from eurdf.pinocchio.springs import NO_SPRINGS, Springs, build_springs
 from eurdf.pinocchio.tree_recursion import TreeRecursion
 

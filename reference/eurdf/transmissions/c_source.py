@@ -28,8 +28,7 @@ from eurdf.mechanism.constraint import (
     HingeClosure,
     PointClosure,
 )
-from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.mimic import Mimic
+from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.pinocchio.mimic import following
 from eurdf.transmissions.drive import CLOSED, MOST_SUBSTEPS, SINGULAR, Drive

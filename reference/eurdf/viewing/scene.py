@@ -21,8 +21,7 @@ from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import direction
 from eurdf.pinocchio.frame_pairs import FramePairs, Site
-from eurdf.pinocchio.frames import body_frame_ids
-from eurdf.pinocchio.placement import placement_of
+from eurdf.pinocchio.frames import body_frame_ids, placement_of
 from eurdf.viewing.surface import Surface, sphere, surface_of
 
 if TYPE_CHECKING:

@@ -11,7 +11,6 @@ from eurdf.kinematics.array import Vector
 from eurdf.kinematics.residual import residual
 from eurdf.linking.description import Described
 from eurdf.mechanism.mechanism import ROOT_JOINT, root_joint
-from eurdf.pinocchio.configuration import configuration_vector
 from eurdf.pinocchio.robot import Robot
 
 NAME = "assembled"
@@ -66,7 +65,7 @@ def with_closed_configuration(
         mechanism, diagnostics = reread(text, description.urdf, document.source.file)
         if mechanism is None:
             break
-        back = configuration_vector(robot.mechanism, robot.model, mechanism.configurations[name])
+        back = robot.configuration(mechanism.configurations[name])
         if _largest_row(robot, back) <= enough:
             break
     return text, diagnostics

@@ -17,9 +17,8 @@ from lxml import etree
 from eurdf.diagnostics.visible import visible
 from eurdf.format.own_key import is_own_key
 from eurdf.format.yaml_text import Entry, Value, item_of_mapping, lines_of, lines_of_item, modeline, section, text_of
-from eurdf.mechanism.body import Body
+from eurdf.mechanism.body import Anchor, Body
 from eurdf.mechanism.constraint import Closure, Coupling, DistanceClosure, HingeClosure
-from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from eurdf.format.urdf.data import Urdf
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import HingeClosure, PointClosure
-from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.spanning_tree import rigid_poses
 from eurdf.writing.joined_closures import Apart, join_points
 from eurdf.writing.naming_conventions import Found, NamedClosure

@@ -23,10 +23,9 @@ from eurdf.exporting.written import Exportable, Format, Written
 from eurdf.loss import ACCELERATION, CONVERSION, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Inertia
 from eurdf.mechanism.constraint import Closure, Coupling, DistanceClosure, FrameClosure, HingeClosure, PointClosure
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import Joint, drivers
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
-from eurdf.mechanism.mimic import drivers
 from eurdf.mechanism.pose import IDENTITY, Vector3, direction
 from eurdf.writing.angles import rpy_of
 from eurdf.writing.urdf_elements import add_dynamics, add_joint

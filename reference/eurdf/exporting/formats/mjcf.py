@@ -33,10 +33,9 @@ from eurdf.mechanism.constraint import (
     HingeClosure,
     PointClosure,
 )
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import Joint, Mimic, drivers
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
-from eurdf.mechanism.mimic import Mimic, drivers
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.writing.names import UniqueNames
 from eurdf.writing.xml_text import file_content, numbers, representable

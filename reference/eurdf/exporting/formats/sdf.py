@@ -22,13 +22,11 @@ from eurdf.exporting.inertia import accepted_inertia
 from eurdf.exporting.mesh_file import MeshFiles
 from eurdf.exporting.written import Exportable, Format, Written
 from eurdf.loss import ACCELERATION, BEYOND_LIMITS, COMMON, NAMED_FILE, Effect, Losses, LossKind
-from eurdf.mechanism.body import Body, Inertia, Shape
+from eurdf.mechanism.body import Anchor, Body, Inertia, Shape
 from eurdf.mechanism.constraint import Closure, Coupling, HingeClosure, PointClosure
-from eurdf.mechanism.frame import Anchor
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import Joint, drivers
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
-from eurdf.mechanism.mimic import drivers
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.writing.angles import rpy_of
 from eurdf.writing.names import UniqueNames

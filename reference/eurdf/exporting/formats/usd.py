@@ -35,10 +35,9 @@ from eurdf.mechanism.constraint import (
     HingeClosure,
     PointClosure,
 )
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import Joint, Mimic, drivers
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
-from eurdf.mechanism.mimic import Mimic, drivers
 from eurdf.mechanism.pose import IDENTITY, Pose, Quaternion, Vector3, direction
 from eurdf.mechanism.spanning_tree import rigid_roots
 from eurdf.writing.names import UniqueNames

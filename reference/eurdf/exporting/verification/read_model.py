@@ -12,8 +12,8 @@ import pinocchio as pin
 
 from eurdf.exporting.coordinates import Coordinates, Matrix, Vector
 from eurdf.kinematics.opening import Opening
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Closure, DistanceClosure, FrameClosure, HingeClosure
-from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.pose import direction
 from eurdf.pinocchio.robot import Robot, build_robot
 

@@ -18,8 +18,8 @@ from eurdf.importing.locked import LOCKED, without_locks
 from eurdf.importing.robot_read import ImportFormat, RobotRead
 from eurdf.importing.urdf_tree import URDF_LOSSES, UrdfTree, read_tree
 from eurdf.loss import Effect, Losses, LossKind
+from eurdf.mechanism.body import Anchor, Frame
 from eurdf.mechanism.constraint import Closure, Coupling, PointClosure
-from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism

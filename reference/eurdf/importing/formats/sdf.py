@@ -25,13 +25,11 @@ from eurdf.importing.mesh_copies import NAMED_FILE, MeshCopies
 from eurdf.importing.robot_read import ImportFormat, RobotRead
 from eurdf.importing.xml_files import inside, read_root
 from eurdf.loss import Effect, Losses, LossKind
-from eurdf.mechanism.body import Body, Inertia, Shape
+from eurdf.mechanism.body import Anchor, Body, Frame, Inertia, Shape
 from eurdf.mechanism.constraint import Closure, FrameClosure, HingeClosure, PointClosure
-from eurdf.mechanism.frame import Anchor, Frame
-from eurdf.mechanism.joint import Joint, JointProperties
+from eurdf.mechanism.joint import Joint, JointProperties, Mimic
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, Root
-from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 from eurdf.mechanism.spanning_tree import depth_first
 from eurdf.mesh_files.reader import RefusedFile

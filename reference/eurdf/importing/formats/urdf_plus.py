@@ -16,8 +16,8 @@ from eurdf.importing.elements import named
 from eurdf.importing.robot_read import ImportFormat, RobotRead
 from eurdf.importing.urdf_tree import URDF_LOSSES, UrdfTree, loop_left_out, read_tree
 from eurdf.loss import Effect, Losses, LossKind
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Closure, Coupling, FrameClosure, HingeClosure, PointClosure
-from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint_types import JointType
 from eurdf.reading.resource import FileFinder
 from eurdf.writing.names import UniqueNames

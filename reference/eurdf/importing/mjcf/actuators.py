@@ -9,7 +9,7 @@ from dataclasses import replace
 from eurdf.importing.mjcf.joint_properties import largest_effort
 from eurdf.importing.mjcf.reading import MjcfReading
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.motor import Motor
+from eurdf.mechanism.mechanism import Motor
 
 
 def read_actuators(reading: MjcfReading) -> tuple[tuple[str, ...], dict[str, Motor]]:

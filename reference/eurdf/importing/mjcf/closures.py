@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 from eurdf.importing.mjcf.reading import MjcfReading
 from eurdf.importing.mjcf.values import pose_from, vector
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Closure, DistanceClosure, FrameClosure, PointClosure
-from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 from eurdf.mechanism.spanning_tree import rigid_roots

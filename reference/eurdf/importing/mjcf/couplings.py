@@ -10,9 +10,8 @@ from eurdf.importing.mjcf.step import SCALAR
 from eurdf.mechanism.constraint import (
     Coupling,
 )
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.mimic import Mimic
 
 
 def read_couplings(reading: MjcfReading) -> tuple[Coupling, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from eurdf.importing.mjcf.reading import MjcfReading
 from eurdf.importing.mjcf.values import pose_from, usable
-from eurdf.mechanism.frame import Frame
+from eurdf.mechanism.body import Frame
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.writing.names import UniqueNames
 

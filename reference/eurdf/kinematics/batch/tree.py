@@ -15,7 +15,7 @@ from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.batch import rigid
 from eurdf.kinematics.batch.joints import Floating, Motion, Screw, motions
 from eurdf.mechanism.pose import IDENTITY, Pose
-from eurdf.pinocchio.coordinates import slots
+from eurdf.pinocchio.configuration import slots
 from eurdf.pinocchio.mimic import following
 
 if TYPE_CHECKING:
