@@ -145,6 +145,11 @@ class Joint:
             self.mimic,
         )
 
+    def fixed(self, placement: Pose | None = None) -> Joint:
+        """The joint locked at its zero (EU-JNT-019), or with its child at a pose in the parent."""
+        at = (self.placement, self.offset) if placement is None else (placement, IDENTITY)
+        return Joint(self.name, JointType.FIXED, self.parent, self.child, *at)
+
     @property
     def motions(self) -> tuple[Motion, ...]:
         """EU-JNT-015 to -018, EU-JNT-025: the steps of its type, with its axes and its pitch."""

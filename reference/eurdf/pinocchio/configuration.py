@@ -12,7 +12,7 @@ import pinocchio as pin
 
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
+from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, root_joint
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.pinocchio.joint_model import is_circular
 from eurdf.pinocchio.mimic import following
@@ -88,7 +88,7 @@ def configuration_vector(
     for name, given in coordinates.items():
         values = [float(value) for value in given]
         if name == ROOT_JOINT and mechanism.root == "floating":
-            q[:7] = _checked(name, values, JointType.FLOATING)
+            q[:7] = _checked(name, values, root_joint("").type)
             continue
         slot = at.get(name)
         if slot is None:

@@ -211,7 +211,7 @@ def _in_urdf(joint: Joint) -> tuple[JointType, Vector3 | None]:
     """The type and axis that a joint has in the URDF."""
     axis = joint.axes[0] if joint.axes else _Z
     if not joint.type.replaces:
-        return joint.type, axis if any(step.kind != "ball" for step in joint.type.steps[-1:]) else None
+        return joint.type, None if joint.type.is_fixed or joint.type.quaternion is not None else axis
     index = _limited_in_urdf(joint)
     if index is None:
         return JointType.CONTINUOUS, axis
