@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from lxml import etree
 
 import eurdf
-from eurdf.linking.description import Linked, describe
+from eurdf.linking.robot_files import read_robot
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.constraint import Compliance
 from eurdf.mechanism.joint_types import JointType
@@ -34,14 +34,14 @@ ROBOTS = Path(__file__).parents[2] / "robots"
 
 
 def read(files: DescriptionFiles) -> Mechanism:
-    found = describe(files.yaml, urdf=files.urdf.decode())
-    assert isinstance(found, Linked), list(found.diagnostics)
+    found = read_robot(files.yaml, urdf=files.urdf.decode())
+    assert found.linked is not None, list(found.diagnostics)
     return found.mechanism
 
 
 def mechanism_of(path: Any, **options: Any) -> Mechanism:
-    found = describe(path, **options)
-    assert isinstance(found, Linked)
+    found = read_robot(path, **options)
+    assert found.linked is not None
     return found.mechanism
 
 

@@ -279,8 +279,9 @@ REFERENCE = Path(eurdf.__file__).parent
 #: What states, suggests, reads or writes a constraint by its kind; and the batch, which evaluates each kind at many
 #: configurations.
 STATING = (
-    "checking/",
-    "exporting/",
+    "advice/",
+    "loading.py",
+    "convert/",
     "format/",
     "importing/",
     "linking/",

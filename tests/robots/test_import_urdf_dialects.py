@@ -10,7 +10,7 @@ import pytest
 from lxml import etree
 
 import eurdf
-from eurdf.loss import Effect
+from eurdf.convert.losses import Effect
 from eurdf.mechanism.constraint import Coupling, FrameClosure, HingeClosure, PointClosure
 from eurdf.mechanism.joint_types import JointType
 from eurdf.pinocchio.robot import build_robot

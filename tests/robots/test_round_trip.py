@@ -13,9 +13,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import eurdf
-from eurdf.exporting.coordinates import Part
-from eurdf.exporting.verification.read_model import without_armature
-from eurdf.loss import Effect
+from eurdf.convert.losses import Effect
+from eurdf.convert.parts import Part
+from eurdf.convert.verification.read_model import without_armature
 from eurdf.mechanism.body import Anchor, Frame
 from eurdf.mechanism.constraint import HingeClosure
 from eurdf.mechanism.joint import Joint, JointProperties
@@ -207,6 +207,27 @@ def test_robot_of_the_collection_is_the_same(to: str, tmp_path: Path) -> None:
     ]
     assert_same_robot(robot, found, export, 1)
     assert_same_properties(robot, found, export)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("to", ["mjcf", "loop-joint", "drake", "sdf"])
+@pytest.mark.parametrize("name", eurdf.collection_names())
+def test_robot_of_the_collection_closes_and_moves_as_before(to: str, name: str, tmp_path: Path) -> None:
+    robot = eurdf.load(name, geometry=False)
+    export, imported = round_trip(robot, to, tmp_path)
+    lost = {loss.name for loss in export.losses if loss.effect is Effect.DROPPED and loss.code != "export-compliance"}
+    unsaid = {each.type for each in robot.constraints if each.name in lost}
+    assert unsaid <= {"mjcf": set(), "drake": {"distance"}}.get(to, {"distance", "coupling"})
+    if unsaid:
+        return
+    found = build_robot(replace(imported.mechanism, root=robot.mechanism.root), geometry=False)
+    assert len(found.mechanism.closures) == len(robot.mechanism.closures)
+    q = robot.configurations["assembled"]
+    known = {*found.slots, ROOT_JOINT}
+    same = {name: each for name, each in robot.coordinates(q).items() if name in known}
+    closed = found.configuration(same) if to == "mjcf" else there(export, found, q)
+    assert np.abs(eurdf.residual(found, closed)).max() < 1e-6
+    assert eurdf.analyze(found, closed).mobility == eurdf.analyze(robot, q).mobility
 
 
 def with_limits(robot: Robot, random: np.random.Generator) -> Robot:

@@ -8,8 +8,8 @@ from types import MappingProxyType
 
 import numpy as np
 
-from eurdf.exporting.coordinates import rotation_matrix
-from eurdf.exporting.inertia import about_centre
+from eurdf.convert.coordinates import rotation_matrix
+from eurdf.convert.inertia import about_centre
 from eurdf.kinematics.array import Matrix
 from eurdf.mechanism.body import Body, Inertia
 from eurdf.mechanism.joint import Joint, JointProperties

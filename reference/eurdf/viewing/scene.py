@@ -56,6 +56,11 @@ class Part:
     surface: Surface
     color: Color
 
+    def vertices_at(self, placed: Placed) -> Matrix:
+        """The vertices (n, 3) in the world, m."""
+        oMp = placed.pose(self.body) * self.pose
+        return np.asarray(self.surface.vertices @ oMp.rotation.T + oMp.translation)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Axis:
@@ -118,6 +123,12 @@ class Placed:
         return pin.XYZQUATToSE3(self.poses[body])
 
 
+def wxyz(pose: Any) -> Vector:
+    """Orientation of a pose, `pin.SE3`: quaternion w, x, y, z."""
+    x, y, z, w = pin.SE3ToXYZQUAT(pose)[3:]
+    return np.array((w, x, y, z))
+
+
 class Scene:
     """What can be drawn of a robot.
 
@@ -146,11 +157,7 @@ class Scene:
         self.bodies = tuple(body.name for body in mechanism.bodies)
         index = {name: number for number, name in enumerate(self.bodies)}
         self.parents = (-1, *(index[joint.parent] for joint in mechanism.joints))
-        self.parts = (
-            *_shapes(robot, "visual"),
-            *_shapes(robot, "collision"),
-            *_ellipsoids(robot),
-        )
+        self.parts = (*_shapes(robot, "visual"), *_shapes(robot, "collision"), *_ellipsoids(robot))
         actuated = set(mechanism.actuators)
         self.axes = tuple(
             axis for joint in mechanism.joints for axis in _axes(joint, index[joint.child], joint.name in actuated)
@@ -212,8 +219,7 @@ class Scene:
         clouds = [placed.origins]
         for part in self.parts:
             if part.kind != "inertia" and len(part.surface.vertices):
-                oMp = placed.pose(part.body) * part.pose
-                clouds.append(part.surface.vertices @ oMp.rotation.T + oMp.translation)
+                clouds.append(part.vertices_at(placed))
         return np.concatenate(clouds)
 
 

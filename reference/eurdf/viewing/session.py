@@ -92,15 +92,14 @@ class Stop:
     value: float
 
     def __str__(self) -> str:
-        if self.reason == "limit":
-            return f"'{self.joint}' is at its position limit {self.value:.6g}"
-        if self.reason == "half turn":
-            return f"'{self.joint}' is half a turn from its neutral configuration, at {self.value:.6g}"
-        if self.reason == "passive limit":
-            return f"passive joint '{self.joint}' is at its position limit {self.value:.6g}"
-        if self.reason == "dead point":
-            return f"dead point: at {self.value:.6g}, '{self.joint}' no longer determines the passive joints"
-        return f"the loops block '{self.joint}': it cannot move with the other actuators held"
+        sentences = {
+            "limit": f"'{self.joint}' is at its position limit {self.value:.6g}",
+            "half turn": f"'{self.joint}' is half a turn from its neutral configuration, at {self.value:.6g}",
+            "passive limit": f"passive joint '{self.joint}' is at its position limit {self.value:.6g}",
+            "dead point": f"dead point: at {self.value:.6g}, '{self.joint}' no longer determines the passive joints",
+            "blocked": f"the loops block '{self.joint}': it cannot move with the other actuators held",
+        }
+        return sentences[self.reason]
 
 
 class Session:

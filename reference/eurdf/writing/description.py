@@ -8,15 +8,15 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, cast
+from typing import Any, Literal
 
 from lxml import etree
 
-from eurdf.diagnostics.visible import visible
+from eurdf.diagnostics.wording import visible
 from eurdf.format.own_key import is_own_key
-from eurdf.format.yaml_text import Entry, Value, item_of_mapping, lines_of, lines_of_item, modeline, section, text_of
+from eurdf.format.yaml_text import Value, entries_of, modeline, text_of
 from eurdf.mechanism.body import Anchor, Body
 from eurdf.mechanism.constraint import Closure, Coupling, DistanceClosure, HingeClosure
 from eurdf.mechanism.joint import Joint, JointProperties
@@ -24,7 +24,6 @@ from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 from eurdf.mechanism.same_model import with_universal_joints
-from eurdf.writing.angles import rpy_of
 from eurdf.writing.urdf_elements import (
     UNLIMITED,
     Color,
@@ -37,7 +36,7 @@ from eurdf.writing.urdf_elements import (
     add_shape,
     state_version,
 )
-from eurdf.writing.xml_text import file_content, representable
+from eurdf.writing.xml_text import file_content, representable, rpy_of
 
 #: Between two hyphens, which an XML comment must not contain.
 _TWO_HYPHENS = re.compile("-(?=-)")
@@ -128,7 +127,7 @@ def describe_mechanism(
     _place_own_data(content, mechanism)
     head = [modeline(schema)] if schema is not None else []
     head += [f"# {visible(line)}".rstrip() for line in comments]
-    text = "".join(f"{line}\n" for line in head) + text_of(_entries(content))
+    text = "".join(f"{line}\n" for line in head) + text_of(entries_of(content))
     return DescriptionFiles(urdf.content(comments), text, version)
 
 
@@ -433,15 +432,3 @@ def _inside(place: Any, key: str) -> Any:
             place[int(key)] = value = {"joint": value}
         return value
     return None
-
-
-def _entries(content: Mapping[str, Any]) -> Iterator[Entry]:
-    for key, value in content.items():
-        if key == "closures":
-            yield section(key, [Entry(item_of_mapping(item)) for item in value])
-        elif key in ("couplings", "frames"):
-            yield section(key, [Entry(lines_of_item(cast(Value, item))) for item in value])
-        elif key in ("joints", "configurations", "metadata"):
-            yield section(key, [Entry(lines_of(name, cast(Value, item))) for name, item in value.items()])
-        else:
-            yield Entry(lines_of(key, cast(Value, value)))

@@ -11,7 +11,7 @@ from typing import Literal, cast
 from eurdf.format.own_key import is_own_key
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.version import VERSION2_0
-from eurdf.format.yaml_text import Entry, Value, item_of_mapping, lines_of, modeline, section, text_of
+from eurdf.format.yaml_text import Entry, Value, entries_of, lines_of, modeline, text_of
 from eurdf.linking.merging import MASSLESS
 from eurdf.mechanism.joint_types import ROTARY
 from eurdf.mechanism.mechanism import Root
@@ -382,34 +382,21 @@ def version2_text(
         schema: Path of the schema from the folder of the description, for editors; no line names it where it is None.
         version: The version of the description; version 2.0 has no hinges.
     """
-    entries = [
-        Entry(lines_of("extended_urdf", version), _schema_line(schema)),
-        Entry(lines_of("urdf", urdf_path)),
-    ]
-    if root != "fixed":
-        entries.append(Entry(lines_of("root", root)))
-    if found.closures:
-        items = [
-            Entry(
-                item_of_mapping(
-                    {
-                        "name": closure.name,
-                        "type": closure.type or "6d",
-                        "frames": closure.frames,
-                        **closure.axis_keys,
-                    }
-                )
-            )
-            for closure in found.closures
-        ]
-        entries.append(section("closures", items))
     joints: dict[str, Value] = dict.fromkeys(found.sphericals, "spherical")
     joints |= {name: {"type": "spherical", "merges": list(three)} for name, three in merges.items()}
-    if joints:
-        entries.append(section("joints", [Entry(lines_of(name, value)) for name, value in joints.items()]))
-    if found.motors:
-        entries.append(Entry(lines_of("actuators", found.motors)))
-    return text_of(entries)
+    content: dict[str, Value] = {
+        "extended_urdf": version,
+        "urdf": urdf_path,
+        "root": "" if root == "fixed" else root,
+        "closures": [
+            {"name": closure.name, "type": closure.type or "6d", "frames": closure.frames, **closure.axis_keys}
+            for closure in found.closures
+        ],
+        "joints": joints,
+        "actuators": found.motors,
+    }
+    head, *rest = entries_of({key: value for key, value in content.items() if value})
+    return text_of([replace(head, above=_schema_line(schema)), *rest])
 
 
 def version1_text(found: Found, schema: str | None = None) -> str:

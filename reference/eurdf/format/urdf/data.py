@@ -102,6 +102,11 @@ class Urdf:
         children = {link: tuple(joints[joint.name] for joint in below) for link, below in self.children.items()}
         return replace(self, joints=joints, children=children)
 
+    @property
+    def shapes(self) -> Iterator[Shape]:
+        """The visual and collision shapes of all links."""
+        return (shape for link in self.links.values() for shape in (*link.visuals, *link.collisions))
+
     def walk(self) -> Iterator[UrdfJoint]:
         """The joints depth first from the root; the joints of one link in the byte order of their names."""
         stack = list(reversed(self.children.get(self.root, ())))
