@@ -90,8 +90,7 @@ def two_legs() -> eurdf.Robot:
 def textbook_mechanisms() -> dict[str, Any]:
     """Those of the tests that move."""
     sys.path.insert(0, str(ROOT / "tests"))
-    known = importlib.import_module("test_mechanisms_with_known_answers").MOVING
-    return {name: build() for name, build in known.items()}
+    return {build.__name__: build() for build in importlib.import_module("support.linkage").MOVING}
 
 
 def starts(robot: eurdf.Robot, count: int) -> list[Vector]:

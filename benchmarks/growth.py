@@ -17,7 +17,7 @@ import pinocchio as pin
 
 import eurdf
 from benchmarks.loops import four_bars
-from eurdf.linking.description import describe
+from eurdf.linking.robot_files import read_robot
 from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.mechanism import Mechanism
@@ -101,7 +101,7 @@ def by_links() -> None:
             read, load, peer = (
                 best(function) / links * 1e6
                 for function in (
-                    lambda p=path: describe(p),
+                    lambda p=path: read_robot(p),
                     lambda p=path: eurdf.load(p, geometry=False),
                     lambda u=str(urdf): pin.buildModelFromUrdf(u),
                 )
@@ -126,7 +126,7 @@ def by_loops() -> None:
                     build_constraint_models(mechanism.constraints, build_tree(mechanism, build_model(mechanism)))
 
                 tasks: tuple[Callable[[], object], ...] = (
-                    lambda p=path: describe(p),  # type: ignore[misc]
+                    lambda p=path: read_robot(p),  # type: ignore[misc]
                     models,
                     lambda p=path: eurdf.load(p, geometry=False),  # type: ignore[misc]
                     lambda r=robot: eurdf.assemble(r),  # type: ignore[misc]

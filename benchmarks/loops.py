@@ -19,7 +19,7 @@ from eurdf.closures.point import PointClosure
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import build_robot

@@ -13,7 +13,7 @@ import pinocchio as pin
 import eurdf
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.pose import Pose
 

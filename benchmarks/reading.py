@@ -29,7 +29,7 @@ from benchmarks.interleaved import least_times
 from benchmarks.load import ROOT, robots
 from benchmarks.table import Table, duration, ratio
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.pinocchio.joint_model import joint_model
 
 _INF = math.inf

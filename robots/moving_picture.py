@@ -13,8 +13,7 @@ import pinocchio as pin
 
 import eurdf
 from eurdf.kinematics.array import Vector
-from eurdf.viewing.palette import with_palette
-from eurdf.viewing.picture import Drawn, Image, View, drawn, seen
+from eurdf.viewing.picture import Drawn, Image, View, drawn, seen, with_palette
 
 _ROBOT, _DRAGGED = "digit_leg", "foot"
 _VIEWS = (View((0.0, -1.0, 0.0)), View((1.0, -0.8, 0.35)))

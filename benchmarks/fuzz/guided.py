@@ -66,8 +66,7 @@ def main() -> None:
     import atheris
 
     with atheris.instrument_imports(include=["eurdf"]):
-        import eurdf.checking.check
-        import eurdf.checking.load  # noqa: F401 - instrumented
+        import eurdf.loading  # noqa: F401 - instrumented
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
 

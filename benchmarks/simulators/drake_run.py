@@ -10,8 +10,8 @@ from pydrake.systems.analysis import Simulator
 
 import eurdf
 from benchmarks.simulators.run import Refused, Run, split
-from eurdf.exporting.verification.drake_model import Plant
-from eurdf.exporting.verification.read_model import CannotRead
+from eurdf.convert.verification.drake_model import Plant
+from eurdf.convert.verification.read_model import CannotRead
 
 
 def run_drake(robot: eurdf.Robot, step: float, steps: int) -> Run | Refused:

@@ -25,7 +25,7 @@ def plain_robot(name: str) -> eurdf.Robot:
 
 
 def _without_motor(joint: Joint) -> Joint:
-    zero = (0.0,) * joint.coordinates.nv
+    zero = (0.0,) * joint.type.nv
     return replace(
         joint, properties=replace(joint.properties, velocity=(), effort=(), armature=zero, rotor_inertia=zero)
     )

@@ -1,9 +1,15 @@
 """The public names of the package, each with the module that defines it."""
 
 from eurdf import batch as batch
-from eurdf.checking.check import check as check
-from eurdf.checking.load import load as load
 from eurdf.collection import collection_names as collection_names
+from eurdf.convert.coordinates import Coordinates as Coordinates
+from eurdf.convert.exceptions import CannotExport as CannotExport
+from eurdf.convert.exceptions import CannotImport as CannotImport
+from eurdf.convert.export import Export as Export
+from eurdf.convert.export import export as export
+from eurdf.convert.import_robot import Import as Import
+from eurdf.convert.import_robot import import_robot as import_robot
+from eurdf.convert.losses import Loss as Loss
 from eurdf.diagnostics import Diagnostic as Diagnostic
 from eurdf.diagnostics.report import Report as Report
 from eurdf.exceptions import CannotExpand as CannotExpand
@@ -11,13 +17,6 @@ from eurdf.exceptions import EurdfError as EurdfError
 from eurdf.exceptions import InvalidRobot as InvalidRobot
 from eurdf.exceptions import MissingExtra as MissingExtra
 from eurdf.exceptions import RobotNotFound as RobotNotFound
-from eurdf.exporting.coordinates import Coordinates as Coordinates
-from eurdf.exporting.exceptions import CannotExport as CannotExport
-from eurdf.exporting.export import Export as Export
-from eurdf.exporting.export import export as export
-from eurdf.importing.exceptions import CannotImport as CannotImport
-from eurdf.importing.import_robot import Import as Import
-from eurdf.importing.import_robot import import_robot as import_robot
 from eurdf.kinematics.analysis import Analysis as Analysis
 from eurdf.kinematics.analysis import LoopAnalysis as LoopAnalysis
 from eurdf.kinematics.analysis import Motion as Motion
@@ -72,7 +71,8 @@ from eurdf.kinematics.springs import spring_force as spring_force
 from eurdf.kinematics.sweep import MotionPath as MotionPath
 from eurdf.kinematics.sweep import Sweep as Sweep
 from eurdf.kinematics.sweep import sweep as sweep
-from eurdf.loss import Loss as Loss
+from eurdf.loading import check as check
+from eurdf.loading import load as load
 from eurdf.mechanism.mechanism import Mechanism as Mechanism
 from eurdf.pinocchio.constraint import NoConstraintModel as NoConstraintModel
 from eurdf.pinocchio.robot import Robot as Robot
@@ -104,7 +104,7 @@ from eurdf.transmissions.workspace import BoundaryPoint as BoundaryPoint
 from eurdf.transmissions.workspace import Workspace as Workspace
 from eurdf.transmissions.workspace import workspace as workspace
 from eurdf.viewing.shown import ShownRobot as ShownRobot
-from eurdf.viewing.view import view as view
 from eurdf.viewing.viewer import Viewer as Viewer
+from eurdf.viewing.viewer import view as view
 
 __version__: str

@@ -6,7 +6,7 @@ from typing import Any
 
 from eurdf.diagnostics import Diagnostic
 from eurdf.diagnostics.registry import Severity
-from eurdf.diagnostics.visible import no_command, visible
+from eurdf.diagnostics.wording import no_command, visible
 
 
 class Portable(BaseException):
@@ -87,3 +87,7 @@ class MissingExtra(EurdfError, ImportError):  # noqa: N818 - part of the public 
     def __init__(self, message: str, extra: str) -> None:
         self.extra = extra
         super().__init__(message)
+
+
+class CannotRun(Exception):  # noqa: N818 - shown to the user as it is
+    """A command of the command line cannot run, as opposed to errors of a robot; the text says why. Exit code 2."""

@@ -6,7 +6,14 @@ import os
 import stat
 from typing import BinaryIO
 
-from eurdf.system import READ_NOW
+#: Flags with which `os.open` opens a file to read its bytes: it waits for nobody who writes to a pipe. Not every system
+#: has all of them.
+_READ_NOW = os.O_RDONLY | sum(getattr(os, name, 0) for name in ("O_NONBLOCK", "O_NOCTTY", "O_BINARY"))
+
+
+def reason_of(error: OSError) -> str:
+    """What the system says of an error, as a part of a sentence."""
+    return (error.strerror or str(error)).lower()
 
 
 def open_now(path: str | os.PathLike[str]) -> int:
@@ -16,7 +23,7 @@ def open_now(path: str | os.PathLike[str]) -> int:
         OSError: It cannot be opened.
         ValueError: The path has a NUL.
     """
-    return os.open(path, READ_NOW)
+    return os.open(path, _READ_NOW)
 
 
 def open_regular(path: str | os.PathLike[str]) -> BinaryIO:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from eurdf.writing.angles import angles_with_yaw
+from eurdf.writing.xml_text import angles_with_yaw
 
 Vector3 = tuple[float, float, float]
 Matrix3 = npt.NDArray[np.float64]

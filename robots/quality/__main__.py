@@ -16,8 +16,8 @@ from rich.table import Table
 from rich.text import Text
 
 import eurdf
-from eurdf.commands.output import has_boxes, write_json, write_lines, write_rendered
-from eurdf.diagnostics.visible import visible
+from eurdf.commands.terminal import has_boxes, write_json, write_lines, write_rendered
+from eurdf.diagnostics.wording import visible
 from eurdf.kinematics.sweep import MotionPath, Sweep
 from robots.quality.candidate import Candidate
 from robots.quality.motion import is_angular, is_endless, shown

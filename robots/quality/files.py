@@ -13,7 +13,7 @@ from pathlib import Path
 import eurdf
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.point import PointClosure
-from eurdf.linking.description import Unlinked, describe
+from eurdf.linking.robot_files import read_robot
 from eurdf.mechanism.constraint import RIGID, Closure
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
@@ -105,10 +105,10 @@ def is_the_same_in_version_1(candidate: Candidate) -> list[str] | None:
     if not file.is_file() or file == candidate.path:
         return None
     new = candidate.robot.mechanism
-    old = describe(file, root=new.root, geometry=False)
+    old = read_robot(file, root=new.root, geometry=False)
     shared = set(is_sound(candidate))  # errors of the URDF, which both versions share
     errors = [error for error in map(str, old.diagnostics) if error not in shared]
-    if isinstance(old, Unlinked) or errors:
+    if old.linked is None or errors:
         return errors
     one, other = comparable(old.mechanism, new)
     return [f"robot.v1.yaml: {found}" for found in differences(one, other)]

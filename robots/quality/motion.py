@@ -107,7 +107,7 @@ def is_endless(robot: eurdf.Robot, joint: str) -> bool:
 
 
 def _type(robot: eurdf.Robot, joint: str) -> str:
-    return next(found.type.value for found in robot.mechanism.joints if found.name == joint)
+    return next(str(found.type) for found in robot.mechanism.joints if found.name == joint)
 
 
 def shown(coordinate: float, angular: bool) -> str:

@@ -14,15 +14,16 @@ import jsonschema
 import pytest
 
 import eurdf
-from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.main import main
+from eurdf.commands.output import output_schemas
 from eurdf.commands.output_file import write_new
-from eurdf.commands.output_schema import output_schemas
 from eurdf.commands.selection import select
 from eurdf.diagnostics import Diagnostic, Place
 from eurdf.diagnostics.report import Report
-from support.arm import DESCRIPTION, URDF
-from support.terminal import on_a_terminal
+from eurdf.exceptions import CannotRun
+from support.described import ARM as URDF
+from support.described import ARM_DESCRIPTION as DESCRIPTION
+from support.processes import on_a_terminal
 
 ACTUATES_NOTHING = """\
 extended_urdf: "2.0"
@@ -466,7 +467,7 @@ def test_ascii_locale_shows_escapes(folder: Path) -> None:
 
 
 def test_file_output_is_utf8_in_every_locale() -> None:
-    code = "from eurdf.commands.output import write_text; write_text('name: é名\\n')"
+    code = "from eurdf.commands.terminal import write_text; write_text('name: é名\\n')"
     environment = {**os.environ, "PYTHONIOENCODING": "ascii", "PYTHONUTF8": "0"}
     written = subprocess.run([sys.executable, "-c", code], capture_output=True, timeout=60, env=environment).stdout
     assert written.decode("utf-8") == "name: é名\n"
@@ -534,7 +535,7 @@ def interrupted(moment: str, handler: Any) -> subprocess.CompletedProcess[str]:
     )
 
 
-@pytest.mark.parametrize("moment", ["eurdf.commands.main", "eurdf.checking.check", "lxml", "the end"])
+@pytest.mark.parametrize("moment", ["eurdf.commands.main", "eurdf.loading", "lxml", "the end"])
 def test_interrupt_ends_command_quietly(folder: Path, moment: str) -> None:
     robot(folder)
     ended = interrupted(moment, signal.SIG_DFL)

@@ -11,13 +11,12 @@ import jsonschema
 import pytest
 
 import eurdf
-from eurdf.commands import export as command
 from eurdf.commands.main import main
-from eurdf.commands.output_schema import output_schemas
-from eurdf.exporting.export import ACTUATORS, CLOSURES, MESH_FILES
-from eurdf.exporting.formats import FORMATS
-from eurdf.exporting.table import page_of, written
-from eurdf.loss import CONCEPTS, Effect
+from eurdf.commands.output import output_schemas
+from eurdf.convert.export_format import export_format
+from eurdf.convert.formats import EXPORTS
+from eurdf.convert.losses import ELEMENTS, Effect
+from eurdf.convert.table import page_of, written
 from eurdf.writing.output_folder import write_files
 
 
@@ -27,19 +26,12 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_command_knows_all_choices() -> None:
-    assert tuple(FORMATS) == command.FORMATS
-    assert ACTUATORS == command.ACTUATORS
-    assert CLOSURES == command.CLOSURES
-    assert MESH_FILES == command.MESH_FILES
-
-
-@pytest.mark.parametrize("name", FORMATS)
+@pytest.mark.parametrize("name", EXPORTS)
 def test_losses_are_registered_well(name: str) -> None:
-    codes = [kind.code for kind in FORMATS[name].losses]
+    codes = [kind.code for kind in export_format(name).rows]
     assert len(set(codes)) == len(codes)
-    for kind in FORMATS[name].losses:
-        assert kind.concept in CONCEPTS
+    for kind in export_format(name).rows:
+        assert kind.concept in ELEMENTS
         assert re.fullmatch("export(-[a-z0-9]+)+", kind.code)
         assert kind.title
         assert kind.hint
@@ -70,18 +62,6 @@ def test_json_lists_every_loss_with_its_place(capsys: pytest.CaptureFixture[str]
         if each["concept"] in ("velocity limit", "actuator"):
             joint = motors.get(each["name"], each["name"])
             assert f'<joint name="{joint}"' in Path(each["file"]).read_text().splitlines()[each["line"] - 1]
-
-
-def test_existing_file_is_kept_without_force(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (here / "out").mkdir()
-    (here / "out" / "robot.xml").write_text("mine")
-    arguments = ["export", "four_bar", "--to", "mjcf", "-o", "out"]
-    assert main(arguments) == 2
-    assert "already exists; --force replaces it" in capsys.readouterr().err
-    assert (here / "out" / "robot.xml").read_text() == "mine"
-    assert main([*arguments, "--force"]) == 0
-    assert (here / "out" / "robot.xml").read_bytes() == eurdf.export("four_bar", "mjcf").main
-    assert os.listdir(here / "out") == ["robot.xml"]
 
 
 def test_strict_refuses_losses(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -174,6 +154,6 @@ def test_tables_of_losses_are_current() -> None:
     docs = Path(eurdf.__file__).parents[2] / "docs"
     for page, text in written(docs).items():
         assert page.read_text(encoding="utf-8") == text
-    for name, each in FORMATS.items():
+    for name, each in ((name, export_format(name)) for name in EXPORTS):
         page = (docs / page_of(name)).read_text(encoding="utf-8")
-        assert [kind.code for kind in each.losses if f"`{kind.code}`" not in page] == []
+        assert [kind.code for kind in each.rows if f"`{kind.code}`" not in page] == []

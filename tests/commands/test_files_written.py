@@ -14,8 +14,9 @@ from pathlib import Path
 import pytest
 
 import eurdf
-from eurdf.commands.cannot_run import CannotRun
+from eurdf.commands.main import main
 from eurdf.commands.output_file import write_new
+from eurdf.exceptions import CannotRun
 from eurdf.writing.atomic_file import write_atomically, write_together
 from eurdf.writing.output_folder import write_files
 
@@ -221,3 +222,35 @@ def test_full_disk_leaves_no_file_and_names_it(here: Path) -> None:
         assert line.endswith("': File too large")
     assert files_in(here) == before
     assert not Path("new").exists()
+
+
+@pytest.mark.parametrize(
+    ("command", "file"),
+    [
+        ("generate leg/robot.urdf -o new.yaml", "new.yaml"),
+        ("generate leg/robot.urdf -o new.yaml", "extended-urdf-2.0.schema.json"),
+        ("migrate leg/robot.v1.yaml -o new.yaml", "new.yaml"),
+        ("migrate leg/robot.v1.yaml -o new.yaml", "extended-urdf-2.0.schema.json"),
+        ("schema --for leg/robot.urdf -o new.json", "new.json"),
+        ("export leg --to sdf -o new", "new/robot.sdf"),
+        ("import there/robot.sdf -o new", "new/robot.yaml"),
+        ("view leg -o new.html", "new.html"),
+        ("picture leg -o new.svg --graph", "new.svg"),
+    ],
+)
+def test_existing_file_is_replaced_only_with_force(
+    here: Path, command: str, file: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shutil.copytree(Path(eurdf.__file__).parents[2] / "robots" / "four_bar", "leg")
+    eurdf.export("leg", "sdf").write("there")
+    (here / file).parent.mkdir(exist_ok=True)
+    (here / file).write_text("mine")
+    before = files_in(here)
+    assert main(command.split()) == 2
+    said = capsys.readouterr().err
+    assert f"'{file}' already exists" in said
+    assert "--force" in said
+    assert files_in(here) == before
+    assert (here / file).read_text() == "mine"
+    assert main([*command.split(), "--force"]) == 0
+    assert (here / file).read_text() != "mine"

@@ -12,12 +12,11 @@ import pytest
 
 import eurdf
 from benchmarks.fuzz.watched import Watched
-from eurdf.commands import import_robot as command
 from eurdf.commands.main import main
-from eurdf.commands.output_schema import output_schemas
-from eurdf.importing.formats import FORMATS
-from eurdf.importing.import_robot import COMMON
-from eurdf.importing.table import with_tables
+from eurdf.commands.output import output_schemas
+from eurdf.convert.import_format import import_format
+from eurdf.convert.import_robot import COMMON
+from eurdf.reading.other_formats import IMPORTED
 
 BODY = '<geom type="sphere" size="0.1" mass="1"/>'
 FOUR_BAR = f"""\
@@ -56,13 +55,9 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_command_knows_all_formats() -> None:
-    assert tuple(FORMATS) == command.FORMATS
-
-
-@pytest.mark.parametrize("name", [*FORMATS, "common"])
+@pytest.mark.parametrize("name", [*IMPORTED, "common"])
 def test_losses_are_registered_well(name: str) -> None:
-    losses = COMMON if name == "common" else FORMATS[name].losses
+    losses = COMMON if name == "common" else import_format(name).losses
     codes = [kind.code for kind in losses]
     assert len(set(codes)) == len(codes)
     for kind in losses:
@@ -109,16 +104,6 @@ def test_json_lists_every_loss_with_its_place(capsys: pytest.CaptureFixture[str]
     assert [each["file"] for each in refused["losses"]] == places
 
 
-def test_existing_file_is_kept_without_force(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (here / "out").mkdir()
-    (here / "out" / "README.md").write_text("mine")
-    assert main(["import", "four_bar.xml", "-o", "out"]) == 2
-    assert "already exists; --force replaces it" in capsys.readouterr().err
-    assert [path.name for path in (here / "out").iterdir()] == ["README.md"]
-    assert main(["import", "four_bar.xml", "-o", "out", "--force"]) == 0
-    assert (here / "out" / "README.md").read_text() != "mine"
-
-
 def test_strict_refuses_losses(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["import", "four_bar.xml", "-o", "out", "--strict"]) == 1
     out, err = capsys.readouterr()
@@ -144,7 +129,7 @@ def test_missing_file_and_unknown_format_are_refused(capsys: pytest.CaptureFixtu
 
 
 def test_missing_mujoco_is_an_error(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    from eurdf.importing.mjcf import model as mjcf_model
+    from eurdf.convert.mjcf import compiled as mjcf_model
 
     monkeypatch.setattr(mjcf_model, "find_spec", lambda name: None)
     assert main(["import", "four_bar.xml", "-o", "out"]) == 2
@@ -158,11 +143,6 @@ def test_mujoco_is_not_imported_by_the_caller(here: Path) -> None:
 
     program = "import eurdf, sys; eurdf.import_robot('four_bar.xml'); sys.exit('mujoco' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0
-
-
-def test_tables_of_losses_are_current() -> None:
-    page = (Path(eurdf.__file__).parents[2] / "docs" / "import.md").read_text(encoding="utf-8")
-    assert with_tables(page) == page
 
 
 WITH_ERRORS = """<sdf version="1.11"><model name="r">
@@ -252,5 +232,5 @@ def test_damaged_files_are_refused_or_imported_as_they_are(tmp_path: Path) -> No
     with Watched() as worker:
         outcomes = [worker.try_number(7, number, "import") for number in range(60)]
     assert not [outcome for outcome in outcomes if outcome.trouble]
-    assert {outcome.kind for outcome in outcomes} == {f"import-{format_}" for format_ in FORMATS}
+    assert {outcome.kind for outcome in outcomes} == {f"import-{format_}" for format_ in IMPORTED}
     assert {"refused", "imported"} <= {outcome.word for outcome in outcomes}

@@ -10,12 +10,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import eurdf
-from eurdf.commands.output_schema import output_schemas, schema_text
+from eurdf.commands.output import output_schemas, schema_text
 from eurdf.diagnostics import REGISTRY, Diagnostic, Phase, Place, Rule, Severity
 from eurdf.diagnostics.lines import Lines
 from eurdf.diagnostics.report import Report, report_schema, reports_to_json
 from eurdf.diagnostics.text import cells, report_lines, summary_line, total_line
-from eurdf.diagnostics.visible import visible
+from eurdf.diagnostics.wording import visible
 
 SCHEMAS = Path(__file__).parents[2] / "schema"
 
@@ -307,4 +307,4 @@ def test_published_output_schemas_are_current(name: str) -> None:
     schema = output_schemas()[name]
     jsonschema.Draft202012Validator.check_schema(schema)
     written = (SCHEMAS / name).read_text(encoding="utf-8")
-    assert written == schema_text(schema), "run python -m eurdf.commands.output_schema schema"
+    assert written == schema_text(schema), "run python -m eurdf.commands.output schema"

@@ -11,7 +11,7 @@ import pytest
 import eurdf
 from eurdf import collection
 from eurdf.commands.main import main
-from eurdf.commands.output_schema import output_schemas
+from eurdf.commands.output import output_schemas
 
 Run = Callable[..., tuple[int, str, str]]
 

@@ -15,9 +15,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from eurdf.diagnostics import REGISTRY, Diagnostic, Phase, Place, Rule, Severity
-from eurdf.diagnostics.help_uri import _site, help_uri
 from eurdf.diagnostics.report import Report
-from eurdf.diagnostics.sarif import sarif_log
+from eurdf.diagnostics.sarif import _site, help_uri, sarif_log
 
 # The schema as OASIS publishes it.
 if sys.version_info < (3, 11):
@@ -131,7 +130,7 @@ def metadata_with(*urls: str) -> Callable[[str], Message]:
     ],
 )  # fmt: skip
 def test_rule_links_to_its_code_on_site(monkeypatch: pytest.MonkeyPatch, urls: list[str], uri: str) -> None:
-    monkeypatch.setattr("eurdf.diagnostics.help_uri.metadata", metadata_with(*urls))
+    monkeypatch.setattr("eurdf.diagnostics.sarif.metadata", metadata_with(*urls))
     (rule,) = run_of(UNKNOWN)["tool"]["driver"]["rules"]
     assert rule["helpUri"] == uri
 

@@ -13,7 +13,7 @@ import pytest
 
 import eurdf
 from eurdf.commands.main import main
-from eurdf.commands.output_schema import output_schemas
+from eurdf.commands.output import output_schemas
 
 G1 = ["transmission", "unitree_g1_ankle", "--joints", "free_pitch", "free_roll"]
 JOINTS = ("free_pitch", "free_roll")

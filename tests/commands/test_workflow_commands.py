@@ -9,7 +9,7 @@ import pytest
 
 import eurdf
 from eurdf.commands.main import main
-from eurdf.diagnostics.visible import no_command
+from eurdf.diagnostics.wording import no_command
 from eurdf_conformance.visible import visible
 
 NAME = "::error file=a::b"

@@ -11,7 +11,7 @@ from eurdf.collection import collection_names
 from eurdf.diagnostics import Diagnostics
 from eurdf.format.urdf.read import read_urdf
 from eurdf.kinematics.analysis import analyze
-from eurdf.linking.description import describe
+from eurdf.linking.robot_files import read_robot
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.robot import build_robot
 from eurdf.reading.source import Source
@@ -24,7 +24,7 @@ TUTORIAL = Path(__file__).parents[2] / "spec" / "examples" / "tutorial" / "robot
 
 
 def mechanism_of(name: str) -> Mechanism:
-    mechanism = describe(name).mechanism
+    mechanism = read_robot(name).mechanism
     assert mechanism is not None
     return mechanism
 

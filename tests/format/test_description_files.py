@@ -15,10 +15,10 @@ from hypothesis import strategies as st
 from lxml import etree
 
 import eurdf
-from eurdf.linking.description import Linked, describe
+from eurdf.linking.robot_files import read_robot
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.constraint import Compliance
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.motor import Motor
 from eurdf.mechanism.pose import Pose
@@ -35,14 +35,14 @@ ROBOTS = Path(__file__).parents[2] / "robots"
 
 
 def read(files: DescriptionFiles) -> Mechanism:
-    found = describe(files.yaml, urdf=files.urdf.decode())
-    assert isinstance(found, Linked), list(found.diagnostics)
+    found = read_robot(files.yaml, urdf=files.urdf.decode())
+    assert found.linked is not None, list(found.diagnostics)
     return found.mechanism
 
 
 def mechanism_of(path: Any, **options: Any) -> Mechanism:
-    found = describe(path, **options)
-    assert isinstance(found, Linked)
+    found = read_robot(path, **options)
+    assert found.linked is not None
     return found.mechanism
 
 
@@ -89,14 +89,14 @@ def test_properties_of_every_joint_type_are_the_same(tmp_path: Path) -> None:
         if joint.type is JointType.FIXED or joint.mimic:
             joints.append(replace(joint, offset=Pose()))
             continue
-        n, nv = len(joint.coordinates.names), joint.coordinates.nv
+        n, nv = len(joint.type.coordinates), joint.type.nv
         changes: dict[str, Any] = {
             key: tuple(random.uniform(0.5, 2.0, nv).tolist())
             for key in ("velocity", "effort", "damping", "friction", "armature")
         }
         if joint.type not in (JointType.PLANAR, JointType.FLOATING):
             changes |= {key: (random.uniform(0.5, 2.0),) * nv for key in ("acceleration", "deceleration", "jerk")}
-        if joint.coordinates.quaternion is None and joint.type is not JointType.PLANAR:
+        if joint.type.quaternion is None and joint.type is not JointType.PLANAR:
             changes |= {key: tuple(random.uniform(0.5, 2.0, nv).tolist()) for key in ("stiffness", "rest")}
             if joint.type is not JointType.CONTINUOUS:
                 changes |= {"lower": (-1.0,) * n, "upper": tuple(random.uniform(0.5, 2.0, n).tolist())}
@@ -118,15 +118,15 @@ def test_limit_of_one_side_is_kept() -> None:
     mechanism = random_robot(2, kinds=())[0].mechanism
     joints = tuple(
         replace(joint, properties=replace(joint.properties, lower=(-np.inf,) * n, upper=(0.5,) * n))
-        if (n := len(joint.coordinates.names)) and joint.type in (JointType.CYLINDRICAL, JointType.HELICAL)
+        if (n := len(joint.type.coordinates)) and joint.type in (JointType.CYLINDRICAL, JointType.HELICAL)
         else joint
         for joint in mechanism.joints
     )
     back = read(describe_mechanism(replace(mechanism, joints=joints, configurations={})))
     for joint in back.joints:
         if joint.type in (JointType.CYLINDRICAL, JointType.HELICAL):
-            assert joint.properties.lower == (-np.inf,) * len(joint.coordinates.names)
-            assert joint.properties.upper == (0.5,) * len(joint.coordinates.names)
+            assert joint.properties.lower == (-np.inf,) * len(joint.type.coordinates)
+            assert joint.properties.upper == (0.5,) * len(joint.type.coordinates)
 
 
 def test_shapes_with_textures_are_the_same() -> None:

@@ -18,7 +18,6 @@ from eurdf.format.urdf.data import Urdf
 from eurdf.format.urdf.read import read_urdf
 from eurdf.format.yaml_text import flow, lines_of, lines_of_item, scalar
 from eurdf.kinematics.analysis import analyze
-from eurdf.linking.description import describe
 from eurdf.mechanism.same_model import differences
 from eurdf.pinocchio.robot import build_robot
 from eurdf.reading.source import Source, read_source
@@ -574,20 +573,6 @@ def test_command_writes_to_standard_output(leg: Path, capsys: pytest.CaptureFixt
     out, err = capsys.readouterr()
     assert out == LEG_TEXT.replace("robot.urdf", "leg.urdf")
     assert "1 closure: closedloop1 (closedloop1_A, closedloop1_B, 3d)\n1 motor: motor_hip\n" in err
-
-
-def test_command_replaces_file_only_with_force(leg: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    out = leg.parent / "sub" / "leg.yaml"
-    out.parent.mkdir()
-    out.write_text("mine", encoding="utf-8")
-    assert main(["generate", str(leg), "-o", str(out)]) == 2
-    assert "--force" in capsys.readouterr().err
-    assert out.read_text(encoding="utf-8") == "mine"
-    assert main(["generate", str(leg), "-o", str(out), "--force"]) == 0
-    description = describe(out)
-    assert description.mechanism is not None
-    assert description.extension is not None
-    assert description.extension.urdf == "../leg.urdf"
 
 
 def test_root_can_float(leg: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -12,7 +12,7 @@ import yaml
 
 from eurdf import check
 from eurdf.commands.main import main
-from eurdf.linking.description import describe
+from eurdf.linking.robot_files import read_robot
 
 #: Names that YAML would read as something else, or that need quotes, in other scripts, or on two lines.
 NAMES = [
@@ -64,7 +64,7 @@ def test_any_name_survives_round_trip(tmp_path: Path, name: str) -> None:
     assert closure["frames"] == [f"{name}closedloop{name}_A", f"{name}closedloop{name}_B"]
     schema = json.loads((tmp_path / "out.schema.json").read_text(encoding="utf-8"))
     assert f"motor_{name}" in schema["$defs"]["UrdfJointName"]["enum"]
-    mechanism = describe(tmp_path / "out.yaml").mechanism
+    mechanism = read_robot(tmp_path / "out.yaml").mechanism
     assert mechanism is not None
     assert mechanism.actuators == (f"motor_{name}",)
 

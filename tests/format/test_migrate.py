@@ -22,8 +22,8 @@ from eurdf.format.read_extension import read_extension
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.urdf.read import read_urdf
 from eurdf.kinematics.residual import residual
-from eurdf.linking.description import Described, describe
 from eurdf.linking.link import link
+from eurdf.linking.robot_files import ReadRobot, read_robot
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.same_model import differences, with_universal_joints
 from eurdf.pinocchio.configuration import configuration_vector
@@ -60,17 +60,17 @@ def workbench(text: str = PLAIN_WORKBENCH) -> Urdf:
 URDF = workbench()
 
 
-def read(text: str) -> Described | None:
+def read(text: str) -> ReadRobot | None:
     """The workbench with a description; None if that has an error."""
     diagnostics = Diagnostics()
     extension = read_extension(read_yaml(Source("robot.yaml", text, text.encode())), diagnostics)
     mechanism = None if extension is None else link(URDF, extension, diagnostics)
     if extension is None or mechanism is None:
         return None
-    return Described("robot.yaml", diagnostics, URDF, mechanism, extension)
+    return ReadRobot("robot.yaml", diagnostics, URDF, mechanism, extension)
 
 
-def described(text: str) -> Described:
+def described(text: str) -> ReadRobot:
     description = read(text)
     assert description is not None
     return description
@@ -96,8 +96,8 @@ def randomly_posed(before: Robot, after: Robot, seed: int) -> tuple[Any, Any]:
     other: dict[str, list[float]] = {}
     names = {joint.name for joint in before.mechanism.joints}
     for joint in after.mechanism.joints:
-        values = [float(value) for value in rng.uniform(-1.5, 1.5, len(joint.coordinates.names))]
-        if joint.coordinates.quaternion is not None:
+        values = [float(value) for value in rng.uniform(-1.5, 1.5, len(joint.type.coordinates))]
+        if joint.type.quaternion is not None:
             values = list(np.array(values) / np.linalg.norm(values))
         if not values or joint.mimic is not None:
             continue
@@ -131,7 +131,7 @@ def assert_same_motion(before: Mechanism, after: Mechanism) -> None:
     one, other = build_robot(before, geometry=False), build_robot(after, geometry=False)
     assert one.model.nv == other.model.nv
     assert pin.computeTotalMass(one.model) == pytest.approx(pin.computeTotalMass(other.model), rel=1e-12)
-    moving = [joint.name for joint in after.joints if joint.coordinates.nv and joint.mimic is None]
+    moving = [joint.name for joint in after.joints if joint.type.nv and joint.mimic is None]
     parts = [[name] if one.model.existJointName(name) else halves(one, name) for name in moving]
     rows_one, rows_other = velocities(one, [name for part in parts for name in part]), velocities(other, moving)
     for attribute in ("velocityLimit", "damping", "friction", "armature", "upperEffortLimit"):
@@ -161,7 +161,7 @@ def assert_same_motion(before: Mechanism, after: Mechanism) -> None:
 @needs_wild
 @pytest.mark.parametrize("name", WILD_ROBOTS)
 def test_published_robot_keeps_its_model(name: str) -> None:
-    description = describe(WILD / name)
+    description = read_robot(WILD / name)
     before = description.mechanism
     assert before is not None
     after = migrate(description).mechanism
@@ -178,16 +178,16 @@ def test_published_robot_keeps_its_model(name: str) -> None:
 
 @needs_wild
 def test_comments_of_published_file_stay_in_place() -> None:
-    lines = migrate(describe(WILD / "digit_like_2legs")).text.splitlines()
+    lines = migrate(read_robot(WILD / "digit_like_2legs")).text.splitlines()
     assert lines[lines.index("  # SPHERICAL") + 1] == "  spherical_free_hip: spherical"
     assert lines[lines.index("  # Ujoints") + 1] == "  spherical_free_knee: {type: universal, axes: xy}"
 
 
 @pytest.mark.parametrize("name", sorted(path.parent.name for path in ROBOTS.glob("*/robot.v1.yaml")))
 def test_collection_robot_migrates_to_its_version_2(name: str) -> None:
-    two = describe(ROBOTS / name).mechanism
+    two = read_robot(ROBOTS / name).mechanism
     assert two is not None
-    after = migrate(describe(ROBOTS / name / "robot.v1.yaml")).mechanism
+    after = migrate(read_robot(ROBOTS / name / "robot.v1.yaml")).mechanism
     # Version 1 has no root, and names no closure.
     one, other = comparable(replace(after, root=two.root), two)
     assert differences(one, other) == []
@@ -312,7 +312,7 @@ def test_no_comment_is_lost_or_duplicated(data: st.DataObject) -> None:
         migration = migrate(description)
     except NotMigratable:
         return
-    before = sorted(comment.text for comment in comments_of(description.extension.document.source))
+    before = sorted(comment.text for comment in comments_of(description.description.document.source))
     source = Source("", migration.text, migration.text.encode())
     after = [comment.text for comment in comments_of(source)]
     assert sorted(piece for comment in after for piece in pieces(comment)) == before
@@ -386,12 +386,16 @@ x-masses:
 
 def test_comments_and_user_data_are_kept() -> None:
     description = described(COMMENTED)
-    assert migrate(description, schema=schema_named(description.extension.document, description.urdf)).text == MIGRATED
+    assert (
+        migrate(description, schema=schema_named(description.description.document, description.urdf)).text == MIGRATED
+    )
 
 
 def test_windows_line_ends_change_nothing() -> None:
     description = described(COMMENTED.replace("\n", "\r\n"))
-    assert migrate(description, schema=schema_named(description.extension.document, description.urdf)).text == MIGRATED
+    assert (
+        migrate(description, schema=schema_named(description.description.document, description.urdf)).text == MIGRATED
+    )
 
 
 def test_changes_are_listed() -> None:
@@ -490,30 +494,19 @@ def test_command_writes_to_standard_output(folder: Path, capsys: pytest.CaptureF
     assert "wrist_z" in err
 
 
-def test_command_replaces_file_only_with_force(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    file = folder / "robot.yaml"
-    assert main(["migrate", str(file), "-o", str(file)]) == 2
-    assert "--force" in capsys.readouterr().err
-    assert file.read_text(encoding="utf-8") == COMMENTED
-    assert main(["migrate", str(file), "-o", str(file), "--force"]) == 0
-    # The schema is not where the old first line looks for it.
-    assert file.read_text(encoding="utf-8") == MIGRATED.replace("../schema/", "./")
-    assert (folder / "extended-urdf-2.0.schema.json").is_file()
-
-
 def test_new_file_names_urdf_relatively(folder: Path) -> None:
     (folder / "new").mkdir()
     out = folder / "new" / "bench.yaml"
     assert main(["migrate", str(folder), "-o", str(out)]) == 0
     assert "urdf: ../robot.urdf\n" in out.read_text(encoding="utf-8")
-    assert describe(out).mechanism is not None
+    assert read_robot(out).mechanism is not None
 
 
 def test_new_file_names_given_urdf(folder: Path) -> None:
     (folder / "robot.urdf").rename(folder / "no: name.urdf")
     out = folder / "two.yaml"
     assert main(["migrate", str(folder), "--urdf", str(folder / "no: name.urdf"), "-o", str(out)]) == 0
-    assert describe(out).mechanism is not None
+    assert read_robot(out).mechanism is not None
 
 
 def test_version_2_file_is_unchanged(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -590,7 +583,7 @@ def test_line_breaks_of_yaml_1_1_are_ordinary_characters(tmp_path: Path, text: s
 MIMICKING = WORKBENCH.read_text(encoding="utf-8")
 
 
-def with_mimics(text: str, urdf: str = MIMICKING) -> Described:
+def with_mimics(text: str, urdf: str = MIMICKING) -> ReadRobot:
     diagnostics = Diagnostics()
     given = read_urdf(
         read_xml(Source("robot.urdf", urdf, urdf.encode())), Diagnostics(), mimic_diagnostics=Diagnostics()
@@ -600,7 +593,7 @@ def with_mimics(text: str, urdf: str = MIMICKING) -> Described:
     assert extension is not None
     mechanism = link(given, extension, diagnostics)
     assert mechanism is not None
-    return Described("robot.yaml", diagnostics, given, mechanism, extension)
+    return ReadRobot("robot.yaml", diagnostics, given, mechanism, extension)
 
 
 @pytest.mark.parametrize(
@@ -642,6 +635,6 @@ def test_version_2_0_is_written_where_it_suffices() -> None:
 def test_first_line_names_the_schema_of_the_version_written() -> None:
     text = "# yaml-language-server: $schema=../schema/extended-urdf-1.schema.json\nname_mot: [follow]\n"
     description = with_mimics(text)
-    named = schema_named(description.extension.document, description.urdf)
+    named = schema_named(description.description.document, description.urdf)
     assert named == "../schema/extended-urdf-2.1.schema.json"
-    assert schema_named(description.extension.document, URDF) == "../schema/extended-urdf-2.0.schema.json"
+    assert schema_named(description.description.document, URDF) == "../schema/extended-urdf-2.0.schema.json"

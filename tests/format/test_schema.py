@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import json
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
@@ -17,7 +18,6 @@ from pydantic import BaseModel, ValidationError
 
 from eurdf.diagnostics import Diagnostics
 from eurdf.format.conforms import compiled, conforms, schema_of
-from eurdf.format.numbers import LARGEST, SMALLEST
 from eurdf.format.read_extension import read_extension
 from eurdf.format.schema import FILES, Names, SchemaVersion, json_schema, main, schema_text
 from eurdf.format.version import Version
@@ -26,6 +26,8 @@ from eurdf.format.version2 import Version2
 from eurdf.format.version2_1 import Version2_1
 from eurdf.reading.source import Source
 from eurdf.reading.yaml_reader import read_yaml
+from eurdf_conformance.properties.document import document as description_of
+from eurdf_conformance.properties.strategies.mechanisms import mechanisms
 
 ROOT = Path(__file__).parents[2]
 VERSIONS: tuple[SchemaVersion, ...] = ("1", "2", "2.1")
@@ -273,124 +275,9 @@ def test_model_and_schema_agree_after_one_edit(version: str) -> None:
     assert verdicts.count(False) > 200
 
 
-names = st.sampled_from(["hip", "knee", "x-own", "foot ball", "é", "universal"]) | st.text(min_size=1, max_size=4)
-numbers = st.integers(-9, 9) | st.floats(-LARGEST, LARGEST)
-magnitudes = st.integers(0, 9) | st.floats(0, LARGEST)
-divisors = numbers.filter(lambda number: abs(number) >= SMALLEST)
-vectors = st.lists(numbers, min_size=3, max_size=3)
-own = st.dictionaries(st.sampled_from(["x-a", "x-"]), st.sampled_from(JUNK), max_size=1)
-
-
-def mapping(required: dict[str, Any], **optional: Any) -> st.SearchStrategy[dict[str, Any]]:
-    """Mappings with some keys, and sometimes one defined by the user."""
-    return st.builds(lambda known, more: {**known, **more}, st.fixed_dictionaries(required, optional=optional), own)
-
-
-def one_or_several(number: st.SearchStrategy[Any], most: int) -> st.SearchStrategy[Any]:
-    return number | st.lists(number, min_size=1, max_size=most)
-
-
-magnitude = one_or_several(magnitudes, 6)
-position = one_or_several(numbers, 6)
-lower = one_or_several(st.floats(max_value=LARGEST, allow_nan=False, allow_infinity=False), 6)
-upper = one_or_several(st.floats(-LARGEST, allow_nan=False, allow_infinity=False), 6)
-most = one_or_several(st.floats(0, allow_infinity=False), 6)
-limits = st.one_of(mapping({"lower": lower}, upper=upper), mapping({"effort": most}, velocity=most, upper=upper))
-overrides = {"limits": limits, "damping": magnitude, "friction": magnitude, "armature": magnitude}
-pose = {"xyz": vectors, "rpy": vectors}
-axes = st.sampled_from(["xy", "xz", "yx", "yz", "zx", "zy"]) | st.lists(vectors, min_size=2, max_size=2)
-frame_references = st.one_of(names, mapping({"link": names}, **pose), mapping({"joint": names}, **pose))
-joints = st.one_of(
-    st.sampled_from(["spherical", "cylindrical", "fixed"]),
-    mapping({"type": st.sampled_from(["spherical", "cylindrical", "fixed"])}, **overrides),
-    mapping({"type": st.just("spherical"), "merges": st.lists(names, min_size=3, max_size=3)}),
-    mapping({"type": st.just("universal"), "axes": axes}, **overrides),
-    mapping({"type": st.just("helical"), "pitch": numbers}, **overrides),
-    mapping({"limits": limits}, damping=magnitude, armature=magnitude),
-    mapping({"friction": magnitude}, armature=magnitude),
-)
-closures = mapping(
-    {
-        "name": names,
-        "type": st.sampled_from(["3d", "6d", "x-own"]),
-        "frames": st.lists(frame_references, min_size=2, max_size=2),
-    }
-)
-hinges = mapping(
-    {
-        "name": names,
-        "type": st.just("hinge"),
-        "frames": st.lists(frame_references, min_size=2, max_size=2),
-    },
-    axis=vectors,
-) | mapping(
-    {
-        "name": names,
-        "type": st.just("hinge"),
-        "frames": st.lists(frame_references, min_size=2, max_size=2),
-        "axes": st.lists(vectors, min_size=2, max_size=2),
-    }
-)
 DOCUMENTS: dict[str, st.SearchStrategy[dict[str, Any]]] = {
-    "1": st.builds(
-        lambda known, paired, more: {**known, **paired, **more},
-        st.fixed_dictionaries(
-            {},
-            optional={
-                "closed_loop": st.lists(st.lists(names, min_size=2, max_size=2), max_size=3),
-                "type": st.lists(st.sampled_from(["3d", "6d", "3D", "6D"]), max_size=3),
-                "name_mot": st.lists(names, max_size=3),
-            },
-        ),
-        st.just({})
-        | st.fixed_dictionaries(
-            {
-                "joint_name": st.lists(names, max_size=3),
-                "joint_type": st.lists(st.sampled_from(["SPHERICAL", "FIXED", "UJOINT_XZ"]), max_size=3),
-            }
-        ),
-        st.dictionaries(st.sampled_from(["notes", "Type"]), st.sampled_from(JUNK), max_size=1),
-    ),
-    "2": mapping(
-        {"extended_urdf": st.just("2.0")},
-        urdf=names,
-        root=st.sampled_from(["fixed", "floating"]),
-        closures=st.lists(closures, max_size=3),
-        joints=st.dictionaries(names.filter(lambda name: not name.startswith("x-")), joints, max_size=3),
-        actuators=st.lists(
-            names | mapping({"joint": names}, gear_ratio=divisors, rotor_inertia=magnitudes),
-            max_size=3,
-        ),
-        frames=st.lists(
-            mapping({"name": names, "link": names}, **pose) | mapping({"name": names, "joint": names}, **pose),
-            max_size=2,
-        ),
-        configurations=st.dictionaries(
-            names.filter(lambda name: not name.startswith("x-")),
-            st.dictionaries(names, one_or_several(numbers, 7), max_size=3),
-            max_size=2,
-        ),
-        metadata=st.dictionaries(names, st.sampled_from(JUNK), max_size=2),
-    ),
+    version: mechanisms(version, 1).map(partial(description_of, version=version)) for version in VERSIONS
 }
-DOCUMENTS["2.1"] = st.builds(
-    lambda document, hinges, joints, actuators: {
-        **document,
-        "extended_urdf": "2.1",
-        "closures": [*document.get("closures", ()), *hinges],
-        "joints": {**document.get("joints", {}), **joints},
-        "actuators": [*document.get("actuators", ()), *actuators],
-    },
-    DOCUMENTS["2"],
-    st.lists(hinges, max_size=3),
-    st.dictionaries(
-        names.filter(lambda name: not name.startswith("x-")),
-        mapping({"stiffness": one_or_several(magnitudes, 6)}, rest=one_or_several(numbers, 6), mimic=st.just(False))
-        | mapping({"type": st.just("cylindrical")}, mimic=st.just(False)),
-        max_size=2,
-    ),
-    st.lists(mapping({"joint": names}, name=names, control=st.lists(numbers, min_size=2, max_size=2)), max_size=2),
-)
 
 
 @st.composite

@@ -10,7 +10,7 @@ import pytest
 
 from eurdf.commands.main import main
 from eurdf.format.schema import FILES, json_schema, schema_text
-from eurdf.linking.description import describe
+from eurdf.linking.robot_files import read_robot
 
 ROBOT = Path(__file__).parents[2] / "robots" / "four_bar"
 
@@ -53,23 +53,6 @@ def test_schema_none_writes_no_schema(folder: Path, argv: list[str]) -> None:
     assert main([*argv, "--schema", "none"]) == 0
     assert not list(folder.glob("*.json"))
     assert "$schema" not in (folder / "new.yaml").read_text(encoding="utf-8")
-
-
-@command
-def test_other_file_is_replaced_only_with_force(
-    folder: Path, argv: list[str], capsys: pytest.CaptureFixture[str]
-) -> None:
-    mine = folder / schema_file(argv)
-    mine.write_text("mine", encoding="utf-8")
-    assert main(argv) == 2
-    said = capsys.readouterr().err
-    assert f"'{mine.name}' already exists" in said
-    assert "--force" in said
-    assert "--schema none" in said
-    assert not (folder / "new.yaml").exists()
-    assert mine.read_text(encoding="utf-8") == "mine"
-    assert main([*argv, "--force"]) == 0
-    assert json.loads(mine.read_text(encoding="utf-8"))["$id"]
 
 
 @command
@@ -134,7 +117,7 @@ def test_standard_output_names_no_schema(folder: Path, argv: list[str], capsys: 
     assert "$schema" not in out
     assert "-o FILE" in err
     (folder / "new.yaml").write_text(out, encoding="utf-8")
-    assert describe("new.yaml").mechanism is not None
+    assert read_robot("new.yaml").mechanism is not None
     assert main([*argv, "--schema", "none"]) == 0
     assert "-o FILE" not in capsys.readouterr().err
 

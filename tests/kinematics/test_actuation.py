@@ -10,9 +10,8 @@ import pytest
 
 import eurdf
 from eurdf.commands.main import main
-from support.described import at, body, codes, load, written
+from support.described import STAR, STAR_CONTENT, at, body, codes, load, written
 from support.plain_urdf import joint_element, link_element, robot
-from support.star import CONTENT, STAR
 
 BALL = "joints: {d: spherical}\n"
 
@@ -90,7 +89,7 @@ def test_merged_spherical_joint_can_be_actuated() -> None:
         link_element("two"),
         body("hand"),
         *(
-            joint_element(name, "revolute", parent, child, CONTENT.replace("0 0 1", axis))
+            joint_element(name, "revolute", parent, child, STAR_CONTENT.replace("0 0 1", axis))
             for name, parent, child, axis in [
                 ("x", "base", "one", "1 0 0"),
                 ("y", "one", "two", "0 1 0"),

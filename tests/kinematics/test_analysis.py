@@ -23,6 +23,7 @@ from support.linkage import (
     X,
     Y,
     Z,
+    ball_ended,
     bennett,
     closure,
     described,
@@ -35,6 +36,7 @@ from support.linkage import (
     spherical_four_bar,
     stewart,
     swapped,
+    three_rrr,
     translation,
 )
 from support.wild import FACTS, WILD, needs_wild
@@ -99,6 +101,9 @@ KNOWN: dict[str, tuple[Callable[[], Linkage], tuple[int, int, int, int]]] = {
     "parallelogram folded onto a line": (folded_parallelogram, (4, 6, 3, 0)),
     "rod between two balls": (rod_between_balls, (8, 6, 6, 1)),
     "Stewart platform": (stewart, (36, 30, 30, 0)),
+    "3-RRR": (three_rrr, (9, 12, 6, 0)),
+    "ball in 3d": (lambda: ball_ended("3d"), (4, 3, 3, 0)),
+    "ball in 6d": (lambda: ball_ended("6d"), (7, 6, 6, 0)),
 }
 
 
@@ -450,3 +455,52 @@ def test_published_robots_have_known_dimensions(name: str) -> None:
 def test_floating_root_adds_six_to_mobility() -> None:
     analysis = analyze(eurdf.load(WILD / "digit_like", root="floating", geometry=False))
     assert (analysis.nv, analysis.rank, analysis.mobility, analysis.uncontrolled) == (33, 18, 15, 9)
+
+
+def test_digit_leg_has_nine_motions_with_three_spins() -> None:
+    analysis = eurdf.analyze(eurdf.load("digit_leg", geometry=False))
+    assert (analysis.nv, analysis.rank, analysis.mobility, analysis.uncontrolled) == (27, 18, 9, 3)
+    assert [set(motion.joints) for motion in analysis.motions] == [
+        {"ball_achilles_start", "ball_achilles_end"},
+        {"ball_rod1_start", "ball_rod1_end"},
+        {"ball_rod2_start", "ball_rod2_end"},
+    ]
+    assert [(loops.closures, loops.mobility, loops.uncontrolled) for loops in analysis.loops] == [
+        (("achilles",), 2, 1),
+        (("rod1", "rod2"), 4, 2),
+    ]
+
+
+def test_ball_in_6d_equals_no_ball_in_3d() -> None:
+    three, six = load(*described(ball_ended("3d"))), load(*described(ball_ended("6d")))
+    assert eurdf.analyze(three).mobility == eurdf.analyze(six).mobility == 1
+    start = np.array([0.2, -0.1, 0.05, 0.1])
+    for crank in (0.0, 0.05, 0.1, 0.2):
+        start[0] = crank
+        one = eurdf.assemble(three, start, hold=["j0"])
+        other = eurdf.assemble(six, np.concatenate([start, [0.0, 0.0, 0.0, 1.0]]), hold=["j0"])
+        assert one.converged
+        assert other.converged
+        np.testing.assert_allclose(other.q[:4], one.q, atol=1e-8)
+        # And they move alike there.
+        (v3,), (v6,) = null_space(three, one.q), null_space(six, other.q)
+        np.testing.assert_allclose(v6[:4] / v6[0], v3 / v3[0], atol=1e-7)
+
+
+def null_space(robot: Any, q: Any) -> Any:
+    K = residual_and_jacobian(robot, q)[1]
+    return np.linalg.svd(K)[2][np.linalg.matrix_rank(K, 1e-8) :]
+
+
+def test_bennett_linkage_turns_fully() -> None:
+    # The one motion that it has is no accident of one configuration: tan(θ₁/2) tan(θ₂/2) is the same all along it
+    # (Bennett, 1903), for the angles between bars that follow one another.
+    robot = load(*described(bennett()))
+    q, products = eurdf.assemble(robot).q, []
+    for _ in range(12):
+        q = q + np.array([0.1, 0.0, 0.0, 0.0])
+        assembly = eurdf.assemble(robot, q, hold=["j0"], restarts=0)
+        assert assembly.converged
+        q = assembly.q
+        products.append(np.tan(q[0] / 2) * np.tan(q[1] / 2))
+    np.testing.assert_allclose(products, products[0], rtol=1e-6)

@@ -73,6 +73,12 @@ CALLS: dict[str, dict[str, Any]] = {
     "transmission": {"joints": "free_rocker", "q": "q"},
     "sweep": {"actuator": "motor_crank", "q0": "q"},
     "view": {"q": "q", "port": 0},
+    "batch.actuated_jacobian": {"q": "q", "frame": "coupler", "weights": "v"},
+    "batch.forward_kinematics": {"values": "qa", "q0": "q"},
+    "batch.inverse_kinematics": {"targets": {"coupler": 3}, "q0": "q"},
+    "batch.project_configuration": {"q": "q", "weights": "v"},
+    "batch.residual": {"q": "q"},
+    "batch.residual_and_jacobian": {"q": "q"},
 }
 
 
@@ -97,21 +103,30 @@ def valid(name: str) -> dict[str, Any]:
             arguments[parameter] = {key: np.ones(size) for key, size in given.items()}
         else:
             arguments[parameter] = array(parameter, given)
+    if name.startswith("batch."):  # of two elements
+        for parameter in arguments.keys() & {"q", "q0", "values"}:
+            arguments[parameter] = np.tile(arguments[parameter], (2, 1))
+        if "targets" in arguments:
+            arguments["targets"] = {"coupler": np.zeros((2, 3))}
     return arguments
 
 
 def array(parameter: str, given: Any) -> Any:
+    q = np.array(robot().configurations["assembled"])
+    if parameter == "values":
+        return q[robot().actuation.idx_q]
     if given == "q":
-        return np.array(robot().configurations["assembled"])
+        return q
     size = sizes()[given] if isinstance(given, str) else given
     ones = ("weights", "gains", "twist", "torque_ratio", "velocity_ratio")
     return np.ones(size) if parameter in ones else np.zeros(size)
 
 
 def functions() -> dict[str, Callable[..., Any]]:
-    """The public functions, and the methods of a robot."""
+    """The public functions, those for batches, and the methods of a robot."""
     found = {name: getattr(eurdf, name) for name in eurdf.__all__ if inspect.isfunction(getattr(eurdf, name))}
     methods = inspect.getmembers(eurdf.Robot, inspect.isfunction)
+    found |= {f"batch.{name}": each for name, each in inspect.getmembers(eurdf.batch, inspect.isfunction)}
     return found | {f"Robot.{name}": method for name, method in methods if not name.startswith("_")}
 
 
@@ -150,40 +165,44 @@ def test_valid_call_succeeds(name: str) -> None:
         assert name in ("inverse_dynamics", "achievable_acceleration")
 
 
-def wrong(size: int) -> dict[str, Any]:
-    return {
+def wrong(good: Any) -> dict[str, Any]:
+    *lead, size = good.shape
+    of_one = {
         "empty": [],
-        "short": np.zeros(size - 1),
-        "long": np.zeros(size + 1),
         "far too long": np.zeros(10_000),
         "column": np.zeros((size, 1)),
         "row": np.zeros((1, size + 1)),
-        "nan": np.full(size, np.nan),
-        "inf": [0.0] * (size - 1) + [np.inf],
+    }
+    return ({} if lead else of_one) | {
+        "short": np.zeros((*lead, size - 1)),
+        "long": np.zeros((*lead, size + 1)),
+        "deep": np.zeros((1, 1, *good.shape)),
+        "nan": np.full(good.shape, np.nan),
+        "inf": np.full(good.shape, np.inf),
         "text": "abc",
-        "complex": np.zeros(size, dtype=complex),
+        "complex": np.zeros(good.shape, dtype=complex),
         "mapping": {0: 1.0},
         "ragged": [[0.0], [0.0, 1.0]],
     }
 
 
+#: A mapping gives coordinates by name; a column of one number is also a matrix.
+RIGHT = {("actuated", "mapping"), ("stiffness", "column"), ("damping", "column")}
+
+
 @pytest.mark.parametrize(("name", "parameter"), list(array_parameters()))
 def test_wrong_array_is_a_value_error(name: str, parameter: str) -> None:
     given = valid(name)[parameter]
-    if isinstance(given, Mapping):
-        [(key, values)] = given.items()
-        for what, bad in wrong(len(values)).items():
-            refused(name, parameter, {key: bad}, rf"{parameter}\['{key}'\]", len(values), what)
-        return
-    for what, bad in wrong(len(given)).items():
-        # A mapping gives coordinates by name; a column of one number is also a matrix.
-        if (parameter, what) not in {("actuated", "mapping"), ("stiffness", "column"), ("damping", "column")}:
-            refused(name, parameter, bad, parameter, len(given), what)
-
-
-def refused(name: str, parameter: str, bad: Any, names: str, size: int, what: str) -> None:
-    with pytest.raises(ValueError, match=rf"^{names}[ \[].*expected .*\({size},\)"):
-        pytest.fail(f"{name} accepts {what}: {call(name, valid(name) | {parameter: bad})}")
+    [(key, good)] = given.items() if isinstance(given, Mapping) else [(None, np.asarray(given))]
+    named = parameter if key is None else rf"{parameter}\['{key}'\]"
+    of_one = not name.startswith("batch.")
+    expected = rf"^{named}[ \[].*expected .*\({good.shape[-1]},\)" if of_one else rf"^{parameter}\b"
+    for what, bad in wrong(good).items():
+        if (parameter, what) not in RIGHT:
+            with pytest.raises(ValueError, match=expected):
+                pytest.fail(
+                    f"{name} accepts {what}: {call(name, {**valid(name), parameter: {key: bad} if key else bad})}"
+                )
 
 
 @pytest.mark.parametrize("name", ["actuated_jacobian", "dq_dq_actuated", "project_velocity"])
@@ -202,7 +221,7 @@ def test_data_of_another_model_is_a_value_error(name: str, parameter: str) -> No
     call(name, {**valid(name), **{p: np.zeros(robot().model.nv) for p in ("a", "v") if p in CALLS[name]}})
 
 
-@pytest.mark.parametrize(("name", "parameter"), parameters_called("tolerance", "restarts", "steps"))
+@pytest.mark.parametrize(("name", "parameter"), parameters_called("tolerance", "restarts", "steps", "threads"))
 @pytest.mark.parametrize("bad", [-1, np.nan, np.inf, "1", None])
 def test_number_out_of_range_is_a_value_error(name: str, parameter: str, bad: Any) -> None:
     with pytest.raises(ValueError, match=rf"^{parameter} is .*expected"):

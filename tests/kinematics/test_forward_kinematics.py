@@ -21,7 +21,7 @@ from eurdf.kinematics.sensitivity import actuated_jacobian, dq_dq_actuated
 from eurdf.kinematics.split import split_configuration
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.mimic import Mimic
 from eurdf.pinocchio.robot import build_robot

@@ -25,10 +25,10 @@ from eurdf.kinematics.residual import residual, residual_and_jacobian
 from eurdf.mechanism.body import Shape
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.mimic import Mimic
-from eurdf.mechanism.pose import IDENTITY, Pose
+from eurdf.mechanism.pose import Pose
 from eurdf.mechanism.spanning_tree import rigid_roots
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand
@@ -113,11 +113,11 @@ def some_robot(random: np.random.Generator, mimic: bool, root: str = "fixed") ->
             mimic=followers.get(joint.name),
             offset=by_hand.some_pose(random) if joint.type is JointType.SPHERICAL else joint.offset,
             properties=JointProperties(
-                lower=(-2.0,) * joint.coordinates.nv if joint.type in AXIAL else (),
-                upper=(3.0,) * joint.coordinates.nv if joint.type in AXIAL else (),
-                effort=tuple(random.uniform(1, 2, joint.coordinates.nv).tolist()),
-                armature=tuple(random.uniform(1, 2, joint.coordinates.nv).tolist()),
-                gear_ratio=tuple(random.uniform(1, 2, joint.coordinates.nv).tolist()),
+                lower=(-2.0,) * joint.type.nv if joint.type in AXIAL else (),
+                upper=(3.0,) * joint.type.nv if joint.type in AXIAL else (),
+                effort=tuple(random.uniform(1, 2, joint.type.nv).tolist()),
+                armature=tuple(random.uniform(1, 2, joint.type.nv).tolist()),
+                gear_ratio=tuple(random.uniform(1, 2, joint.type.nv).tolist()),
             ),
         )
         for joint in tree.joints
@@ -245,41 +245,6 @@ def test_locking_all_joints_gives_one_body(seed: int) -> None:
     assert_same_robot_at(robot, locked, q)
     analysis = eurdf.analyze(locked)
     assert (analysis.nv, analysis.nc, analysis.mobility) == (0, 0, 0)
-
-
-@given(seed=st.integers(0, 2**32 - 1))
-@settings(deadline=None, max_examples=20)
-def test_reduction_matches_pinocchio_without_mimic_joints(seed: int) -> None:
-    random = np.random.default_rng(seed)
-    robot, coordinates = some_robot(random, mimic=False)
-    chosen = [joint.name for joint in moving(robot.mechanism) if random.random() < 0.5]
-    q = q_of(robot, coordinates)
-    locked = lock(robot, chosen, q)
-    ids = [robot.model.getJointId(name) for name in chosen]
-    model, geometry_models = pin.buildReducedModel(robot.model, [robot.visual_model, robot.collision_model], ids, q)
-    assert list(locked.model.names) == list(model.names)
-    assert (locked.model.nq, locked.model.nv) == (model.nq, model.nv)
-    q = q[locked.idx_q]
-    reduced = model.createData(), locked.model.createData()
-    for one, data in zip((model, locked.model), reduced, strict=True):
-        pin.framesForwardKinematics(one, data, q)
-    assert {frame.name for frame in model.frames} == {frame.name for frame in locked.model.frames}
-    # Of a joint whose child is off its centre, Pinocchio puts the frame in the centre; ours stays with the child.
-    off_centre = {joint.name for joint in robot.mechanism.joints if joint.offset != IDENTITY}
-    for index, frame in enumerate(locked.model.frames):
-        if frame.name in off_centre:
-            continue
-        kind = pin.FrameType.BODY if frame.type == pin.FrameType.BODY else None
-        other = model.getFrameId(frame.name) if kind is None else model.getFrameId(frame.name, kind)
-        np.testing.assert_allclose(
-            reduced[1].oMf[index].homogeneous, reduced[0].oMf[other].homogeneous, atol=1e-12, err_msg=frame.name
-        )
-        assert model.frames[other].type == frame.type
-    for own, theirs in zip((locked.visual_model, locked.collision_model), geometry_models, strict=True):
-        assert_same_places(geometry_placements(theirs, model, q), geometry_placements(own, locked.model, q))
-    np.testing.assert_allclose(mass_matrix(locked.model, q), mass_matrix(model, q), atol=1e-10)
-    for name in LIMITS + PROPERTIES:
-        np.testing.assert_array_equal(getattr(locked.model, name), getattr(model, name), err_msg=name)
 
 
 # -- robots of the collection ------------------------------------------------------------------------------------------
@@ -486,14 +451,6 @@ def test_opposite_quaternions_are_the_same_configuration() -> None:
     robot = load(text, yaml)
     locked = lock(robot, ["ball"], q_of(robot, {"ball": (0.0, 0.0, 0.6, 0.8)}))
     assert locked.dropped_configurations == ()
-
-
-def test_half_of_split_joint_can_be_locked() -> None:
-    text = urdf_of(body("base"), body("a"), revolute("cardan", "base", "a", origin='<origin xyz="1 2 3" rpy="1 2 3"/>'))
-    robot = load(text, "joint_name: [cardan]\njoint_type: [UJOINT_XY]\n")
-    for name in ("cardan_X", "cardan_Y"):
-        q = q_of(robot, {"cardan_X": (0.4,), "cardan_Y": (-0.7,)})
-        assert_same_robot_at(robot, lock(robot, [name], q), q)
 
 
 def test_meshes_are_shared_and_not_read_again(tmp_path: Path) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import mujoco
 import numpy as np
@@ -33,33 +32,6 @@ def hand(mimic: str = MIMIC) -> str:
 
 
 ARMATURE = "joints: {c: {armature: 0.05}}\n"
-
-
-def kinetic_energy(robot: Any, q: Any, v: Any, step: float = 1e-6) -> float:
-    """Of all bodies, whose twists come from poses a moment apart, and of the armatures, J."""
-    model = robot.model
-    poses = []
-    for time in (-step, step):
-        data = model.createData()
-        pin.forwardKinematics(model, data, pin.integrate(model, q, time * v))
-        poses.append([pin.SE3(placement) for placement in data.oMi])
-    energy = 0.5 * float(model.armature @ v**2)
-    for before, after, inertia in zip(*poses, model.inertias, strict=True):
-        twist = pin.log6(before.actInv(after)).vector / (2.0 * step)
-        energy += 0.5 * float(twist @ inertia.matrix() @ twist)
-    return energy
-
-
-@pytest.mark.parametrize("name", ["hand", "free hand", "digit_leg", "delta"])
-def test_kinetic_energy_is_half_v_m_v(name: str) -> None:
-    robot = load(hand(), ARMATURE, mimic=name == "hand") if "hand" in name else eurdf.load(name, geometry=False)
-    random = np.random.default_rng(0)
-    for _ in range(3):
-        q = pin.integrate(robot.model, pin.neutral(robot.model), random.uniform(-0.5, 0.5, robot.model.nv))
-        v = random.uniform(-1.0, 1.0, robot.model.nv)
-        M = eurdf.mass_matrix(robot, q)
-        np.testing.assert_array_equal(M, M.T)
-        assert 0.5 * v @ M @ v == pytest.approx(kinetic_energy(robot, q, v), rel=1e-6)
 
 
 def test_branched_mimic_joint_matches_constrained_free_joint(tmp_path: Path) -> None:

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.configuration import configuration_vector
@@ -48,22 +48,14 @@ TETRAHEDRON = """solid tetrahedron
     )
 )
 
-SHAPES = {
-    "box": '<box size="1 2 3"/>',
-    "cylinder": '<cylinder radius="0.5" length="2"/>',
-    "sphere": '<sphere radius="0.4"/>',
-    "mesh": '<mesh filename="package://parts/tetrahedron.stl"/>',
-    "scaled mesh": '<mesh filename="package://parts/tetrahedron.stl" scale="1 -2 0.3"/>',
-}
-MATERIALS = {
-    "no material": "",
-    "one of the robot": '<material name="red"/>',
-    "its own": '<material name="own"><color rgba="0.1 0.2 0.3 0.4"/></material>',
-    "a texture": '<material name="wood"><texture filename="package://parts/wood.png"/></material>',
-    "a texture that is missing": '<material name="lost"><texture filename="package://parts/lost.png"/></material>',
-    "color and texture": '<material name="both"><color rgba="1 0.5 0 1"/>'
-    '<texture filename="package://parts/wood.png"/></material>',
-}
+MATERIALS = [
+    "",
+    '<material name="red"/>',
+    '<material name="own"><color rgba="0.1 0.2 0.3 0.4"/></material>',
+    '<material name="wood"><texture filename="package://parts/wood.png"/></material>',
+    '<material name="lost"><texture filename="package://parts/lost.png"/></material>',
+    '<material name="both"><color rgba="1 0.5 0 1"/><texture filename="package://parts/wood.png"/></material>',
+]
 RED = '<material name="red"><color rgba="0.7 0.1 0 1"/></material>'
 KINDS = {"visual": pin.GeometryType.VISUAL, "collision": pin.GeometryType.COLLISION}
 
@@ -127,22 +119,6 @@ def assert_same_geometry(mine: pin.GeometryModel, expected: pin.GeometryModel) -
     assert mine == expected
 
 
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("material", MATERIALS)
-@pytest.mark.parametrize("shape", SHAPES)
-def test_shape_matches_pinocchio_parser(parts: Path, shape: str, material: str, kind: str) -> None:
-    pose = '<origin xyz="1 2 3" rpy="0.1 -0.2 0.3"/>'
-    content = (
-        f"<{kind}>{pose}<geometry>{SHAPES[shape]}</geometry>{MATERIALS[material] if kind == 'visual' else ''}</{kind}>"
-    )
-    text = robot(RED, link_element("base"), link_element("tip", content), joint_element("j", "revolute", "base", "tip"))
-    mechanism = mechanism_of(text)
-    model = build_model(mechanism)
-    mine = build_geometry(mechanism, model, KINDS[kind], Finder(parts))
-    assert mine.ngeoms == 1
-    assert_same_geometry(mine, pinocchios_own_geometry(text, model, kind, parts))
-
-
 @st.composite
 def shapes(draw: st.DrawFn, version: str) -> str:
     size = draw(POSITIVE)
@@ -170,7 +146,10 @@ def test_tree_geometry_matches_pinocchio(
     links = [
         link_element(
             f"l{index}",
-            "".join(f"<visual>{shape}</visual>" for shape in data.draw(st.lists(shapes(version), max_size=3)))
+            "".join(
+                f"<visual>{shape}{data.draw(st.sampled_from(MATERIALS))}</visual>"
+                for shape in data.draw(st.lists(shapes(version), max_size=3))
+            )
             + "".join(f"<collision>{shape}</collision>" for shape in data.draw(st.lists(shapes(version), max_size=2))),
         )
         for index in range(count)
@@ -186,7 +165,7 @@ def test_tree_geometry_matches_pinocchio(
         )
         for index, name in enumerate(names)
     ]
-    text = robot(*links, *joints, version=version)
+    text = robot(RED, *links, *joints, version=version)
     mechanism = mechanism_of(text, root)
     built = build_robot(mechanism, geometry=True, resolve=Finder(parts), meshes=tetrahedron)
     assert_same_geometry(built.visual_model, pinocchios_own_geometry(text, built.model, "visual", parts))

@@ -18,9 +18,8 @@ from eurdf.closures.point import PointClosure
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.actuation import build_actuation
 from eurdf.pinocchio.configuration import configuration_vector, joint_coordinates
@@ -47,47 +46,6 @@ ROOTS = st.sampled_from(["fixed", "floating"])
 INF = math.inf
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
-EVERYTHING = robot(
-    link_element(
-        "base", inertial(2.5, '<origin xyz="0.1 0 -0.2" rpy="0.3 -0.2 1.7"/>', (0.2, 0.01, 0.02, 0.3, -0.03, 0.4))
-    ),
-    link_element("arm", inertial()),
-    link_element("hand"),
-    link_element("knuckle", inertial(0.3, '<origin rpy="0 1.5707963267948966 0"/>')),
-    link_element("tip", inertial(0.0, '<origin xyz="1 2 3"/>', (0, 0, 0, 0, 0, 0))),
-    link_element("wheel", inertial(0.7)),
-    link_element("slider", inertial(0.2)),
-    link_element("puck", inertial(0.2)),
-    link_element("bird", inertial(0.1)),
-    link_element("follower", inertial(0.1)),
-    link_element("oblique", inertial(0.1)),
-    joint_element(
-        "shoulder",
-        "revolute",
-        "base",
-        "arm",
-        '<axis xyz="0 1 0"/><limit lower="-1.5" upper="2.5" effort="30" velocity="4"/>'
-        '<dynamics damping="0.7" friction="0.2"/>',
-        '<origin xyz="0 0 -0.0" rpy="0.1 0.2 0.3"/>',
-    ),
-    joint_element("wrist", "fixed", "arm", "hand", "", '<origin xyz="0.3 0 0" rpy="0 0 -2"/>'),
-    joint_element("finger", "revolute", "hand", "knuckle", '<axis xyz="1 1 0.3"/><limit effort="1" velocity="0"/>'),
-    joint_element("nail", "fixed", "knuckle", "tip", "", '<origin xyz="0 0.1 0"/>'),
-    joint_element("axle", "continuous", "base", "wheel", '<axis xyz="0 0 -1"/>'),
-    joint_element("drawer", "prismatic", "base", "slider", '<limit lower="0" upper="0.4" effort="5" velocity="1"/>'),
-    joint_element("floor", "planar", "base", "puck", '<axis xyz="0 0 1"/><limit effort="5" velocity="1"/>'),
-    joint_element("air", "floating", "puck", "bird", '<dynamics damping="3"/>'),
-    joint_element(
-        "zz_slave",
-        "prismatic",
-        "hand",
-        "follower",
-        '<axis xyz="0 0 2"/><limit effort="1" velocity="1"/><mimic joint="shoulder" multiplier="-0.5" offset="0.25"/>',
-    ),
-    joint_element("skew", "continuous", "slider", "oblique", f'<axis xyz="{vector((0.2, -0.7, 1.1))}"/>'),
-    name="everything",
-)
-
 
 def assert_equal(model: pin.Model, expected: pin.Model) -> None:
     assert model == expected
@@ -101,14 +59,6 @@ def assert_equal(model: pin.Model, expected: pin.Model) -> None:
 @settings(deadline=None)
 def test_plain_urdf_gives_identical_pinocchio_model(text: str, root: Root, mimic: bool) -> None:
     assert_equal(build_model(mechanism_of(text, root, mimic)), pinocchios_own(text, root, mimic))
-
-
-@pytest.mark.parametrize("root", ["fixed", "floating"])
-@pytest.mark.parametrize("mimic", [True, False])
-def test_urdf_with_every_feature_matches_pinocchio(root: Root, mimic: bool) -> None:
-    model = build_model(mechanism_of(EVERYTHING, root, mimic))
-    assert_equal(model, pinocchios_own(EVERYTHING, root, mimic))
-    assert len(model.mimicking_joints) == (1 if mimic else 0)
 
 
 @pytest.mark.parametrize("root", ["fixed", "floating"])
@@ -330,7 +280,7 @@ def _hand_made(joint: Joint, **changes: object) -> Mechanism:
 @pytest.mark.parametrize("kind", by_hand.MOVING)
 def test_joint_properties_are_at_its_velocities(kind: JointType) -> None:
     joint = by_hand.some_joint(kind, np.random.default_rng(0))
-    nv = joint.coordinates.nv
+    nv = joint.type.nv
     names = ("velocity", "effort", "damping", "friction", "armature", "gear_ratio", "rotor_inertia")
     values = {name: tuple(10.0 * row + column for column in range(nv)) for row, name in enumerate(names, 1)}
     model = build_model(_hand_made(replace(joint, properties=JointProperties(**values))))
@@ -371,7 +321,7 @@ LIMITS = {
 @pytest.mark.parametrize("kind", LIMITS)
 def test_position_limits_are_at_pinocchio_coordinates(kind: str) -> None:
     joint = by_hand.some_joint(JointType(kind), np.random.default_rng(0))
-    count = len(joint.coordinates.names)
+    count = len(joint.type.coordinates)
     lower = tuple(-1.0 - 0.5 * index for index in range(count))
     upper = tuple(2.0 + 0.5 * index for index in range(count))
     model = build_model(_hand_made(replace(joint, properties=JointProperties(lower, upper))))
@@ -437,61 +387,6 @@ def test_frames_keep_inertias_identical() -> None:
 # -- closures, actuation, robot ---------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("root", ["fixed", "floating"])
-def test_constraint_model_joins_its_two_frames(root: Root) -> None:
-    random = np.random.default_rng(7)
-    mechanism = by_hand.tree_of_all_types(random)
-    names = [body.name for body in mechanism.bodies]
-    closures = tuple(
-        (PointClosure if index % 2 else FrameClosure)(
-            f"loop{index}",
-            Anchor(a, by_hand.some_pose(random)),
-            Anchor(b, by_hand.some_pose(random)),
-        )
-        for index, (a, b) in enumerate(zip(names, reversed(names), strict=True))
-        if a != b
-    )
-    mechanism = replace(mechanism, root=root, closures=closures)
-    model = build_model(mechanism)
-    constraint_models = build_constraint_models(mechanism.constraints, build_tree(mechanism, model))
-    coordinates = {joint.name: by_hand.some_coordinates(joint.type, random) for joint in mechanism.joints}
-    coordinates = {name: values for name, values in coordinates.items() if values}
-    data = model.createData()
-    pin.forwardKinematics(model, data, configuration_vector(mechanism, model, coordinates))
-    poses = by_hand.poses(mechanism, coordinates)
-    assert [constraint.name for constraint in constraint_models] == [closure.name for closure in closures]
-    for closure, constraint in zip(closures, constraint_models, strict=True):
-        assert constraint.residualSize() == closure.rows
-        assert constraint.reference_frame == pin.ReferenceFrame.LOCAL
-        oMa = data.oMi[constraint.joint1_id] * constraint.joint1_placement
-        oMb = data.oMi[constraint.joint2_id] * constraint.joint2_placement
-        np.testing.assert_allclose(
-            oMa.homogeneous, poses[closure.a.body] @ by_hand.pose_matrix(closure.a.pose), atol=1e-12
-        )
-        np.testing.assert_allclose(
-            oMb.homogeneous, poses[closure.b.body] @ by_hand.pose_matrix(closure.b.pose), atol=1e-12
-        )
-
-
-def test_actuation_selects_velocities_in_file_order() -> None:
-    mechanism = _hand_made(
-        Joint("wheel", JointType.CONTINUOUS, "", "", axes=(X,)), actuators=("then", "wheel", "before")
-    )
-    model = build_model(mechanism)
-    actuation = build_actuation(mechanism, model)
-    assert actuation.joints == ("then", "wheel", "before")
-    assert actuation.idx_q.tolist() == [6, 4, 5, 0, 1, 2, 3]
-    assert actuation.idx_v.tolist() == [4, 3, 0, 1, 2]
-    np.testing.assert_array_equal(actuation.selection, np.eye(5)[:, [4, 3, 0, 1, 2]])
-
-
-def test_selection_is_empty_without_actuators() -> None:
-    mechanism = mechanism_of(EVERYTHING)
-    model = build_model(mechanism)
-    actuation = build_actuation(mechanism, model)
-    assert (actuation.selection.shape, actuation.idx_v.dtype) == ((model.nv, 0), np.intp)
-
-
 def test_robot_unpacks_into_its_parts() -> None:
     half = math.sqrt(0.5)
     mechanism = _hand_made(
@@ -510,35 +405,3 @@ def test_robot_unpacks_into_its_parts() -> None:
     assert built.data is built.data
     assert len(built.data.oMi) == model.njoints
     assert repr(built) == "<Robot 'hand-made': nq 7, nv 5, 1 closures, 1 actuators>"
-
-
-def test_robot_without_geometry_has_no_geometry_models() -> None:
-    built = build_robot(mechanism_of(EVERYTHING), geometry=False)
-    assert (built.visual_model, built.collision_model) == (None, None)
-
-
-def test_building_a_robot_prints_nothing(capfd: pytest.CaptureFixture[str]) -> None:
-    build_robot(mechanism_of(EVERYTHING), geometry=True)
-    assert capfd.readouterr() == ("", "")
-
-
-def test_mimic_chains_compose() -> None:
-    joints = tuple(
-        Joint(name, JointType.PRISMATIC, parent, child, axes=(X,), mimic=mimic)
-        for name, parent, child, mimic in (
-            ("a", "0", "1", None),
-            ("b", "1", "2", Mimic("a", -2.0, 0.1)),
-            ("c", "2", "3", Mimic("b", 3.0, 0.5)),
-            ("d", "3", "4", Mimic("c", 0.5, -1.0)),
-        )
-    )
-    mechanism = Mechanism("chain", "", "fixed", tuple(Body(name) for name in "01234"), joints)
-    model = build_model(mechanism)
-    coordinates = joint_coordinates(mechanism, model, configuration_vector(mechanism, model, {"a": (0.2,)}))
-    assert coordinates == {
-        "a": (0.2,),
-        "b": pytest.approx((-0.3,)),
-        "c": pytest.approx((-0.4,)),
-        "d": pytest.approx((-1.2,)),
-    }
-    assert model.nq == 1

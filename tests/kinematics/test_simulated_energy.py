@@ -98,10 +98,3 @@ def test_robot_at_rest_is_not_warned_of(duration: float) -> None:
     motion = quiet(robot, q, duration=duration)
     assert motion.energy_error == pytest.approx(0.0, abs=1e-12)
     assert motion.energy_exchanged == pytest.approx(0.0, abs=1e-12)
-
-
-def test_error_falls_with_fourth_power_of_step() -> None:
-    robot, q = four_bar()
-    v = project_velocity(robot, q, 20.0 * np.ones(3))
-    coarse, fine = (simulate(robot, q, v, duration=0.2, step=step).energy_error for step in (4e-3, 2e-3))
-    assert 10.0 < coarse / fine < 80.0

@@ -12,7 +12,7 @@ import pytest
 import eurdf
 from eurdf.pinocchio import constrained_dynamics, tree
 from eurdf.pinocchio.tree_recursion import TreeRecursion
-from support.branching import JOINTS, branching
+from support.linkage import JOINTS, branching
 
 
 def every_joint() -> Any:

@@ -16,13 +16,13 @@ import yaml
 from lxml import etree
 
 import eurdf
-from eurdf.checking.advice.actuation import advise_on_actuation
+from eurdf.advice.actuation import advise_on_actuation
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.hinge import HingeClosure
 from eurdf.collection import collection_names
 from eurdf.diagnostics import Diagnostic, Diagnostics
 from eurdf.kinematics.evaluate import evaluator
-from eurdf.linking.description import Linked, describe
+from eurdf.linking.robot_files import read_robot
 from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.pose import Vector3
 from eurdf.pinocchio.robot import build_robot
@@ -141,8 +141,8 @@ def test_two_jointly_locking_closures_are_named_together(advice) -> None:
 
 def test_locking_hinge_gets_the_hint_of_a_6d_closure() -> None:
     """What the advice asks of a closure is the same for every kind."""
-    description, robot = describe(ROBOTS / "four_bar"), eurdf.load(ROBOTS / "four_bar", geometry=False)
-    assert isinstance(description, Linked)
+    description, robot = read_robot(ROBOTS / "four_bar"), eurdf.load(ROBOTS / "four_bar", geometry=False)
+    assert description.linked is not None
     (pin_,) = robot.mechanism.closures
     across = HingeClosure(pin_.name, pin_.a, pin_.b, ((0.0, 0.0, 1.0), _axis_of_b_along_z_of_a(robot, pin_)))
     locked = build_robot(replace(robot.mechanism, closures=(across,)), geometry=False)
@@ -298,7 +298,7 @@ def test_closing_only_beyond_limits_is_reported(advice, lower, upper, expected: 
 
 
 def test_solution_within_limits_is_not_reported(advice, monkeypatch) -> None:
-    from eurdf.checking.advice import limits as module
+    from eurdf.advice import limits as module
 
     robot = eurdf.load("four_bar", geometry=False)
     closed = eurdf.forward_kinematics(robot, {"motor_crank": 2.0})

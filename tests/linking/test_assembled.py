@@ -12,11 +12,10 @@ from hypothesis import strategies as st
 
 import eurdf
 from eurdf.linking.configurations import beyond_limits
-from eurdf.linking.description import describe
+from eurdf.linking.robot_files import read_robot
 from eurdf.pinocchio.robot import build_robot
-from eurdf.writing.assembled import CLOSED_IN_FULL, with_closed_configuration
-from support.described import written
-from support.star import STAR
+from eurdf.writing.saved_configuration import CLOSED_IN_FULL, with_closed_configuration
+from support.described import STAR, written
 
 ROBOTS = Path(__file__).parents[2] / "robots"
 
@@ -36,7 +35,7 @@ def test_configuration_of_every_joint_type_survives_round_trip(
     tmp_path_factory: pytest.TempPathFactory, data: st.DataObject, joints: str, root: str
 ) -> None:
     path = written(tmp_path_factory.mktemp("star"), STAR, f"root: {root}\njoints: {joints}\n")
-    description = describe(path, geometry=False)
+    description = read_robot(path, geometry=False)
     assert description.mechanism is not None
     robot = build_robot(description.mechanism, geometry=False)
     nv = robot.model.nv
@@ -52,7 +51,7 @@ def test_configuration_of_every_joint_type_survives_round_trip(
 
 @pytest.mark.parametrize("name", ["bennett", "digit_leg", "five_bar_6d", "stewart_platform", "unitree_g1_ankle"])
 def test_written_assembly_is_closed_when_read(name: str, tmp_path: Path) -> None:
-    description = describe(ROBOTS / name, geometry=False)
+    description = read_robot(ROBOTS / name, geometry=False)
     assert description.mechanism is not None
     robot = build_robot(description.mechanism, geometry=False)
     away = np.random.default_rng(1).uniform(-0.1, 0.1, robot.model.nv)

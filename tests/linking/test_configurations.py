@@ -17,62 +17,11 @@ from eurdf.mechanism.mechanism import Root
 from eurdf.pinocchio.configuration import configuration_vector
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand
-from support.by_hand import rotation
-from support.described import at, codes, link_poses, load, written
-from support.star import STAR
-
-HALF = math.sqrt(0.5)
+from support.described import STAR, at, codes, load, written
 
 WORKBENCH = Path(__file__).parents[1] / "data" / "workbench.yaml"
-HALF_LIMITED = "{d: {type: universal, axes: xy, limits: {lower: [0, 0], upper: [0, 1]}}}"
 
 JOINTS = "joints: {d: spherical}\n"
-
-#: joints, what a configuration says of a joint, that joint, its part of q
-WRITTEN = [
-    ("{}", "a: 0.5", "a", [0.5]),
-    ("{}", "a: [0.5]", "a", [0.5]),
-    ("{}", "b: 0.5", "b", [math.cos(0.5), math.sin(0.5)]),
-    ("{}", "b: 7", "b", [math.cos(7), math.sin(7)]),
-    ("{}", "c: -1.5", "c", [-1.5]),
-    ("{}", "e: [1, 2, 0.5]", "e", [1, 2, math.cos(0.5), math.sin(0.5)]),
-    ("{}", "f: [1, 2, 3, 0.5, -0.5, 0.5, 0.5]", "f", [1, 2, 3, 0.5, -0.5, 0.5, 0.5]),
-    ("{d: spherical}", "d: [0.6, 0, 0, 0.8]", "d", [0.6, 0, 0, 0.8]),
-    ("{d: spherical}", "d: [0.6, 0, 0, -0.8]", "d", [0.6, 0, 0, -0.8]),
-    ("{d: {type: universal, axes: xy}}", "d: [0.1, 0.2]", "d", [0.1, 0.2]),
-    ("{d: cylindrical}", "d: [7, 0.2]", "d", [7, 0.2]),
-    ("{d: {type: helical, pitch: 1}}", "d: 0.2", "d", [0.2]),
-    ("{b: {type: helical, pitch: 1}}", "b: 20", "b", [20]),
-]
-
-
-@pytest.mark.parametrize(("joints", "says", "name", "numbers"), WRITTEN)
-@pytest.mark.parametrize("root", ["fixed", "floating"])
-def test_configuration_fills_its_joints_others_are_neutral(
-    joints: str, says: str, name: str, numbers: list[float], root: str
-) -> None:
-    loaded = load(STAR, f"joints: {joints}\nconfigurations: {{ready: {{{says}}}}}\n", root=root)
-    idx_q, nq, _, _ = at(loaded.model, name)
-    q = loaded.configurations["ready"]
-    np.testing.assert_allclose(q[idx_q : idx_q + nq], numbers, atol=1e-12)
-    others = np.delete(q, range(idx_q, idx_q + nq))
-    np.testing.assert_array_equal(others, np.delete(pin.neutral(loaded.model), range(idx_q, idx_q + nq)))
-
-
-def test_empty_configuration_is_neutral() -> None:
-    loaded = load(STAR, "configurations: {zero: {}}\n")
-    np.testing.assert_array_equal(loaded.configurations["zero"], pin.neutral(loaded.model))
-
-
-def test_configurations_are_in_file_order() -> None:
-    loaded = load(STAR, "configurations: {z: {}, a: {a: 1}, m: {}}\n")
-    assert list(loaded.configurations) == ["z", "a", "m"]
-
-
-def test_first_universal_angle_is_about_first_axis() -> None:
-    loaded = load(STAR, "joints: {d: {type: universal, axes: xy}}\nconfigurations: {ready: {d: [0.5, 1.5]}}\n")
-    turned = link_poses(loaded.model, loaded.configurations["ready"])["ld"][:3, :3]
-    np.testing.assert_allclose(turned, rotation((1, 0, 0), 0.5) @ rotation((0, 1, 0), 1.5), atol=1e-12)
 
 
 @settings(max_examples=50, deadline=None)
@@ -90,53 +39,6 @@ def test_nearly_unit_quaternion_is_normalized_others_refused(direction: tuple[fl
     found = loaded.configurations["ready"][idx_q : idx_q + 4]
     assert np.linalg.norm(found) == pytest.approx(1.0, abs=1e-12)
     np.testing.assert_allclose(found, np.array(direction) / norm, atol=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("joints", "says", "error"),
-    [
-        ("{}", "a: 2.000000002", "configuration-limits"),
-        ("{}", "a: -2.000000002", "configuration-limits"),
-        ("{}", "a: 2.0000000005", ""),
-        ("{}", "b: 100.3", ""),
-        ("{a: {limits: {upper: 1}}}", "a: 1.5", "configuration-limits"),
-        ("{a: {limits: {upper: 3}}}", "a: 2.5", ""),
-        ("{d: {type: universal, axes: xy}}", "d: [0, 2.1]", "configuration-limits"),
-        ("{a: {limits: {lower: 0, upper: 0}}}", "a: 1.5", ""),
-        ("{a: {limits: {lower: 0, upper: 0.1}}}", "a: -0.1", "configuration-limits"),
-        ("{a: {limits: {lower: 0.1, upper: 0.1}}}", "a: 0.2", "configuration-limits"),
-        ("{d: {type: universal, axes: xy, limits: {lower: [0, 0], upper: [0, 1]}}}", "d: [2, 0.5]", ""),
-        (
-            "{d: {type: universal, axes: xy, limits: {lower: [0, 0], upper: [0, 1]}}}",
-            "d: [2, 1.5]",
-            "configuration-limits",
-        ),
-        ("{d: cylindrical}", "d: [2.1, 0]", ""),
-        ("{d: cylindrical}", "d: [0, 2.1]", "configuration-limits"),
-        ("{c: cylindrical}", "c: [0, 2.1]", ""),
-        ("{c: cylindrical}", "c: [2.1, 0]", "configuration-limits"),
-        # 2 m of travel at 1 m a revolution are two turns.
-        ("{c: {type: helical, pitch: 1}}", f"c: {2.01 * math.tau}", "configuration-limits"),
-        ("{c: {type: helical, pitch: 1}}", f"c: {1.99 * math.tau}", ""),
-        ("{}", "e: [100, 100, 100.3]", ""),
-        ("{a: {limits: {lower: 0.000000002}}}", "b: 0.5", "configuration-limits"),
-        ("{a: {limits: {lower: 0.0000000005}}}", "b: 0.5", ""),
-        ("{a: {limits: {lower: 0.1}}, c: {limits: {upper: -0.1}}}", "b: 0.5", "configuration-limits"),
-        ("{a: {limits: {lower: 0.1}}, c: {limits: {upper: -0.1}}}", "a: 0.1, c: -0.1", ""),
-        ("{a: {limits: {lower: 0.1}}}", "aa: 0.5", "configuration-joint"),
-        ("{d: {type: universal, axes: xy, limits: {lower: [0, 0.1]}}}", "b: 0.5", "configuration-limits"),
-        ("{}", "a: []", "wrong-length"),
-        ("{}", "e: [1, 2]", "configuration-length"),
-        ("{}", "f: [0, 0, 0, 0, 0, 0, 2]", "configuration-quaternion"),
-        ("{d: spherical}", "d: 0.5", "configuration-length"),
-        ("{d: spherical}", f"d: [0, 0, {HALF}]", "configuration-length"),
-        ("{}", "g: 0", "configuration-joint"),
-        ("{a: fixed}", "a: 0", "configuration-joint"),
-        ("{}", "la: 0", "configuration-joint"),
-    ],
-)
-def test_coordinate_respects_limits_of_the_description(joints: str, says: str, error: str) -> None:
-    assert codes(STAR, f"joints: {joints}\nconfigurations: {{ready: {{{says}}}}}\n") == ([error] if error else [])
 
 
 def test_message_says_what_to_write_of_joints_left_out(tmp_path: Path) -> None:
@@ -191,7 +93,7 @@ def test_coordinates_invert_configurations(data: st.DataObject, seed: int, root:
     coordinates = robot.coordinates(q)
     assert ("root_joint" in coordinates) == (root == "floating")
     for joint in mechanism.joints:
-        assert len(coordinates.get(joint.name, ())) == len(joint.coordinates.names)
+        assert len(coordinates.get(joint.name, ())) == len(joint.type.coordinates)
     np.testing.assert_allclose(configuration_vector(mechanism, robot.model, coordinates), q, rtol=0.0, atol=1e-12)
 
 
@@ -206,13 +108,6 @@ def test_coordinates_name_mimic_joints_only_if_free(data: st.DataObject, root: R
     assert ("follow" in coordinates) != mimic
     back = configuration_vector(robot.mechanism, robot.model, coordinates)
     np.testing.assert_allclose(back, q, rtol=0.0, atol=1e-12)
-
-
-def test_coordinates_of_named_configuration_match_file() -> None:
-    robot = eurdf.load(WORKBENCH, geometry=False)
-    coordinates = robot.coordinates(robot.configurations["ready"])
-    stated = {name: values for name, values in coordinates.items() if name in ("motor", "grip", "hand_ball", "elbow")}
-    assert stated == {"motor": (0.5,), "elbow": (0.0,), "hand_ball": (0.0, 0.0, 0.0, 1.0), "grip": (0.1,)}
 
 
 @pytest.mark.parametrize("shape", [(0,), (3,), (1, 12)])

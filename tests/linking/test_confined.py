@@ -132,7 +132,7 @@ def test_excerpt_is_that_of_the_text_that_was_read(folder: Path) -> None:
 
 def test_pipe_that_becomes_a_file_is_an_error(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (folder / "robot.urdf").write_text(URDF, encoding="utf-8")
-    monkeypatch.setattr("eurdf.reading.given._is_pipe", lambda path: True)
+    monkeypatch.setattr("eurdf.reading.robot_source._is_pipe", lambda path: True)
     assert codes(eurdf.check("robot.urdf")) == ["file-unreadable"]
 
 

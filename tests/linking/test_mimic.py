@@ -12,7 +12,6 @@ import pytest
 import eurdf
 from eurdf.commands.main import main
 from eurdf.diagnostics import did_you_mean
-from eurdf.mechanism.mimic import Mimic, drivers
 from support.described import LIMITED, body, codes, load, revolute, written
 from support.plain_urdf import inertial, joint_element, link_element, pinocchios_own, robot
 
@@ -44,42 +43,10 @@ MISTAKES = {
 # -- version 1 --------------------------------------------------------------------------------------------------------
 
 
-def test_version_1_ignores_mimics() -> None:
-    found = load(gripper(), "name_mot: [left, drive]\n")
-    assert found.model == pinocchios_own(gripper(), mimic=False)
-    assert (found.model.nv, found.actuation.joints) == (2, ("left", "drive"))
-    assert [joint.mimic for joint in found.mechanism.joints] == [None, None, None]
-
-
-@pytest.mark.parametrize("title", MISTAKES)
-def test_version_1_ignores_which_joint_is_mimicked(title: str) -> None:
-    assert codes(MISTAKES[title], "name_mot: [left]\n") == []
-    assert load(MISTAKES[title], "name_mot: [left]\n").model.nv == 2
-
-
 def test_version_1_advises_on_unmentioned_mimic_joint() -> None:
     assert codes(gripper(), "name_mot: [drive]\n") == ["x-mimic-ignored"]
     assert codes(gripper(), "name_mot: [drive]\njoint_name: [left]\njoint_type: [SPHERICAL]\n") == []
     assert codes(gripper(), "note: 1\n") == codes(gripper(), "actuators: [drive]\n") == codes(gripper()) == []
-
-
-def test_version_1_can_change_mimic_joints_and_leaders() -> None:
-    found = load(gripper(), "joint_name: [left, drive]\njoint_type: [SPHERICAL, FIXED]\n")
-    assert [joint.shortname() for joint in found.model.joints][1:] == ["JointModelSpherical"]
-
-
-@pytest.mark.parametrize(
-    ("mimic", "code"),
-    [('<mimic joint="drive" offset="1 rad"/>', "urdf-bad-number"), ("<mimic/>", "urdf-missing-attribute")],
-)
-def test_version_1_refuses_malformed_mimic(mimic: str, code: str) -> None:
-    text = gripper().replace(MIMIC.format("drive", -2, 0.1), mimic)
-    assert codes(text, "name_mot: [drive]\n") == codes(text, "actuators: [drive]\n") == [code]
-
-
-def test_invalid_yaml_leaves_mimics_undecided(tmp_path: Path) -> None:
-    folder = written(tmp_path, MISTAKES["urdf-mimic-unknown"], "closures: [\n").parent
-    assert [found.code for found in eurdf.check(folder).diagnostics] == ["yaml-syntax"]
 
 
 def test_migrate_frees_mimic_joints_that_version_1_ignores(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -171,43 +138,6 @@ def test_configurations_place_free_joints_as_mimics() -> None:
         np.testing.assert_allclose((q[at["drive"]], q[at["left"]]), (drive, left), atol=1e-15)
 
 
-def test_configuration_omits_mimic_of_replaced_leader() -> None:
-    yaml = "joints: {drive: spherical}\nconfigurations: {ready: {drive: [0, 0, 0, 1]}}\n"
-    assert set(load(gripper(), yaml, mimic=False).mechanism.configurations["ready"]) == {"drive"}
-
-
-@pytest.mark.parametrize("joint", ["drive", "nobody", "tip"])
-def test_mimic_of_fixed_joint_is_warned(joint: str) -> None:
-    text = gripper(more=f'<mimic joint="{joint}"/>')
-    for yaml in ("", "actuators: [drive]\n"):
-        assert codes(text, yaml) == ["urdf-mimic-fixed"]
-    assert load(text).model == load(gripper()).model
-    assert codes(text, "name_mot: [drive, left]\n") == []
-
-
-def test_joint_cannot_mimic_fixed_mimic_joint() -> None:
-    assert set(codes(gripper("tip", more='<mimic joint="drive"/>'))) == {"urdf-mimic-kind", "urdf-mimic-fixed"}
-
-
-def test_joint_with_several_coordinates_cannot_mimic() -> None:
-    assert codes(gripper(kind="floating")) == ["urdf-mimic-kind"]
-
-
-# -- chains -----------------------------------------------------------------------------------------------------------
-
-
-def test_mimic_chain_composes_and_cycle_has_none() -> None:
-    mimics = {
-        "c": Mimic("b", 2.0, 1.0),
-        "b": Mimic("a", -3.0, 0.5),
-        "into": Mimic("x", 1.0, 0.0),
-        "x": Mimic("y", 1.0, 0.0),
-        "y": Mimic("x", 1.0, 0.0),
-        "later": Mimic("into", 1.0, 0.0),
-    }
-    assert drivers(mimics) == {"b": Mimic("a", -3.0, 0.5), "c": Mimic("a", -6.0, 2.0)}
-
-
 # -- hints ------------------------------------------------------------------------------------------------------------
 
 
@@ -241,3 +171,41 @@ def test_mimic_hint_excludes_the_joint_itself() -> None:
     hints = {found.message.split("'")[1]: found.hint for found in load(text, mimic=False).diagnostics}
     assert hints["right_hand_index_q2"] == "did you mean 'right_hand_index_q1'?"
     assert hints["left_index_q2"] != "did you mean 'left_index_q2'?"
+
+
+# -- freed, in version 2.1 ------------------------------------------------------------
+
+HEAD = 'extended_urdf: "2.1"\n'
+
+
+def chain() -> str:
+    """`third` mimics `second`, which mimics `first`."""
+    law = '<mimic joint="{}" multiplier="{}" offset="0.1"/>'
+    return robot(
+        link_element("base", inertial()),
+        *(body(name) for name in ("one", "two", "three")),
+        revolute("first", "base", "one"),
+        joint_element("second", "revolute", "one", "two", LIMITED.format("1 0 0") + law.format("first", 2)),
+        joint_element("third", "revolute", "two", "three", LIMITED.format("0 1 0") + law.format("second", -3)),
+    )
+
+
+def test_freed_joints_make_the_model_without_mimics() -> None:
+    yaml = f"{HEAD}joints: {{second: {{mimic: false}}, third: {{mimic: false}}}}\n"
+    assert load(chain(), yaml).model == load(chain(), mimic=False).model
+
+
+def test_freed_joint_left_out_of_a_configuration_is_neutral() -> None:
+    more = "joints: {third: {mimic: false}}\nconfigurations: {bent: {first: 0.2}}\n"
+    found = load(chain(), HEAD + more)
+    assert found.coordinates(found.configurations["bent"])["third"] == (0.0,)
+    every = load(chain(), HEAD + more, mimic=False)
+    at = every.coordinates(every.configurations["bent"])
+    assert (at["third"], at["second"]) == ((0.0,), (pytest.approx(0.5),))
+
+
+def test_spring_of_mimic_joint_acts_on_the_first_leader() -> None:
+    found = load(chain(), f"{HEAD}joints: {{third: {{stiffness: 5, rest: 0.3}}}}\n")
+    (force,) = found.tree.springs.force(found.tree.neutral() + 0.2, 1)
+    third = -3.0 * (2.0 * 0.2 + 0.1) + 0.1
+    assert force == pytest.approx(-(-3.0 * 2.0) * 5.0 * (third - 0.3))

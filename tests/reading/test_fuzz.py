@@ -17,7 +17,7 @@ from benchmarks.fuzz.case import Case, case_of, read_case
 from benchmarks.fuzz.finding import Finding, minimized
 from benchmarks.fuzz.watched import Outcome, Watched
 from eurdf_conformance.protocol.reply import rejected
-from support.node_packages import MODULES, why_not_installed
+from support.processes import MODULES, why_not_installed
 
 MISSING = why_not_installed("yaml", "saxes")
 

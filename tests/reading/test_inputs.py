@@ -15,9 +15,10 @@ from eurdf.collection.near_paths import near_path
 from eurdf.diagnostics import FileError
 from eurdf.diagnostics.sarif import sarif_log
 from eurdf.diagnostics.text import report_lines
-from eurdf.reading import given
-from eurdf.reading.given import source_of
-from support.arm import DESCRIPTION, URDF
+from eurdf.reading import robot_source
+from eurdf.reading.robot_source import source_of
+from support.described import ARM as URDF
+from support.described import ARM_DESCRIPTION as DESCRIPTION
 
 FOUR_BAR = Path(__file__).parents[2] / "robots" / "four_bar"
 MISSPELT = DESCRIPTION.replace("shoulder", "sholder")
@@ -202,11 +203,11 @@ def test_silent_program_is_error() -> None:
 
 def test_slow_pipe_writer_is_awaited(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     os.mkfifo("pipe")
-    monkeypatch.setattr(given, "PATIENCE", 0.2)
+    monkeypatch.setattr(robot_source, "PATIENCE", 0.2)
     assert "nothing writes" in str(eurdf.check("pipe").diagnostics[0])
     writer = subprocess.Popen(["sh", "-c", "exec > pipe; sleep 0.5; cat robot"], text=True)
     (folder / "robot").write_text(URDF, encoding="utf-8")
-    monkeypatch.setattr(given, "PATIENCE", 30)
+    monkeypatch.setattr(robot_source, "PATIENCE", 30)
     assert eurdf.check("pipe").ok
     assert writer.wait(timeout=10) == 0
 

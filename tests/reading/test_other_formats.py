@@ -8,8 +8,8 @@ import pytest
 
 import eurdf
 from eurdf.commands.main import main
-from eurdf.importing.formats import FORMATS
-from eurdf.importing.recognition import recognized
+from eurdf.convert.import_format import import_format
+from eurdf.convert.xml_elements import recognized
 from eurdf.reading.other_formats import IMPORTED
 
 LINKS = (
@@ -111,5 +111,5 @@ def test_long_preamble_takes_no_time(tmp_path: Path) -> None:
     assert not eurdf.check(tmp_path / "robot.sdf").ok
 
 
-def test_table_has_every_format_that_is_imported() -> None:
-    assert list(IMPORTED) == list(FORMATS)
+def test_every_format_of_the_table_is_imported() -> None:
+    assert [import_format(name).name for name in IMPORTED] == list(IMPORTED)

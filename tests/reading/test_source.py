@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from eurdf.diagnostics import FileError
 from eurdf.reading.source import FILE_LIMIT, Source, read_source
-from support.watchdog import watchdog
+from support.processes import watchdog
 
 
 def error_of(path: str | os.PathLike[str], **options: int) -> FileError:
@@ -25,17 +25,6 @@ def write(folder: Path, data: bytes) -> Path:
     path = folder / "robot.yaml"
     path.write_bytes(data)
     return path
-
-
-def test_text_is_file_content_with_line_breaks(tmp_path: Path) -> None:
-    data = "é: 1\r\nb: 日本\rc: 🤖\n".encode()
-    source = read_source(write(tmp_path, data))
-    assert source == Source(str(tmp_path / "robot.yaml"), data.decode(), data)
-
-
-def test_byte_order_mark_is_not_part_of_text(tmp_path: Path) -> None:
-    source = read_source(write(tmp_path, b"\xef\xbb\xbfa: 1"))
-    assert (source.text, source.data) == ("a: 1", b"a: 1")
 
 
 def test_file_is_named_as_given(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -65,10 +54,6 @@ def test_file_of_the_kernel_is_refused(name: str) -> None:
     diagnostic = error_of(f"/proc/self/{name}").diagnostic
     assert diagnostic.code == "file-unreadable"
     assert "not a regular file" in diagnostic.message
-
-
-def test_empty_file_is_read(tmp_path: Path) -> None:
-    assert read_source(write(tmp_path, b"")).text == ""
 
 
 def test_missing_file_is_reported(tmp_path: Path) -> None:
@@ -111,21 +96,6 @@ def test_utf_16_and_utf_32_are_refused_with_hint(tmp_path: Path, encoding: str) 
     assert "UTF-8" in str(diagnostic.hint)
 
 
-@pytest.mark.parametrize(
-    ("data", "position"),
-    [
-        (b"caf\xe9: 1", (1, 4)),
-        ("é: 1\r\nü: x".encode() + b"\x80", (2, 5)),
-        (b"a: 1\n\xed\xa0\x80", (2, 1)),  # a surrogate
-        (b"a: 1\nb: \xc3", (2, 4)),
-        (b"\x89PNG\r\n\x1a\n\0\0", (1, 1)),
-    ],
-)
-def test_non_utf_8_is_refused_at_first_byte(tmp_path: Path, data: bytes, position: tuple[int, int]) -> None:
-    diagnostic = error_of(write(tmp_path, data)).diagnostic
-    assert (diagnostic.code, diagnostic.line, diagnostic.column) == ("file-not-utf8", *position)
-
-
 @given(st.text(alphabet="ab\n\ré\x85\x0b\x0c\x1c\u2028🤖"))
 def test_lines_and_columns_match_editors(text: str) -> None:
     source = Source("robot.yaml", text, text.encode())
@@ -133,10 +103,3 @@ def test_lines_and_columns_match_editors(text: str) -> None:
         if text[index - 1 : index + 1] != "\r\n":
             lines = re.split(r"\r\n|\r|\n", text[:index])
             assert source.position(index) == (len(lines), len(lines[-1]) + 1)
-
-
-def test_multi_line_place_has_no_end_column() -> None:
-    source = Source("robot.yaml", "ab\ncd", b"ab\ncd")
-    place = source.place(1, 2, "/a")
-    assert (place.line, place.column, place.end_column, place.pointer) == (1, 2, 3, "/a")
-    assert source.place(1, 4).end_column is None

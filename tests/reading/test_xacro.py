@@ -10,7 +10,7 @@ import pytest
 import eurdf
 from eurdf.commands.main import main
 from eurdf.diagnostics.text import report_lines
-from eurdf.linking.description import describe
+from eurdf.linking.robot_files import read_robot
 from eurdf.reading import xacro
 from eurdf.viewing.files import RobotOnDisk
 
@@ -151,8 +151,8 @@ def test_named_xacro_does_not_see_the_environment(folder: Path, where: str, monk
     content = f"<link name=\"seen ${{({path}).format(xacro.load_yaml).count('swordfish')}} times\"/>"
     describe_arm(folder, robot_with(content))
     (folder / "arm.yaml").write_text('extended_urdf: "2.0"\nurdf: arm.urdf.xacro\n', encoding="utf-8")
-    assert [body.name for body in describe("arm.yaml").mechanism.bodies] == ["seen 0 times"]
-    assert [body.name for body in describe("arm.urdf.xacro").mechanism.bodies] == ["seen 1 times"]
+    assert [body.name for body in read_robot("arm.yaml").mechanism.bodies] == ["seen 0 times"]
+    assert [body.name for body in read_robot("arm.urdf.xacro").mechanism.bodies] == ["seen 1 times"]
 
 
 def test_links_of_an_installer_are_followed(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -245,7 +245,7 @@ def test_package_files_are_found_like_meshes(folder: Path, monkeypatch: pytest.M
     Path("robot.yaml").write_text('extended_urdf: "2.0"\nurdf: robot.xacro\n', encoding="utf-8")
     for path in ("robot.xacro", "robot.yaml"):
         for dirs in ([package.parent], [package], str(package.parent)):
-            found = describe(path, package_dirs=dirs)
+            found = read_robot(path, package_dirs=dirs)
             assert [body.name for body in found.mechanism.bodies] == ["foot"], list(found.diagnostics)
     assert "--package-dir" in eurdf.check("robot.yaml").errors[0].message
     monkeypatch.setenv("AMENT_PREFIX_PATH", os.fspath(folder / "install"))

@@ -13,13 +13,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from eurdf.collection import collection_names
 from eurdf.diagnostics import Diagnostic, FileError, Place
 from eurdf.reading.core_schema import resolve
-from eurdf.reading.source import FILE_LIMIT, Source, read_source
-from eurdf.reading.yaml_reader import DEPTH_LIMIT, DIRECTIVE_LIMIT, NODE_LIMIT, YamlDocument, read_yaml
-from eurdf.reading.yaml_values import usual_values
-from support.watchdog import watchdog
+from eurdf.reading.source import FILE_LIMIT, Source
+from eurdf.reading.yaml_reader import NODE_LIMIT, YamlDocument, read_yaml
+from support.processes import watchdog
 
 ROBOTS = Path(__file__).parents[2] / "robots"
 
@@ -51,7 +49,6 @@ metadata:
 """
 
 #: The same values, without anchor and alias.
-USUAL = SAMPLE.replace("&tip ", "").replace("*tip", "[0, 0, 0.31]")
 
 
 def source_of(text: str) -> Source:
@@ -80,75 +77,6 @@ def meant(text: str, place: Place) -> str:
 
 
 @pytest.mark.parametrize(
-    ("scalar", "value"),
-    [
-        *((text, None) for text in ("", "~", "null", "Null", "NULL")),
-        *((text, True) for text in ("true", "True", "TRUE")),
-        *((text, False) for text in ("false", "False", "FALSE")),
-        *((text, text) for text in ("no", "No", "yes", "on", "off", "y", "n", "nUll", "tRUE", "none", "None")),
-        *(("0", 0), ("-0", 0), ("12", 12), ("+12", 12), ("-12", -12), ("012", 12), ("0000", 0)),
-        *(("0o17", 15), ("0x1F", 31), ("0xabcDEF", 0xABCDEF)),
-        *((text, text) for text in ("0o8", "0xg", "-0x1F", "+0o7", "0b11", "0O7", "0X1F", "1_000", "1,5", "12:30")),
-        *(("1.5", 1.5), ("-1.5", -1.5), ("+1.0", 1.0), (".5", 0.5), ("-.5", -0.5), ("5.", 5.0), ("012.5", 12.5)),
-        *(("1e3", 1000.0), ("1e-3", 0.001), ("1E+3", 1000.0), ("5.e1", 50.0), (".5e1", 5.0), ("1e-400", 0.0)),
-        *((text, text) for text in (".", "e3", ".e3", "1e", "1e+", "1.2.3", "1.0f", "1_0.5", "+", "-", "- ".strip())),
-        *((text, text) for text in (".iNF", "inf", "Infinity", "nan", "NaN", "+.nan", "-.nan")),
-        *((text, text) for text in ("2001-12-14", "<<", "=", "robot", "1 2", "0.1.0", "٣", "\uff11")),
-        *(("1" + "0" * 308, 10**308), ("-" + "0" * 5000 + "7", -7)),
-        *(('"12"', "12"), ("'true'", "true"), ("''", ""), ('"\\u0000"', "\0"), ("'it''s'", "it's")),
-    ],
-)
-def test_scalars_follow_yaml_1_2_core_schema(scalar: str, value: object) -> None:
-    found = read(f"key: {scalar}\n").data["key"] if scalar != "-" else resolve(scalar)
-    assert found == value
-    assert type(found) is type(value)
-
-
-@pytest.mark.parametrize(
-    ("node", "value"),
-    [
-        *(
-            ("!!str 12", "12"),
-            ("!!str", ""),
-            ("!!str null", "null"),
-            ("! 12", "12"),
-            ("! [1]", [1]),
-            ("! {a: 1}", {"a": 1}),
-        ),
-        *(("!!int 12", 12), ('!!int "0x10"', 16), ("!!float 1", 1.0), ("!!float '1e3'", 1000.0)),
-        *(("!!bool true", True), ("!!bool 'False'", False), ("!!null ''", None), ("!!null ~", None)),
-        *(("!!map {a: 1}", {"a": 1}), ("!!seq [1]", [1]), ("!<tag:yaml.org,2002:str> 1", "1"), ("&x ! 1", "1")),
-    ],
-)
-def test_core_schema_tag_is_honoured(node: str, value: object) -> None:
-    found = read(f"key: {node}\n").data["key"]
-    assert found == value
-    assert type(found) is type(value)
-
-
-@pytest.mark.parametrize(
-    "text", ["%TAG ! tag:yaml.org,2002:\n---\na: !str 1\n", "%TAG !c! tag:yaml.org,2002:\n---\na: !c!str 1\n"]
-)
-def test_tag_directive_can_rename_core_prefix(text: str) -> None:
-    assert read(text).data == {"a": "1"}
-
-
-@pytest.mark.parametrize(
-    "node",
-    [
-        *("!!int x", "!!int 1.0", "!!int ''", "!!float x", "!!float 0x1", "!!bool yes", "!!null 0", "!!int {}"),
-        *("!!seq {}", "!!map []", "!!str []", "!!map x", "!!seq x"),
-        *("!mine x", "!!set {a}", "!!timestamp 2001-12-14", "!!binary aGk=", "!!python/name:os.system x", "!e!x 1"),
-        *("!<tag:example.org,2026:x> 1", "!mine {a: 1}", "!mine [1]"),
-    ],
-)
-def test_unknown_or_mismatched_tag_is_refused(node: str) -> None:
-    text = f"key: {node}\n"
-    diagnostic = error_of(text)
-    assert (diagnostic.code, diagnostic.line, diagnostic.column) == ("yaml-unknown-tag", 1, 6)
-
-
-@pytest.mark.parametrize(
     "number",
     [".inf", "-.INF", "+.Inf", ".nan", ".NaN", "1e999", "-1e400", "1" + "0" * 309, "-" + "9" * 5000, "0x1" + "0" * 300],
 )
@@ -157,26 +85,6 @@ def test_number_beyond_double_is_refused(number: str) -> None:
     assert (diagnostic.code, diagnostic.pointer) == ("yaml-not-finite", "/a/0")
     assert (diagnostic.line, diagnostic.column) == (2, 5)
     assert len(diagnostic.message) < 120
-
-
-@pytest.mark.parametrize("mark", ["\x85", "\u2028", "\u2029"])
-def test_only_lf_and_cr_break_lines(mark: str) -> None:
-    document = read(f"a: one{mark}two # three\nb: '{mark}'\n{mark}c: {mark}\n")
-    assert document.data == {"a": f"one{mark}two", "b": mark, f"{mark}c": mark}
-    assert document.place((f"{mark}c",)).line == 3
-
-
-def test_substituted_unicode_line_breaks_are_restored() -> None:
-    text = "a: \U00010000\x85\U00010001\u2028\U00010003\u2029\n"
-    assert read(text).data == {"a": "\U00010000\x85\U00010001\u2028\U00010003\u2029"}
-
-
-def test_merge_key_is_ordinary_key() -> None:
-    assert read("base: &b {x: 1}\nderived: {<<: *b, y: 2}\n").data["derived"] == {"<<": {"x": 1}, "y": 2}
-
-
-def test_document_markers_and_yaml_1_2_directive_are_accepted() -> None:
-    assert read("%YAML 1.2\n---\na: 1\n...\n# the end\n").data == {"a": 1}
 
 
 # The place of a value
@@ -327,15 +235,6 @@ def test_missing_value_has_place_of_parent(pointer: Pointer, nearest: Pointer) -
     assert found.pointer == "/" + "/".join(map(str, pointer))
 
 
-def test_pointer_is_escaped_as_in_rfc_6901() -> None:
-    assert read("a/b: {m~n: [1]}\n").place(("a/b", "m~n", 0)).pointer == "/a~1b/m~0n/0"
-
-
-def test_omitted_value_is_after_its_colon() -> None:
-    place = read("a: 1\nroot:\nb: 2\n").place(("root",))
-    assert (place.line, place.column) == (2, 6)
-
-
 # Keys
 
 
@@ -359,16 +258,6 @@ def test_non_string_key_is_refused(key: str, what: str, hint: str | None) -> Non
     assert (diagnostic.line, diagnostic.pointer) == (3, "/a")
 
 
-def test_alias_of_string_is_valid_key() -> None:
-    document = read("a: &name knee\n*name : 1\n")
-    assert document.data == {"a": "knee", "knee": 1}
-    assert document.place(("knee",), key=True).line == 2
-
-
-def test_alias_of_list_is_refused_as_key() -> None:
-    assert error_of("a: &list [1]\n*list : 1\n").code == "yaml-key-not-string"
-
-
 @pytest.mark.parametrize(
     "text",
     ["a: {b: 1, c: 2, b: 3}\n", "a:\n  b: 1\n  c: 2\n  b: 3\n", "a:\n  b: 1\n  'b': 3\n", 'a: {b: 1, "\\x62": 3}'],
@@ -388,25 +277,6 @@ def test_duplicate_key_is_refused_at_second_place(text: str) -> None:
 # Aliases
 
 
-def test_alias_refers_to_last_anchor() -> None:
-    assert read("a: &x 1\nb: *x\nc: &x [2]\nd: *x\n").data == {"a": 1, "b": 1, "c": [2], "d": [2]}
-
-
-@pytest.mark.parametrize(
-    ("text", "pointer"),
-    [
-        ("a: *x\n", "/a"),
-        ("a: &knee 1\nb: [0, *kne]\n", "/b/1"),
-        ("a: &x [1, *x]\n", "/a/1"),
-        ("a: &x {b: {c: *x}}\n", "/a/b/c"),
-    ],
-)
-def test_undefined_or_recursive_alias_is_refused(text: str, pointer: str) -> None:
-    diagnostic = error_of(text)
-    assert (diagnostic.code, diagnostic.pointer) == ("yaml-alias", pointer)
-    assert meant(text, diagnostic.place).startswith("*")
-
-
 def test_alias_bomb_is_refused_before_expansion() -> None:
     lines = ["a0: &a0 [x]"] + [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 9)}]" for n in range(1, 30)]
     assert error_of("\n".join(lines)).code == "yaml-alias"
@@ -416,26 +286,7 @@ def test_alias_counts_as_one_node() -> None:
     assert error_of("a: &a 1\nb: [" + "*a," * NODE_LIMIT + "]").code == "file-too-large"
 
 
-def test_aliases_below_expansion_bound_are_accepted() -> None:
-    document = read("a: &a [" + "1," * 900 + "]\nb: [" + "*a," * 100 + "]\n")
-    assert document.data["b"] == [[1] * 900] * 100
-
-
-def test_aliases_count_toward_nesting_limit() -> None:
-    half = DEPTH_LIMIT // 2
-    text = "a: &a " + "[" * half + "]" * half + "\nb: " + "[" * (half - 1) + "{}" + "]" * (half - 1)
-    read(text.replace("{}", "*a"))
-    assert error_of(text.replace("{}", "[*a]")).code == "yaml-too-deep"
-
-
 # Hostile files
-
-
-def test_nesting_limit_is_64_levels() -> None:
-    inner = DEPTH_LIMIT - 1
-    read("a: " + "[" * inner + "]" * inner)
-    diagnostic = error_of("a: " + "[" * (inner + 1) + "]" * (inner + 1))
-    assert (diagnostic.code, diagnostic.column) == ("yaml-too-deep", 4 + inner)
 
 
 @pytest.mark.parametrize("opening", ["[", "{a: ", "- ", "? ", "[\n", "[{a: "])
@@ -456,10 +307,6 @@ def test_endless_nesting_is_refused(opening: str) -> None:
 )
 def test_size_limit_is_enforced(text: str) -> None:
     assert error_of(text).code == "file-too-large"
-
-
-def test_few_tag_directives_are_accepted() -> None:
-    assert read("".join(f"%TAG !a{n}! b\n" for n in range(DIRECTIVE_LIMIT)) + "---\na: 1\n").data == {"a": 1}
 
 
 @pytest.mark.parametrize(
@@ -511,10 +358,6 @@ def test_byte_order_mark_is_refused_outside_quotes(text: str, line: int, column:
     assert "U+FEFF" in diagnostic.message
 
 
-def test_byte_order_marks_in_quotes_are_characters() -> None:
-    assert read('"a\ufeff": [\'\ufeff\', "\ufeff\u2028"] # end').data == {"a\ufeff": ["\ufeff", "\ufeff\u2028"]}
-
-
 def test_damaged_file_gives_document_or_error() -> None:
     chance = random.Random(1)
     junk = [
@@ -529,7 +372,7 @@ def test_damaged_file_gives_document_or_error() -> None:
     ]
     outcomes = set()
     for _ in range(3000):
-        text = chance.choice([SAMPLE, USUAL])
+        text = SAMPLE
         for _ in range(chance.randint(1, 4)):
             start = chance.randrange(len(text))
             end = start + chance.choice([0, 1, 1, 8])
@@ -545,9 +388,8 @@ def test_damaged_file_gives_document_or_error() -> None:
             outcomes.add(diagnostic.code)
         else:
             document.place(("closures", 1, "frames", 1, "xyz", 2))
-            assert repr(document.data) == repr(document.root.data)
-            outcomes.add("read in less time" if usual_values(document.source) else "read")
-    assert {"read", "read in less time", "yaml-syntax", "yaml-alias", "yaml-several-documents"} <= outcomes
+            outcomes.add("read")
+    assert {"read", "yaml-syntax", "yaml-alias", "yaml-several-documents"} <= outcomes
 
 
 @settings(deadline=None, max_examples=300)
@@ -561,7 +403,7 @@ def test_any_text_gives_document_or_error(text: str) -> None:
     except FileError as error:
         assert error.diagnostic.code.startswith("yaml-")  # noqa: PT017 - either outcome is right
     else:
-        assert json.dumps(document.data, allow_nan=False) == json.dumps(document.root.data)
+        json.dumps(document.data, allow_nan=False)
 
 
 @pytest.mark.parametrize(
@@ -574,34 +416,8 @@ def test_any_text_gives_document_or_error(text: str) -> None:
         "a: {" + "b: {" * 70 + "}" * 71,
     ],
 )
-def test_deep_nesting_is_left_to_reader_without_recursion(text: str) -> None:
-    assert usual_values(source_of(text)) is None
+def test_deep_nesting_is_an_error(text: str) -> None:
     assert error_of(text).code == "yaml-too-deep"
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "a: &b 1",
-        "a: !!str 1",
-        "? a\n: 1",
-        "%YAML 1.2\n---\na: 1",
-        "a: .inf",
-        "1: a",
-        "[a]: b",
-        "a: 1\na: 2",
-        "a: [",
-        "a",
-    ],
-)
-def test_unusual_file_is_left_to_reader_event_by_event(text: str) -> None:
-    assert usual_values(source_of(text)) is None
-
-
-def test_descriptions_of_collection_are_usual() -> None:
-    for name in collection_names():
-        source = read_source(ROBOTS / name / "robot.yaml")
-        assert usual_values(source) == read_yaml(source).root.data
 
 
 # What is no YAML mapping
@@ -626,20 +442,6 @@ def test_non_mapping_is_reported_with_its_type(text: str, what: str) -> None:
     assert diagnostic.code == "yaml-empty"
     assert what in diagnostic.message
     assert "mapping" in diagnostic.message
-
-
-@pytest.mark.parametrize(
-    ("text", "line"), [("a: 1\n---\nb: 2\n", 2), ("---\na: 1\n---\n", 3), ("a: 1\n...\nb: 2\n", 3), ("[]\n--- {}\n", 2)]
-)
-def test_second_document_is_refused_at_its_start(text: str, line: int) -> None:
-    diagnostic = error_of(text)
-    assert (diagnostic.code, diagnostic.line, diagnostic.column) == ("yaml-several-documents", line, 1)
-
-
-@pytest.mark.parametrize("version", ["1.1", "1.0", "1.3", "2.0"])
-def test_other_yaml_version_is_refused(version: str) -> None:
-    diagnostic = error_of(f"# first\n%YAML {version}\n---\na: 1\n")
-    assert (diagnostic.code, diagnostic.line, diagnostic.column) == ("yaml-version", 2, 1)
 
 
 @pytest.mark.parametrize(
@@ -715,8 +517,3 @@ def test_yaml_edge_cases_are_refused_or_yaml_1_2(text: str, value: object) -> No
     except FileError as error:
         found = error.diagnostic.code
     assert found in (value, "yaml-syntax")
-
-
-@pytest.mark.parametrize("text", ["?a: 1\n", "a: &b\n  c: d\n", "a: &b d\n*b : c\n", "a: [&b c,*b]\n", "{? a : b}\n"])
-def test_seeming_yaml_edge_cases_are_accepted(text: str) -> None:
-    assert isinstance(read_yaml(Source("robot.yaml", text, text.encode())).data, dict)

@@ -12,8 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-from eurdf.exporting.formats.loop_joint import from_x
-from eurdf.mechanism.pose import Pose
+from eurdf.mechanism.pose import Pose, turn_from_x
 from eurdf.pinocchio.robot import Robot
 from support.exported import random_robot
 
@@ -76,5 +75,5 @@ def test_what_no_loop_joint_says_is_a_loss() -> None:
 
 @pytest.mark.parametrize("axis", [(1, 0, 0), (-1, 0, 0), (0, 2, 0), (-1, 1e-9, 1e-12), (-0.3, 0.4, -5.0)])
 def test_rotation_from_x_takes_x_to_the_axis(axis: Any) -> None:
-    found = Pose(quaternion=from_x(axis)).rotate((1.0, 0.0, 0.0))
+    found = Pose(quaternion=turn_from_x(axis)).rotate((1.0, 0.0, 0.0))
     assert found == pytest.approx(np.divide(axis, np.linalg.norm(axis)), abs=1e-15)

@@ -17,13 +17,17 @@ import numpy as np
 import pytest
 
 import eurdf
-from eurdf.exporting.formats import FORMATS
-from eurdf.exporting.hinges import with_hinges
+from eurdf.closures.kind import REGISTRY
+from eurdf.convert.common_losses import UNKNOWN
+from eurdf.convert.export_format import ExportInput, export_format
+from eurdf.convert.formats import EXPORTS
+from eurdf.convert.hinges import with_hinges
+from eurdf.convert.losses import Losses
 from eurdf.mechanism.body import Inertia, Shape
-from eurdf.mechanism.constraint import Compliance, Coupling
+from eurdf.mechanism.constraint import Closure, Compliance, Coupling
 from eurdf.mechanism.frame import Frame
 from eurdf.mechanism.joint import Joint, JointProperties
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.motor import Motor
 from eurdf.mechanism.pose import IDENTITY, Vector3
@@ -52,7 +56,7 @@ SKEW = ((1.0, 0.0, 0.0), (1.0, 2.0, 0.5))
 
 def every_property(joint: Joint) -> Joint:
     """The joint with each property, of other values on each axis."""
-    kind, n = joint.type, joint.coordinates.nv
+    kind, n = joint.type, joint.type.nv
     if kind is JointType.FIXED or joint.mimic is not None:
         return joint
     some = tuple(float(value) for value in range(1, n + 1))
@@ -66,7 +70,7 @@ def every_property(joint: Joint) -> Joint:
         rotor_inertia=some,
         acceleration=some,
     )
-    if joint.coordinates.quaternion is None:
+    if joint.type.quaternion is None:
         properties = replace(properties, lower=(-9.0,) * n, upper=(9.0,) * n)
         if kind is not JointType.PLANAR:
             properties = replace(properties, stiffness=some, rest=(0.1,) * n)
@@ -77,8 +81,8 @@ def with_limits(mechanism: Mechanism, lower: float, upper: float) -> Robot:
     """The robot with these limits of each coordinate that can have some."""
 
     def limited(joint: Joint) -> Joint:
-        n = len(joint.coordinates.names)
-        if joint.coordinates.quaternion is not None:
+        n = len(joint.type.coordinates)
+        if joint.type.quaternion is not None:
             return joint
         return joint.with_properties(replace(joint.properties, lower=(lower,) * n, upper=(upper,) * n))
 
@@ -166,34 +170,63 @@ def _odd(mechanism: Mechanism, axes: tuple[Vector3, Vector3]) -> Mechanism:
 
 @pytest.mark.slow
 def test_every_kind_of_loss_occurs() -> None:
-    found: dict[str, set[str]] = {name: set() for name in FORMATS}
+    found: dict[str, set[str]] = {name: set() for name in EXPORTS}
     for mechanism, options in robots():
         robot = build_robot(mechanism, geometry=False)
-        for name in FORMATS:
+        for name in EXPORTS:
             if name in MISSING or (name == "sdf" and mechanism.closures and not mechanism.configurations):
                 continue
             found[name] |= {loss.code for loss in eurdf.export(robot, name, **options).losses}
     missing = {
-        name: {kind.code for kind in each.losses} - found[name] - ELSEWHERE[name]
-        for name, each in FORMATS.items()
+        name: {kind.code for kind in each.rows} - found[name] - ELSEWHERE[name]
+        for name, each in ((name, export_format(name)) for name in EXPORTS)
         if name not in MISSING
     }
     assert not any(missing.values()), missing
 
 
-@pytest.mark.parametrize("name", sorted(FORMATS.keys() - MISSING))
+@pytest.mark.parametrize("name", EXPORTS)
+def test_every_type_of_joint_and_closure_is_stated_or_lost(name: str) -> None:
+    format_ = export_format(name)
+    known = {*format_.exact, *(kind.concept for kind in format_.rows)}
+    assert {f"{kind} joint" for kind in JointType} | {f"{kind} closure" for kind in REGISTRY} <= known
+
+
+class InPlane(Closure):
+    """A closure of a type that no format knows."""
+
+    type = "in-plane"
+    units = ("m",)
+
+
+@pytest.mark.parametrize("name", sorted(set(EXPORTS) - MISSING))
+def test_closure_of_an_unknown_type_is_a_loss_that_names_it(name: str) -> None:
+    robot = eurdf.load("four_bar", geometry=False)
+    (closure,) = robot.mechanism.closures
+    mechanism = replace(robot.mechanism, closures=(InPlane("rod", closure.a, closure.b),))
+    exported = eurdf.export(robot, name)
+    losses = Losses((*export_format(name).rows, *UNKNOWN))
+    losses.find(mechanism, "motor", export_format(name).exact)
+    given = ExportInput(mechanism, exported.coordinates.own, {"assembled": {}})
+    export_format(name).write(given, losses)
+    (loss,) = [each for each in losses.found if each.name == "rod"]
+    assert loss.code == "export-closure-kind"
+    assert "'in-plane'" in loss.message
+
+
+@pytest.mark.parametrize("name", sorted(set(EXPORTS) - MISSING))
 def test_limits_of_zero_are_written_as_none(name: str) -> None:
     mechanism = random_robot(3, "floating")[0].mechanism
     none = eurdf.export(with_limits(mechanism, -math.inf, math.inf), name)
     zero = eurdf.export(with_limits(mechanism, 0.0, 0.0), name)
     assert zero.files == none.files
     losses = {loss.name for loss in zero.losses if loss.code == "export-no-range"}
-    kinds = {joint.name: joint.coordinates for joint in mechanism.joints}
-    assert losses == {name for name, kind in kinds.items() if kind.names and kind.quaternion is None}
-    assert [loss for loss in zero.losses if loss.code != "export-no-range"] == list(none.losses)
+    kinds = {joint.name: joint.type for joint in mechanism.joints}
+    assert losses == {name for name, kind in kinds.items() if kind.coordinates and kind.quaternion is None}
+    assert {loss for loss in zero.losses if loss.code != "export-no-range"} == set(none.losses)
 
 
-@pytest.mark.parametrize("name", [name for name in FORMATS if name not in MISSING])
+@pytest.mark.parametrize("name", [name for name in EXPORTS if name not in MISSING])
 def test_actuators_are_named_as_the_description_names_them(name: str) -> None:
     _, rich = (mechanism for mechanism, _ in islice(robots(), 2))
     losses = eurdf.export(build_robot(rich, geometry=False), name).losses

@@ -11,7 +11,7 @@ import pytest
 import eurdf
 from eurdf.mechanism.body import Body, Inertia
 from eurdf.mechanism.joint import Joint, JointProperties
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import IDENTITY
 from eurdf.pinocchio.robot import Robot, build_robot
 from support.exported import hanging

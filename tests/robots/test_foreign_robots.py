@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 import eurdf
-from eurdf.exporting.formats import FORMATS
-from support.foreign import INVALID, PACKAGE_DIRS, ROBOTS
+from eurdf.convert.formats import EXPORTS
+from support.wild import INVALID, PACKAGE_DIRS, ROBOTS
 
 pytestmark = pytest.mark.slow
 
@@ -27,7 +27,7 @@ def exported(name: str, to: str) -> eurdf.Export:
     return eurdf.export(ROBOTS[name], to, package_dirs=PACKAGE_DIRS)
 
 
-@pytest.mark.parametrize("to", FORMATS)
+@pytest.mark.parametrize("to", EXPORTS)
 @pytest.mark.parametrize("name", [name for name in ROBOTS if name not in INVALID])
 def test_start_is_closed_and_within_limits(name: str, to: str) -> None:
     try:

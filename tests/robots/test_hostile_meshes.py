@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 
 import eurdf
 from eurdf.commands.main import main
-from eurdf.exporting.formats import FORMATS
+from eurdf.convert.formats import EXPORTS
 from support.hostile_meshes import CARRIERS, ENDLESS, FORMS, SECRETS, Place
-from support.watchdog import watchdog
+from support.processes import watchdog
 
 #: References in a robot: one process reads all of its meshes.
 AT_ONCE = 20
@@ -24,7 +24,7 @@ AT_ONCE = 20
 MARKERS = st.text("abcdefghijklmnopqrstuvwxyz", min_size=12, max_size=12).map(str.encode)
 REFERENCES = st.tuples(st.sampled_from(SECRETS), st.sampled_from(FORMS), st.sampled_from(CARRIERS))
 ROBOTS = st.lists(REFERENCES, min_size=AT_ONCE, max_size=AT_ONCE, unique=True)
-EXPORTS = [name for name in FORMATS if name != "usd" or find_spec("pxr") is not None]
+PRESENT = [name for name in EXPORTS if name != "usd" or find_spec("pxr") is not None]
 
 
 @pytest.fixture(autouse=True)
@@ -70,7 +70,7 @@ def _check_all(place: Place, uris: list[str], capfd: pytest.CaptureFixture[str])
     unreadable = {found.message.split("'")[1] for found in report.diagnostics if found.code == "urdf-mesh-unreadable"}
     files |= _loaded(place, [uri for uri in uris if uri not in unreadable])
     urdf.write_text(place.urdf(uris), encoding="utf-8")
-    for name in EXPORTS:
+    for name in PRESENT:
         for mesh_files in ("copy", "reference"):
             export = eurdf.export(urdf, name, mesh_files=mesh_files)
             files |= {f"{name}/{mesh_files}/{path}": content for path, content in export.files.items()}

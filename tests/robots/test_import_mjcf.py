@@ -15,7 +15,7 @@ import eurdf
 from eurdf.closures.distance import DistanceClosure
 from eurdf.closures.point import PointClosure
 from eurdf.mechanism.constraint import Coupling
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.motor import Motor
 from eurdf.pinocchio.robot import build_robot
@@ -414,7 +414,7 @@ def test_long_chain_of_includes_is_refused(tmp_path: Path) -> None:
 
 
 def test_compiler_that_takes_too_long_is_stopped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from eurdf.importing.mjcf import model as mjcf_model
+    from eurdf.convert.mjcf import compiled as mjcf_model
 
     monkeypatch.setattr(mjcf_model, "SECONDS", 1)
     many = small(f'<replicate count="30000000" offset="0 0 1"><body><joint/>{LINK}</body></replicate>')
@@ -500,7 +500,7 @@ def test_name_of_a_mesh_leads_to_no_other_folder(tmp_path: Path) -> None:
 
 
 def test_compiler_that_crashes_ends_no_caller(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from eurdf.importing.mjcf import model as mjcf_model
+    from eurdf.convert.mjcf import compiled as mjcf_model
 
     program = write(tmp_path, "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)", "program.py")
     monkeypatch.setattr(mjcf_model, "_PROGRAM", program)

@@ -13,9 +13,9 @@ import eurdf
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.hinge import HingeClosure
 from eurdf.closures.point import PointClosure
-from eurdf.loss import Effect
+from eurdf.convert.losses import Effect
 from eurdf.mechanism.constraint import Coupling
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.pinocchio.robot import build_robot
 from support.plain_urdf import inertial, joint_element, link_element
 

@@ -13,7 +13,7 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 
 import eurdf
 from eurdf.commands.main import main
-from eurdf.linking.description import describe
+from eurdf.linking.robot_files import read_robot
 from eurdf.viewing.graph import save_graph
 from eurdf.viewing.picture import VIEWS, picture
 from robots import picture as pictures
@@ -74,8 +74,6 @@ def test_command_draws_a_configuration_with_its_loops(capsys, tmp_path):
     assert violet["assembled"] == 0
     assert violet["loops"] > 60  # a dot has a diameter of 12 pixels
     assert drawn["assembled"].shape == drawn["neutral"].shape  # the assembled configuration is the neutral one
-    assert main(["picture", str(tmp_path), "-o", str(file)]) == 2
-    assert "already exists; --force replaces it" in capsys.readouterr().err
     assert main(["picture", str(tmp_path), "-o", str(file), "--force", "--configuration", "aparr"]) == 2
     assert "there is no configuration 'aparr'; did you mean 'apart'?" in capsys.readouterr().err
 
@@ -110,7 +108,7 @@ def test_each_robot_has_small_transparent_pictures_and_its_graph(tmp_path):
             # It is seen on white and on black: few pixels are near one of the two.
             near = seen[seen[..., 3] > 250][:, :3].astype(int) - 128
             assert (np.abs(near).min(axis=1) < 115).mean() > 0.98, file
-        save_graph(describe(folder / "robot.yaml", geometry=False).mechanism, tmp_path / "graph.svg")
+        save_graph(read_robot(folder / "robot.yaml", geometry=False).mechanism, tmp_path / "graph.svg")
         drawn = (folder / "graph.svg").read_text()
         assert drawn == (tmp_path / "graph.svg").read_text(), f"python -m robots.picture {name}"
 
@@ -134,7 +132,7 @@ def test_distance_is_no_open_closure():
 
 def test_palette_keeps_colours_and_transparency():
     pytest.importorskip("PIL", reason="Pillow is not installed: pip install -e '.[pictures]'")
-    from eurdf.viewing.palette import with_palette
+    from eurdf.viewing.picture import with_palette
 
     rng = np.random.default_rng(0)
     few = np.r_[rng.integers(0, 256, (200, 4)), [[0, 0, 0, 0]]].astype(np.uint8)

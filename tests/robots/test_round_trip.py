@@ -14,12 +14,12 @@ from hypothesis import strategies as st
 
 import eurdf
 from eurdf.closures.hinge import HingeClosure
-from eurdf.exporting.coordinates import Part
-from eurdf.exporting.verification.read_model import without_armature
-from eurdf.loss import Effect
+from eurdf.convert.losses import Effect
+from eurdf.convert.parts import Part
+from eurdf.convert.verification.read_model import without_armature
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.mechanism.pose import IDENTITY, Pose, direction
 from eurdf.mechanism.spanning_tree import rigid_roots
@@ -80,7 +80,7 @@ def in_normal_form(mechanism: Mechanism) -> Mechanism:
         c = coupling.coefficients[0][1]
         terms = tuple((name, value / c) for name, value in coupling.coefficients)
         couplings.append(replace(coupling, coefficients=terms, offset=coupling.offset / c))
-    neutral = {joint.name: joint.coordinates.neutral for joint in mechanism.joints}
+    neutral = {joint.name: joint.type.neutral for joint in mechanism.joints}
     configurations = {
         name: {joint: values for joint, values in stated.items() if values != neutral.get(joint)}
         for name, stated in mechanism.configurations.items()
@@ -209,15 +209,36 @@ def test_robot_of_the_collection_is_the_same(to: str, tmp_path: Path) -> None:
     assert_same_properties(robot, found, export)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("to", ["mjcf", "loop-joint", "drake", "sdf"])
+@pytest.mark.parametrize("name", eurdf.collection_names())
+def test_robot_of_the_collection_closes_and_moves_as_before(to: str, name: str, tmp_path: Path) -> None:
+    robot = eurdf.load(name, geometry=False)
+    export, imported = round_trip(robot, to, tmp_path)
+    lost = {loss.name for loss in export.losses if loss.effect is Effect.DROPPED and loss.code != "export-compliance"}
+    unsaid = {each.type for each in robot.constraints if each.name in lost}
+    assert unsaid <= {"mjcf": set(), "drake": {"distance"}}.get(to, {"distance", "coupling"})
+    if unsaid:
+        return
+    found = build_robot(replace(imported.mechanism, root=robot.mechanism.root), geometry=False)
+    assert len(found.mechanism.closures) == len(robot.mechanism.closures)
+    q = robot.configurations["assembled"]
+    known = {*found.slots, ROOT_JOINT}
+    same = {name: each for name, each in robot.coordinates(q).items() if name in known}
+    closed = found.configuration(same) if to == "mjcf" else there(export, found, q)
+    assert np.abs(eurdf.residual(found, closed)).max() < 1e-6
+    assert eurdf.analyze(found, closed).mobility == eurdf.analyze(robot, q).mobility
+
+
 def with_limits(robot: Robot, random: np.random.Generator) -> Robot:
     """The robot with limits on every axis of every joint that can have some."""
 
     def limited(joint: Joint) -> Joint:
         if joint.type is JointType.FIXED:
             return joint
-        n, nv = len(joint.coordinates.names), joint.coordinates.nv
+        n, nv = len(joint.type.coordinates), joint.type.nv
         values: dict[str, Any] = {name: tuple(random.uniform(1.0, 9.0, nv).tolist()) for name in ("velocity", "effort")}
-        if joint.type is not JointType.CONTINUOUS and joint.coordinates.quaternion is None:
+        if joint.type is not JointType.CONTINUOUS and joint.type.quaternion is None:
             values["lower"] = tuple(random.uniform(-9.0, -7.0, n).tolist())
             values["upper"] = tuple(random.uniform(7.0, 9.0, n).tolist())
         return replace(joint, properties=replace(joint.properties, **values))

@@ -13,16 +13,16 @@ import pytest
 
 import eurdf
 from eurdf.commands.main import main
-from eurdf.commands.output_schema import output_schemas
+from eurdf.commands.output import output_schemas
+from eurdf.convert.formats import EXPORTS
+from eurdf.convert.verification import verify as module
 from eurdf.exceptions import MissingExtra
-from eurdf.exporting.formats import FORMATS
-from eurdf.exporting.verification import verify as module
 from eurdf.mechanism.body import Inertia
 from eurdf.pinocchio.robot import Robot, build_robot
 from support.exported import random_robot
 from support.plain_urdf import inertial, joint_element, link_element
 from support.plain_urdf import robot as robot_element
-from support.terminal import on_a_terminal
+from support.processes import on_a_terminal
 
 PACKAGES = {"mjcf": "mujoco", "drake": "pydrake", "sdf": "pydrake", "usd": "pxr"}
 
@@ -36,7 +36,7 @@ def findings(export: eurdf.Export, **options: Any) -> str:
     return "\n".join(map(str, export.verify(**options).findings))
 
 
-@pytest.mark.parametrize("to", FORMATS)
+@pytest.mark.parametrize("to", EXPORTS)
 def test_file_of_every_joint_and_closure_is_read_back(to: str) -> None:
     installed(to)
     for seed, root in ((0, "fixed"), (1, "floating")):
@@ -50,7 +50,7 @@ def test_file_of_every_joint_and_closure_is_read_back(to: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("to", [to for to in FORMATS if to != "mjcf"])  # that of MJCF is in `test_export_mjcf`
+@pytest.mark.parametrize("to", [to for to in EXPORTS if to != "mjcf"])  # that of MJCF is in `test_export_mjcf`
 @pytest.mark.parametrize("name", eurdf.collection_names())
 def test_robot_of_the_collection_is_read_back(name: str, to: str) -> None:
     installed(to)
@@ -60,7 +60,7 @@ def test_robot_of_the_collection_is_read_back(name: str, to: str) -> None:
     assert max((max(each.position, each.angle) for each in openings), default=0.0) < 1e-3
 
 
-@pytest.mark.parametrize("to", FORMATS)
+@pytest.mark.parametrize("to", EXPORTS)
 def test_links_without_mass_are_no_error(to: str) -> None:
     installed(to)
     limit = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'

@@ -9,8 +9,7 @@ from typing import Any
 
 import pytest
 
-from support.browser import browser
-from support.opened_page import axe, barriers, errors_of, scrolls_sideways, served
+from support.browser import axe, barriers, browser, errors_of, scrolls_sideways, served
 from support.site import BUILDS_SITE, build_site
 
 pytestmark = BUILDS_SITE

@@ -10,7 +10,7 @@ import numpy as np
 
 from eurdf.mechanism.body import Body, Inertia
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import COORDINATES, JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 
@@ -102,7 +102,7 @@ def poses(
     """Pose of every body in the world."""
     found = {mechanism.bodies[0].name: np.eye(4) if root is None else root}
     for joint in mechanism.joints:
-        moved = pose_matrix(joint.placement) @ motion(joint, coordinates.get(joint.name, joint.coordinates.neutral))
+        moved = pose_matrix(joint.placement) @ motion(joint, coordinates.get(joint.name, joint.type.neutral))
         found[joint.child] = found[joint.parent] @ moved @ pose_matrix(joint.offset)
     return found
 
@@ -116,14 +116,14 @@ def seen_from(M: Matrix, twists: Matrix) -> Matrix:
 
 def jacobians(mechanism: Mechanism, coordinates: Mapping[str, Sequence[float]]) -> dict[str, Matrix]:
     """For every body of a mechanism with a fixed root its Jacobian, seen from the body; shape (6, nv)."""
-    nv = sum(joint.coordinates.nv for joint in mechanism.joints)
+    nv = sum(joint.type.nv for joint in mechanism.joints)
     found = {mechanism.bodies[0].name: np.zeros((6, nv))}
     column = 0
     for joint in mechanism.joints:
-        c = coordinates.get(joint.name, joint.coordinates.neutral)
+        c = coordinates.get(joint.name, joint.type.neutral)
         step = pose_matrix(joint.placement) @ motion(joint, c)
         J = seen_from(step, found[joint.parent])
-        own = joint.coordinates.nv
+        own = joint.type.nv
         J[:, column : column + own] = subspace(joint, c)
         column += own
         found[joint.child] = seen_from(pose_matrix(joint.offset), J)
@@ -167,11 +167,9 @@ def some_joint(kind: JointType, random: np.random.Generator, parent: str = "base
 
 
 def some_coordinates(kind: JointType, random: np.random.Generator) -> tuple[float, ...]:
-    coordinates = COORDINATES[kind]
-    values = random.uniform(-1.5, 1.5, len(coordinates.names))
-    if coordinates.quaternion is not None:
-        part = slice(coordinates.quaternion, coordinates.quaternion + 4)
-        values[part] /= np.linalg.norm(values[part])
+    values = random.uniform(-1.5, 1.5, len(kind.coordinates))
+    if kind.quaternion is not None:
+        values[kind.quaternion :] /= np.linalg.norm(values[kind.quaternion :])
     return tuple(values.tolist())
 
 

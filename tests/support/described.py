@@ -1,4 +1,4 @@
-"""Robots from the texts of their two files."""
+"""Robots from the texts of their two files, small ones among them."""
 
 from __future__ import annotations
 
@@ -12,10 +12,8 @@ import numpy as np
 import pinocchio as pin
 
 import eurdf
-from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.configuration import configuration_vector
-from support.plain_urdf import inertial, joint_element, link_element
+from support.plain_urdf import inertial, joint_element, link_element, robot
 
 LIMITED = '<axis xyz="{}"/><limit lower="-3" upper="3" effort="1" velocity="1"/>'
 
@@ -77,11 +75,6 @@ def frame_poses(model: Any, q: Any) -> dict[tuple[str, str], Any]:
     }
 
 
-def link_poses(model: Any, q: Any) -> dict[str, Any]:
-    """Pose in the world of every link."""
-    return {name: pose for (name, kind), pose in frame_poses(model, q).items() if kind == "link"}
-
-
 def mass_matrix(model: Any, q: Any) -> Any:
     """Column i is the force that unit acceleration i takes, from the inverse dynamics.
 
@@ -93,18 +86,60 @@ def mass_matrix(model: Any, q: Any) -> Any:
     return np.array(columns).reshape(model.nv, model.nv).T
 
 
-def free_names(mechanism: Mechanism) -> list[str]:
-    """Joints that move, neither mimic nor are mimicked."""
-    mimicked = {joint.mimic.joint for joint in mechanism.joints if joint.mimic}
-    return [
-        joint.name
-        for joint in mechanism.joints
-        if joint.type is not JointType.FIXED and joint.mimic is None and joint.name not in mimicked
-    ]
-
-
 def at(model: Any, joint: str) -> tuple[int, int, int, int]:
     """Indices of a joint's coordinates and velocities: idx_q, nq, idx_v, nv."""
     index = model.getJointId(joint)
     assert index < model.njoints, f"no joint '{joint}'"
     return model.idx_qs[index], model.nqs[index], model.idx_vs[index], model.nvs[index]
+
+
+STAR_CONTENT = '<axis xyz="0 0 1"/><limit lower="-2" upper="2" effort="1" velocity="1"/>'
+STAR_JOINTS = {"a": "revolute", "b": "continuous", "c": "prismatic", "d": "revolute", "e": "planar", "f": "floating"}
+STAR_JOINTS["g"] = "fixed"
+
+STAR = robot(
+    link_element("base"),
+    *(body(f"l{name}") for name in STAR_JOINTS),
+    *(joint_element(name, kind, "base", f"l{name}", STAR_CONTENT) for name, kind in STAR_JOINTS.items()),
+)
+
+
+#: Length of the strut at the zero of its slide, m. It starts below the point (1, 0, 0) at which the body is.
+STRUT = 1.0
+
+_TURN, _AT = '<axis xyz="0 0 1"/><limit lower="-9" upper="9" effort="1" velocity="1"/>', '<origin xyz="1 0 -1"/>'
+
+
+def strut(kind: str, reach: float = 0.9) -> Any:
+    """The robot.
+
+    Args:
+        kind: Of the actuator: planar, spherical or floating.
+        reach: Position limit of the slide, both ways, m.
+    """
+    slide = f'<axis xyz="0 0 1"/><limit lower="{-reach!r}" upper="{reach!r}" effort="1" velocity="1"/>'
+    own = "revolute" if kind == "spherical" else kind
+    urdf = robot(
+        *(link_element(name, inertial()) for name in ("ground", "body", "sleeve", "rod")),
+        joint_element("mover", own, "ground", "body", _TURN if own != "floating" else ""),
+        joint_element("pivot", "revolute", "ground", "sleeve", _TURN, _AT),
+        joint_element("slide", "prismatic", "sleeve", "rod", slide),
+    )
+    joints = "  pivot: {type: universal, axes: xy}\n" + ("  mover: spherical\n" if kind == "spherical" else "")
+    ends = f"{{link: body, xyz: [1, 0, 0]}}, {{link: rod, xyz: [0, 0, {STRUT!r}]}}"
+    closure = f"closures:\n  - {{name: end, type: 3d, frames: [{ends}]}}\n"
+    return load(urdf, f"{closure}joints:\n{joints}actuators: [mover]\n")
+
+
+ARM = """\
+<robot name="arm">
+  <link name="base"/>
+  <link name="upper">
+    <inertial><mass value="2"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial>
+  </link>
+  <joint name="shoulder" type="continuous">
+    <parent link="base"/><child link="upper"/><axis xyz="0 0 1"/>
+  </joint>
+</robot>
+"""
+ARM_DESCRIPTION = 'extended_urdf: "2.0"\nactuators: [shoulder]\n'

@@ -11,8 +11,8 @@ import pytest
 pytest.importorskip("pydrake", reason="Drake is not installed: pip install -e '.[drake]'")
 
 import eurdf
-from eurdf.exporting.verification.drake_model import Plant, SdfTree
-from eurdf.exporting.verification.read_model import Exported
+from eurdf.convert.verification.drake_model import Plant, SdfTree
+from eurdf.convert.verification.read_model import Exported
 from eurdf.pinocchio.robot import Robot
 
 
@@ -28,10 +28,16 @@ class InDrake(Plant):
         """Names of the joints that move, in the order of Drake's vectors."""
         return [joint.name() for joint in self.joints]
 
-    def at(self, q: Any, v: Any | None = None) -> None:
+    def at(self, q: Any, v: Any | None = None) -> Any:
+        """Move there; returns T: Drake's velocities are T v."""
         self.plant.SetPositions(self.context, self.coordinates.to_q(q))
         v = np.zeros(self.robot.model.nv) if v is None else v
         self.plant.SetVelocities(self.context, self.coordinates.to_v(q, v))
+        return self.coordinates.rates(q)
+
+    @property
+    def inertia_matrix(self) -> Any:
+        return self.mass_matrix
 
     @property
     def bias(self) -> Any:
@@ -45,3 +51,16 @@ class TreeInDrake(SdfTree):
     def __init__(self, robot: Robot, export: eurdf.Export) -> None:
         with tempfile.TemporaryDirectory() as folder:
             super().__init__(Exported(export.write(folder)[0], robot, export.coordinates))
+        self.names = list(export.coordinates.names)  # Drake's vectors are in another order, which `at` knows
+
+    bias = None
+
+    def at(self, q: Any, v: Any | None = None) -> Any:
+        return super().at(q)
+
+    def pose(self, frame: str) -> Any:
+        return self.there.pose(frame)
+
+    @property
+    def inertia_matrix(self) -> Any:
+        return self.there.mass_matrix

@@ -1,4 +1,4 @@
-"""Random robots for exports, and an exported robot in MuJoCo."""
+"""Random robots for exports, and exported robots in the programs that read them."""
 
 from __future__ import annotations
 
@@ -7,16 +7,18 @@ from typing import Any
 
 import mujoco
 import numpy as np
+import pinocchio as pin
 
 import eurdf
-from eurdf.exporting.coordinates import Coordinates
+from eurdf.convert.coordinates import Coordinates
 from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.joint import Joint, JointProperties
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Root
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand
-from support.closed_tree import closed_tree
+from support.mechanisms import closed_tree
+from support.plain_urdf import pinocchios_own
 
 
 def real_inertia(random: np.random.Generator) -> Inertia:
@@ -35,7 +37,7 @@ def some_properties(joint: Joint, random: np.random.Generator) -> JointPropertie
     """
     if joint.type is JointType.FIXED:
         return joint.properties
-    nv = joint.coordinates.nv
+    nv = joint.type.nv
     together = joint.type in (JointType.SPHERICAL, JointType.PLANAR, JointType.FLOATING)
 
     def values() -> tuple[float, ...]:
@@ -95,6 +97,58 @@ def values_of_parts(coordinates: Coordinates, q: Any) -> list[list[float]]:
     return found
 
 
+def near(robot: Robot, q: Any, seed: int = 0) -> tuple[Any, Any]:
+    """A configuration near q, loops open, and a velocity."""
+    random = np.random.default_rng(seed)
+    return pin.integrate(robot.model, q, random.uniform(-0.3, 0.3, robot.model.nv)), random.uniform(
+        -1.0, 1.0, robot.model.nv
+    )
+
+
+def witness(robot: Robot, export: eurdf.Export) -> Any:
+    """An exported robot in the program that reads it, which has `names`, `at`, `pose`, `inertia_matrix` and `bias`."""
+    if export.format == "mjcf":
+        return InMuJoCo(robot, export)
+    if export.format in ("urdf", "loop-joint"):
+        return InPinocchio(robot, export)
+    from support import drake_witness
+
+    return {"drake": drake_witness.InDrake, "sdf": drake_witness.TreeInDrake}[export.format](robot, export)
+
+
+class InPinocchio:
+    """The tree of an exported robot in Pinocchio."""
+
+    bias = None
+
+    def __init__(self, robot: Robot, export: eurdf.Export) -> None:
+        self.coordinates = export.coordinates
+        self.model = pinocchios_own(export.main.decode(), robot.mechanism.root)
+        self.data = self.model.createData()
+        assert (self.model.nq, self.model.nv) == (self.coordinates.nq, self.coordinates.nv)
+
+    @property
+    def names(self) -> list[str]:
+        joints = list(zip(self.model.names, self.model.joints, strict=True))[1:]
+        return [name for name, joint in joints if joint.nv]
+
+    def at(self, q: Any, v: Any) -> Any:
+        self.q = self.coordinates.to_q(q)
+        pin.framesForwardKinematics(self.model, self.data, self.q)
+        return self.coordinates.rates(q)
+
+    def pose(self, name: str) -> Any:
+        return self.data.oMf[self.model.getFrameId(name, pin.FrameType.BODY)].homogeneous
+
+    @property
+    def inertia_matrix(self) -> Any:
+        """Column by column: Pinocchio's crba has wrong entries where a mimic joint carries several branches."""
+        still = np.zeros(self.model.nv)
+        gravity = pin.rnea(self.model, self.data, self.q, still, still)
+        columns = [pin.rnea(self.model, self.data, self.q, still, each) - gravity for each in np.eye(self.model.nv)]
+        return np.array(columns).T
+
+
 class InMuJoCo:
     """An exported robot in MuJoCo."""
 
@@ -105,18 +159,35 @@ class InMuJoCo:
         self.model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
         self.data = mujoco.MjData(self.model)
 
-    def at(self, q: Any, v: Any | None = None) -> None:
+    @property
+    def names(self) -> list[str]:
+        return [self.model.joint(index).name for index in range(self.model.njnt)]
+
+    def at(self, q: Any, v: Any | None = None) -> Any:
+        """Move there; returns T: MuJoCo's velocities are T v."""
         self.data.qpos[:] = self.coordinates.to_q(q)
         self.data.qvel[:] = 0.0 if v is None else self.coordinates.to_v(q, v)
         mujoco.mj_forward(self.model, self.data)
+        return self.coordinates.rates(q)
 
-    def pose(self, name: str) -> tuple[Any, Any]:
-        """Rotation and origin of a link or a frame."""
+    def pose(self, name: str) -> Any:
+        """Of a link or a frame, (4, 4)."""
         try:
             found = self.data.body(name)
         except KeyError:
             found = self.data.site(name)
-        return found.xmat.reshape(3, 3), found.xpos
+        pose = np.eye(4)
+        pose[:3, :3], pose[:3, 3] = found.xmat.reshape(3, 3), found.xpos
+        return pose
+
+    @property
+    def inertia_matrix(self) -> Any:
+        return np.array([self.times_mass(column) for column in np.eye(self.model.nv)])
+
+    @property
+    def bias(self) -> Any:
+        """Forces of inertia and gravity at no acceleration."""
+        return self.data.qfrc_bias
 
     def quaternion_sign(self, site: str, other: str) -> float:
         """1 if MuJoCo's quaternions of two sites are of the same one of the two hemispheres, else -1."""

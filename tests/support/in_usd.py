@@ -14,7 +14,7 @@ pytest.importorskip("pxr", reason="usd-core is not installed: pip install -e '.[
 
 from pxr import UsdPhysics, UsdValidation
 
-from eurdf.exporting.verification.usd_model import Stage
+from eurdf.convert.verification.usd_model import Stage
 
 #: Rotations and translations of the axes of a joint with several.
 D6_AXES = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")

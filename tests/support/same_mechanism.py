@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from eurdf.exporting.coordinates import rotation_matrix
+from eurdf.convert.coordinates import rotation_matrix
 from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.pose import Pose
 

@@ -169,9 +169,9 @@ def test_wrong_limits_are_refused() -> None:
     with pytest.raises(ValueError, match="no rows"):
         eurdf.serial_limits(robot, joints, np.empty((0, robot.model.nq)))
     stretched, q = slider_crank(0.05, 0.13, 0.0)
-    with pytest.raises(eurdf.NoTransmission, match="G at q does not exist: the pose is singular"):
+    with pytest.raises(eurdf.NoTransmission, match="G at q is not determined: the pose is singular"):
         eurdf.serial_limits(stretched, "slide", q)
-    with pytest.raises(eurdf.NoTransmission, match=r"G at q\[1\] does not exist"):
+    with pytest.raises(eurdf.NoTransmission, match=r"G at q\[1\] is not determined"):
         eurdf.serial_limits(stretched, "slide", np.array([slider_crank(0.05, 0.13, 0.8)[1], q]))
     with pytest.raises(eurdf.NoTransmission, match="leave out some"):
         eurdf.serial_limits(robot, [*joints, "universal_rod_a"])

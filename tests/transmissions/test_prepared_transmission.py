@@ -15,7 +15,7 @@ import eurdf
 from eurdf.mechanism.joint import JointProperties
 from eurdf.pinocchio.robot import build_robot
 from support.compiled import NOT_CLOSED, NOT_FINITE, OK, SINGULAR, TOO_FAR, Compiled
-from support.one_loop import one_loop
+from support.mechanisms import one_loop
 from support.transmissions import DRIVEN
 
 ANKLE = ("free_pitch", "free_roll")
@@ -278,7 +278,11 @@ def test_one_substep_refuses_long_motions(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "joints", "message"),
     [
-        ("unitree_g1_ankle", ["free_pitch"], "motors decide more than these joints: .* add 'free_roll' to the joints"),
+        (
+            "unitree_g1_ankle",
+            ["free_pitch"],
+            "do not determine the motors: .* add 'free_roll' to the joints",
+        ),
         ("unitree_g1_ankle", ["free_pich"], "did you mean 'free_pitch'"),
         ("unitree_g1_ankle", ["motor_a", "motor_b", "free_pitch"], "cannot move independently"),
         ("digit_leg", ["ball_rod1_end"], "is spherical"),

@@ -13,7 +13,7 @@ import pinocchio as pin
 import pytest
 
 import eurdf
-from eurdf.commands.output_schema import output_schemas
+from eurdf.commands.output import output_schemas
 from eurdf.pinocchio.robot import build_robot
 
 ANKLE = ("free_pitch", "free_roll")

@@ -14,9 +14,8 @@ import eurdf
 from eurdf.kinematics.evaluate import frames
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.viewing.session import Session, Stop
-from support.described import load
+from support.described import STRUT, load, strut
 from support.plain_urdf import joint_element, link_element, robot
-from support.strut import LENGTH, strut
 
 COLLECTION = Path(__file__).parents[2] / "robots"
 
@@ -252,7 +251,7 @@ def test_sliders_of_a_pose_move_the_passive_joints(kind: str, units: list[str], 
     else:
         tip = pin.exp3(np.array(goals[-3:])) @ (1.0, 0.0, 0.0) + np.array((*goals[:-3], 0.0, 0.0, 0.0)[:3])
     length = np.linalg.norm(tip - (1.0, 0.0, -1.0))
-    assert moved.coordinates(session.q)["slide"] == pytest.approx((length - LENGTH,), abs=1e-8)
+    assert moved.coordinates(session.q)["slide"] == pytest.approx((length - STRUT,), abs=1e-8)
 
 
 def test_slider_of_a_pose_stops_at_limit_of_passive_joint() -> None:

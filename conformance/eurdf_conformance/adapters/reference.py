@@ -7,11 +7,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import eurdf
-from eurdf.checking.loops import closure_diagnostics
+from eurdf.advice.loops import closure_diagnostics
 from eurdf.diagnostics import Diagnostic
-from eurdf.diagnostics.report import encodable
+from eurdf.diagnostics.wording import encodable
 from eurdf.exceptions import RobotNotFound
-from eurdf.linking.description import Linked, Unlinked, describe, find_meshes
+from eurdf.linking.mesh_files import find_meshes
+from eurdf.linking.robot_files import ReadRobot, read_robot
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.robot import Robot, build_robot
 from eurdf_conformance.adapters.reference_canonical import canonical_robot
@@ -44,9 +45,9 @@ class Reference:
             code = "file-unreadable"
             return rejected(Issue(code=code, file=description.name, line=None, column=None, message=str(none)))
         found = list(read.diagnostics)
-        if read.urdf is not None:
+        if read.tree is not None:
             found += find_meshes(read.urdf).diagnostics
-        if isinstance(read, Unlinked) or read.diagnostics.refused:
+        if read.linked is None or read.diagnostics.refused:
             return rejected(*self.issues(found))
         self._robot = build_robot(read.mechanism, geometry=False)
         found += closure_diagnostics(read, self._robot)
@@ -63,9 +64,9 @@ class Reference:
             raise ValueError("the last load did not accept a robot")
         return [self.values(self._robot, each, frames, quantities) for each in configurations]
 
-    def describe(self, description: Path, urdf: Path) -> Unlinked | Linked:
+    def describe(self, description: Path, urdf: Path) -> ReadRobot:
         """The robot as read. The parser itself checks that the URDF of the description exists."""
-        return describe(description, urdf if os.path.lexists(urdf) else None)
+        return read_robot(description, urdf if os.path.lexists(urdf) else None)
 
     def issues(self, found: Iterable[Diagnostic]) -> list[Issue]:
         """Diagnostics in the form of the protocol."""

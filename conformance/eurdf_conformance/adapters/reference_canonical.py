@@ -11,7 +11,7 @@ from eurdf.closures.hinge import HingeClosure
 from eurdf.mechanism.body import Shape
 from eurdf.mechanism.constraint import RIGID, Compliance
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.motor import Motor
 from eurdf.mechanism.pose import Vector3

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 
 from rich.text import Text
 
-from eurdf.commands.output import cell, new_table, write_lines, write_rendered
+from eurdf.commands.terminal import cell, new_table, write_lines, write_rendered
 from eurdf.diagnostics.text import Line
-from eurdf.diagnostics.visible import visible
+from eurdf.diagnostics.wording import visible
 from eurdf_conformance.certificate.certificate import Certificate, Failure
 from eurdf_conformance.certificate.summary import headline, level_words, parser_title
 from eurdf_conformance.judging.level_result import LevelResult

@@ -9,9 +9,9 @@ from typing import ClassVar
 import numpy as np
 
 from eurdf.array import Matrix, Vector
-from eurdf.closures.kind import ClosureKind, RelativeMotions, RelativePoses, key, no_angle
+from eurdf.closures.kind import ClosureKind, RelativeMotions, RelativePoses, no_angle
 from eurdf.closures.se3 import cross, dot, norm
-from eurdf.mechanism.constraint import Unit
+from eurdf.mechanism.constraint import Unit, key
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from eurdf.array import Matrix, Vector
-from eurdf.closures.kind import ClosureKind, RelativeMotions, RelativePoses, key
+from eurdf.closures.kind import ClosureKind, RelativeMotions, RelativePoses
 from eurdf.closures.point import PointClosure
 from eurdf.closures.se3 import cross, dot, norm, outer, plane_across, skew, transposed, turned, velocity_of_origin
-from eurdf.mechanism.constraint import Unit
+from eurdf.mechanism.constraint import Unit, key
 from eurdf.mechanism.pose import Vector3
 
 # The sine of θ near half a turn, where the shortest rotation has no derivative, is taken as no less than this.
@@ -59,6 +59,13 @@ class HingeClosure(ClosureKind):
         example=((0.0, 0.0, 1.0), (0.0, 1.0, 0.0)),
         default=((0.0, 0.0, 1.0), (0.0, 0.0, 1.0)),
     )
+
+    def stated(self) -> dict[str, Any]:
+        """``axis`` where A and B have the same one, else ``axes``; nothing where that is z."""
+        one, other = self.axes
+        if one != other:
+            return {"axes": [list(one), list(other)]}
+        return {} if one == (0.0, 0.0, 1.0) else {"axis": list(one)}
 
     def with_orientation_free(self) -> PointClosure:
         """The 3d closure of the same frames."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
@@ -108,31 +108,6 @@ class RelativeMotions(NamedTuple):
         return turned(self.poses.rotation, self.change[..., 3:])
 
 
-class Key(NamedTuple):
-    """What a file states of a closure in one of its keys, beside the frames.
-
-    Attributes:
-        title: Its name for readers.
-        description: What it is, with its unit.
-        unit: Its unit; empty if it has none.
-        least: The least value, or None.
-        examples: Values as files have them.
-    """
-
-    title: str
-    description: str
-    unit: str = ""
-    least: float | None = None
-    examples: tuple[Any, ...] = ()
-
-
-def key(
-    title: str, description: str, *, unit: str = "", least: float | None = None, example: Any, **options: Any
-) -> Any:
-    """A field of a kind that a file states in a key; ``options`` are those of `dataclasses.field`."""
-    return field(metadata={"key": Key(title, description, unit, least, (example,))}, **options)
-
-
 @dataclass(frozen=True, slots=True)
 class ClosureKind(Closure, ABC):
     """A closure whose residual r is a function of the pose of B in A, and how that is computed for k of its kind.
@@ -174,18 +149,19 @@ class _Registry(Mapping[str, type[ClosureKind]]):
     """The kinds by type; each is imported when it is first used."""
 
     def __init__(self) -> None:
-        self._found: dict[str, type[ClosureKind]] = {}
+        self._found: dict[str, type[ClosureKind] | None] = dict.fromkeys(MODULES)
 
     def __getitem__(self, type_: str) -> type[ClosureKind]:
-        if type_ not in self._found:
-            self._found[type_] = import_module(f"{__package__}.{MODULES[type_]}").KIND
-        return self._found[type_]
+        kind = self._found[type_]
+        if kind is None:
+            kind = self._found[type_] = import_module(f"{__package__}.{MODULES[type_]}").KIND
+        return kind
 
     def __iter__(self) -> Iterator[str]:
-        return iter({**MODULES, **self._found})
+        return iter(self._found)
 
     def __len__(self) -> int:
-        return len(MODULES.keys() | self._found.keys())
+        return len(self._found)
 
     def add(self, kind: type[ClosureKind]) -> None:
         """Take a kind that has no line in `MODULES`."""

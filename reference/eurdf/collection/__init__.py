@@ -7,11 +7,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from eurdf.collection.near_paths import near_path
-from eurdf.diagnostics import FileError, Place
 from eurdf.exceptions import RobotNotFound
 from eurdf.mesh_files.folders import MANIFEST
-from eurdf.reading.given import STDIN, Given, is_stream, is_xml, shown, source_of
-from eurdf.reading.source import Source
+from eurdf.reading.robot_source import STDIN, RobotSource, display_name, is_stream, is_xml, source_of
+from eurdf.reading.source import Source, unreadable
 
 _HERE = Path(__file__).parent
 _YAML = (".yaml", ".yml")
@@ -50,7 +49,7 @@ def collection_names() -> list[str]:
     return [] if folder is None else sorted(path.parent.name for path in folder.glob("*/robot.yaml"))
 
 
-def find_robot(path: Given, urdf: Given | None = None) -> RobotFiles:
+def find_robot(path: RobotSource, urdf: RobotSource | None = None) -> RobotFiles:
     """Find the files of a robot.
 
     Args:
@@ -64,7 +63,7 @@ def find_robot(path: Given, urdf: Given | None = None) -> RobotFiles:
         FileError: A stream, a text or a folder cannot be read.
     """
     if urdf is not None and is_stream(path) and path == urdf:
-        raise RobotNotFound(shown(path), f"{shown(path)} cannot be both the description and its URDF")
+        raise RobotNotFound(display_name(path), f"{display_name(path)} cannot be both the description and its URDF")
     # With os.path, which takes any string for a path that may not exist, where Path can raise.
     if not isinstance(path, bytes) and path != STDIN and os.path.isdir(path):
         return _in_folder(path if isinstance(path, Path) else Path(path), _given_urdf(urdf))
@@ -110,13 +109,11 @@ def _files(folder: Path) -> list[Path]:
     try:
         names = os.listdir(folder)
     except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        place = Place(os.fspath(folder))
-        raise FileError("file-unreadable", f"the folder '{folder}' cannot be read: {reason}", place) from None
+        raise unreadable(os.fspath(folder), f"the folder '{folder}'", error) from None
     return sorted(folder / name for name in names if not os.path.isdir(folder / name))
 
 
-def _given_urdf(urdf: Given | None) -> Path | Source | None:
+def _given_urdf(urdf: RobotSource | None) -> Path | Source | None:
     if urdf is None:
         return None
     source = source_of(urdf)
@@ -128,10 +125,10 @@ def _given_urdf(urdf: Given | None) -> Path | Source | None:
     return Path(urdf)
 
 
-def _refuse_second_urdf(path: Given, urdf: Given | None) -> None:
+def _refuse_second_urdf(path: RobotSource, urdf: RobotSource | None) -> None:
     if urdf is not None:
-        message = f"'{shown(path)}' is a URDF itself; give the YAML file to use it with '{shown(urdf)}'"
-        raise RobotNotFound(shown(path), message)
+        message = f"'{display_name(path)}' is a URDF itself; give the YAML file to use it with '{display_name(urdf)}'"
+        raise RobotNotFound(display_name(path), message)
 
 
 def _in_folder(folder: Path, given: Path | Source | None) -> RobotFiles:

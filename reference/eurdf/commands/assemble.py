@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-import argparse
-from typing import TYPE_CHECKING
+import math
+from collections.abc import Collection
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Literal
 
-from eurdf.commands.cannot_run import CannotRun
-from eurdf.commands.migrate import print_notes, show_report
-from eurdf.commands.output import cell, new_table, write_json, write_rendered
-from eurdf.commands.robot_options import add_robot_options, add_robot_path, ending, robot_options
-from eurdf.commands.selection import select_one
+from eurdf.commands.command import JSON, ROBOT, cannot_run, command, flag, option
+from eurdf.commands.output import write_result
+from eurdf.commands.selection import NEUTRAL, named_configuration
+from eurdf.commands.terminal import cell, new_table, write_notes, write_rendered
+from eurdf.exceptions import CannotRun
+from eurdf.json_schema import Count, NullIfInfinite
+from eurdf.mechanism.joint_types import JointType
+from eurdf.mechanism.mechanism import ROOT_JOINT
 
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from eurdf.commands.assembly_info import AssemblyInfo, JointPosition
     from eurdf.kinematics.array import Vector
     from eurdf.kinematics.assembly import Assembly
     from eurdf.linking.configurations import BeyondLimit
-    from eurdf.linking.description import Described
     from eurdf.pinocchio.robot import Robot
 
 _DESCRIPTION = """\
@@ -27,127 +30,152 @@ Find a configuration in which every loop is closed, and show the coordinates of 
 The search starts at the configuration 'assembled', or at the neutral one if there is none. It respects the joint limits
 if possible. --write writes the configuration to the description as 'assembled'; comments and everything else are kept.
 """
-_EPILOG = ending(
-    "0 the loops close, 1 they do not or the robot has errors, 2 the command cannot run.",
-    "eurdf assemble my_robot --hold motor_knee --write",
-)
-
-#: Start here if the file has no configuration of this name.
-_NEUTRAL = "neutral"
 
 # Tolerance of each row of the residual, m or rad.
 _TOLERANCE = 1e-13
 
-# Maximum number of open closures in a message.
-_MOST_OPEN = 4
+Unit = Literal["rad", "m", ""]
+
+# The unit of each coordinate; quaternions have none.
+_UNITS: dict[str, Unit] = {"angle": "rad", "length": "m", "x": "m", "y": "m", "z": "m"}
 
 
-def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command to the parser."""
-    parser = subparsers.add_parser(
-        "assemble",
-        help="find a configuration that closes the loops, and write it to the description",
-        description=_DESCRIPTION,
-        epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    add_robot_path(parser)
-    add_robot_options(parser)
-    parser.add_argument("--write", action="store_true", help="write it to the description as 'assembled'")
-    parser.add_argument("--force", action="store_true", help="replace an existing, different 'assembled'")
-    parser.add_argument(
-        "--hold", metavar="JOINT", action="append", default=[], help="do not move this joint (repeatable)"
-    )
-    parser.add_argument("--limits", action="store_true", help="never exceed the joint limits")
-    parser.add_argument(
-        "--from",
-        dest="start",
-        metavar="CONFIGURATION",
-        help=f"configuration to start from: one of the description, or {_NEUTRAL}",
-    )
-    parser.add_argument("--json", action="store_true", help="write one JSON object")
-    parser.set_defaults(run=run)
+@dataclass(frozen=True, slots=True)
+class CoordinateInfo:
+    """One number of a joint's configuration."""
+
+    name: str
+    """Kind of the number: angle, length, x, y, z, or qx, qy, qz, qw of a quaternion."""
+    unit: Unit
+    """Unit; empty for the numbers of a quaternion."""
+    value: float
+    """Value."""
 
 
-def run(args: argparse.Namespace) -> int:
-    """Assemble, show, write, and return the exit code."""
-    from eurdf.linking.description import Described, Unlinked, describe
+@dataclass(frozen=True, slots=True)
+class JointPosition:
+    """A joint with its own coordinates (not a mimic joint)."""
 
-    path = select_one(args.path)
-    if args.force and not args.write:
-        raise CannotRun("--force has no effect without --write; add --write")
-    description = describe(path, geometry=False, **robot_options(args))
-    if isinstance(description, Unlinked) or description.diagnostics.refused:
-        show_report(description.path, tuple(description.diagnostics), args.json)
-        return 1
-    if not isinstance(description, Described):
-        raise CannotRun(
-            f"'{description.path}' is a plain URDF, without loops; `eurdf generate` writes a description with closures"
-        )
-    file = _file_to_write(args.path, description) if args.write else None
+    name: str
+    """Name of the joint; root_joint for a floating root."""
+    type: JointType
+    """Type of the joint."""
+    coordinates: tuple[CoordinateInfo, ...]
+    """Its coordinates, in the order used in files."""
+    actuated: bool
+    """Whether it is actuated."""
+    held: bool
+    """Whether it was held by --hold."""
+    beyond_limits: bool
+    """Whether it is beyond its limits, which a file must not state."""
 
-    from eurdf.commands.assembly_info import assembly_info
+
+@dataclass(frozen=True, slots=True)
+class OpeningInfo:
+    """How far a closure is open."""
+
+    name: str
+    """Name of the closure."""
+    position: NullIfInfinite
+    """Distance between the origins of its frames, m; null if it is not finite."""
+    angle: NullIfInfinite
+    """Angle between its frames, rad; 0 for a 3d closure."""
+    closed: bool
+    """Whether it is open by at most 1e-6 (m, rad)."""
+
+
+@dataclass(frozen=True, slots=True)
+class AssemblyInfo:
+    """The output of 'eurdf assemble --json'."""
+
+    name: str
+    """Name of the robot in the URDF."""
+    start: str
+    """Name of the configuration at which the search started; neutral if it is not from the file."""
+    closes: bool
+    """Whether each closure is open by at most 1e-6 (m, rad)."""
+    residual: NullIfInfinite
+    """Norm of the residual of all closures and couplings, m and rad."""
+    iterations: Count
+    """Number of evaluations of the residual."""
+    within_limits: bool
+    """Whether no joint is beyond its limits."""
+    joints: tuple[JointPosition, ...]
+    """The configuration found; the least open one if the loops do not close."""
+    closures: tuple[OpeningInfo, ...]
+    """The closures, then the couplings, each in file order."""
+    file: str | None
+    """The description, if --write is given; else null."""
+    written: bool
+    """Whether the configuration was written; false if the file already has it."""
+
+
+@command(
+    summary="find a configuration that closes the loops, and write it to the description",
+    description=_DESCRIPTION,
+    exit_codes="0 the loops close, 1 they do not or the robot has errors, 2 the command cannot run.",
+    examples=("eurdf assemble my_robot --hold motor_knee --write",),
+)
+def assemble(
+    options: dict[str, Any],
+    path: str = ROBOT,
+    write: bool = flag("write it to the description as 'assembled'"),
+    force: bool = flag("replace an existing, different 'assembled'"),
+    hold: list[str] = option("do not move this joint (repeatable)", metavar="JOINT", action="append", default=[]),
+    limits: bool = flag("never exceed the joint limits"),
+    start: str | None = option(
+        f"configuration to start from: one of the description, or {NEUTRAL}", "--from", metavar="CONFIGURATION"
+    ),
+    json: bool = JSON,
+) -> int:
+    """Assemble, show, and write."""
     from eurdf.linking.configurations import beyond_limits
+    from eurdf.linking.robot_files import read_valid
     from eurdf.pinocchio.robot import build_robot
+    from eurdf.writing.saved_configuration import NAME, CannotSave, file_to_save_to, save_configuration
 
-    robot = build_robot(description.mechanism, geometry=False)
-    start, q0 = _start(robot, args.start)
-    assembly = _assemble(robot, q0, args.hold, args.limits)
+    if force and not write:
+        raise CannotRun("--force has no effect without --write; add --write")
+    read = read_valid(path, geometry=False, **options)
+    if read.yaml is None:
+        raise CannotRun(
+            f"'{read.path}' is a plain URDF, without loops; `eurdf generate` writes a description with closures"
+        )
+    with cannot_run(CannotSave):
+        file = file_to_save_to(path, read) if write else None
+    robot = build_robot(read.mechanism, geometry=False)
+    start = start or (NAME if NAME in robot.configurations else NEUTRAL)
+    with cannot_run(ValueError):
+        assembly = _assemble(robot, named_configuration(robot, start), hold, limits)
     beyond = beyond_limits(robot.mechanism.joints, robot.coordinates(assembly.q))
-    info = assembly_info(robot, assembly, start, args.hold, {found.joint for found in beyond})
-    if not args.json:
+    info = replace(_assembly_info(robot, assembly, start, hold, {found.joint for found in beyond}), file=file)
+    if not json:
         _show(info)
-    code = 0 if assembly.closes else 1
-    if file is not None:
-        info = info.model_copy(update={"file": file})
-        if code == 0 and not beyond:
-            info = info.model_copy(update={"written": _write(description, robot, assembly.q, args.force)})
-        else:
-            code = 1
-    if args.json:
-        write_json(info.model_dump(mode="json"))
-    print_notes(_messages(info, assembly, beyond))
-    return code
-
-
-def _file_to_write(path: str, description: Described) -> str:
-    """The file to write the configuration to."""
-    from eurdf.writing.saved_configuration import CannotSave, file_to_save_to
-
-    try:
-        return file_to_save_to(path, description)
-    except CannotSave as reason:
-        raise CannotRun(str(reason)) from None
-
-
-def _start(robot: Robot, name: str | None) -> tuple[str, Vector]:
-    """The configuration to start from, and its name."""
-    import pinocchio as pin
-
-    from eurdf.diagnostics import did_you_mean
-    from eurdf.writing.assembled import NAME
-
-    if name is None:
-        name = NAME if NAME in robot.configurations else _NEUTRAL
-    if name in robot.configurations:
-        return name, robot.configurations[name]
-    if name == _NEUTRAL:
-        return name, pin.neutral(robot.model)
-    known = [*robot.configurations, _NEUTRAL]
-    hint = did_you_mean(name, known) or f"the configurations are: {', '.join(known)}"
-    raise CannotRun(f"there is no configuration '{name}'; {hint}")
+    is_written = assembly.closes and not beyond
+    if file is not None and is_written:
+        try:
+            info = replace(info, written=save_configuration(read, robot, assembly.q, force=force))
+        except CannotSave as reason:
+            replaces = NAME in robot.configurations and not force
+            raise CannotRun(f"{reason}; --force replaces it" if replaces else str(reason)) from None
+    if json:
+        write_result(info)
+    write_notes(_messages(info, assembly, beyond))
+    return 0 if (assembly.closes if file is None else is_written) else 1
 
 
 def _assemble(robot: Robot, q0: Vector, hold: list[str], limits: bool) -> Assembly:
     """A closed configuration, within the joint limits if possible."""
+    import numpy as np
+
     from eurdf.kinematics.assembly import assemble
+    from eurdf.kinematics.position_limit import position_limits
     from eurdf.linking.configurations import beyond_limits
 
-    try:
-        within = _clipped(robot, q0, hold)
-        assembly = assemble(robot, within if limits else q0, hold, tolerance=_TOLERANCE, limits=limits)
-    except ValueError as reason:
-        raise CannotRun(str(reason)) from None
+    held = [velocity for name in hold for velocity in robot.tree.velocities_of(name)]
+    # All joints but the held ones within their limits, also those outside of loops.
+    within = position_limits(robot).clip(q0, np.setdiff1d(np.arange(robot.tree.nv), held))
+    assembly = assemble(robot, within if limits else q0, hold, tolerance=_TOLERANCE, limits=limits)
     if not limits and assembly.closes and beyond_limits(robot.mechanism.joints, robot.coordinates(assembly.q)):
         limited = assemble(robot, within, hold, tolerance=_TOLERANCE, limits=True)
         if limited.closes:
@@ -155,35 +183,53 @@ def _assemble(robot: Robot, q0: Vector, hold: list[str], limits: bool) -> Assemb
     return assembly
 
 
-def _clipped(robot: Robot, q: Vector, hold: list[str]) -> Vector:
-    """The configuration with all joints but the held ones within their limits, also those outside of loops."""
-    import numpy as np
+def _assembly_info(
+    robot: Robot, assembly: Assembly, start: str, held: Collection[str], beyond: Collection[str]
+) -> AssemblyInfo:
+    types = {ROOT_JOINT: JointType.FLOATING} | {joint.name: joint.type for joint in robot.mechanism.joints}
+    joints = tuple(
+        JointPosition(
+            name,
+            types[name],
+            tuple(
+                CoordinateInfo(coordinate, unit, value)
+                for (coordinate, unit), value in zip(_units(types[name]), values, strict=True)
+            ),
+            actuated=name in robot.actuation.joints,
+            held=name in held,
+            beyond_limits=name in beyond,
+        )
+        for name, values in robot.coordinates(assembly.q).items()
+    )
+    return AssemblyInfo(
+        name=robot.mechanism.name,
+        start=start,
+        closes=assembly.closes,
+        residual=assembly.residual,
+        iterations=assembly.iterations,
+        within_limits=not beyond,
+        joints=joints,
+        closures=tuple(OpeningInfo(each.name, each.position, each.angle, not each.is_open) for each in assembly.open),
+        file=None,
+        written=False,
+    )
 
-    from eurdf.kinematics.position_limit import position_limits
 
-    held = [velocity for name in hold for velocity in robot.tree.velocities_of(name)]
-    return position_limits(robot).clip(q, np.setdiff1d(np.arange(robot.tree.nv), held))
-
-
-def _write(description: Described, robot: Robot, q: Vector, force: bool) -> bool:
-    """Write the configuration to the description; return whether the file changed."""
-    from eurdf.writing.assembled import NAME
-    from eurdf.writing.saved_configuration import CannotSave, save_configuration
-
-    try:
-        return save_configuration(description, robot, q, force=force)
-    except CannotSave as reason:
-        replaces = NAME in robot.configurations and not force
-        raise CannotRun(f"{reason}; --force replaces it" if replaces else str(reason)) from None
+def _units(kind: JointType) -> list[tuple[str, Unit]]:
+    """Name and unit of each coordinate of a joint."""
+    plain = kind.coordinates[: kind.quaternion]
+    return [(name, _UNITS[name] if name in plain else "") for name in kind.coordinates]
 
 
 def _messages(info: AssemblyInfo, assembly: Assembly, beyond: list[BeyondLimit]) -> list[str]:
-    """The messages after the table."""
+    """The messages after the table, which shows all openings."""
+    from eurdf.kinematics.opening import widest
+
     nothing_written = [f"nothing was written to '{info.file}'"] if info.file is not None else []
     if not info.closes:
         held = ", ".join(f"'{joint.name}'" for joint in info.joints if joint.held)
         found = f"no configuration was found that closes the loops{held and f' with {held} held'}"
-        messages = [f"{found}; least open: {_widest(assembly)}"]
+        messages = [f"{found}; least open: {widest(assembly.open)}"]
         if assembly.at_limits:
             messages.append(f"joints at their limits: {', '.join(map(str, assembly.at_limits))}")
         return [*messages, *nothing_written]
@@ -199,41 +245,27 @@ def _messages(info: AssemblyInfo, assembly: Assembly, beyond: list[BeyondLimit])
     return []
 
 
-def _widest(assembly: Assembly) -> str:
-    """The closures that are open the most; the table shows all."""
-    wide = [opening for opening in assembly.open if opening.is_open]
-    wide.sort(key=lambda opening: max(opening.position, opening.angle), reverse=True)
-    more = f"; and {len(wide) - _MOST_OPEN} more" if len(wide) > _MOST_OPEN else ""
-    return "; ".join(map(str, wide[:_MOST_OPEN])) + more
-
-
 def _show(info: AssemblyInfo) -> None:
     from rich.text import Text
 
-    from eurdf.diagnostics.visible import visible
+    from eurdf.diagnostics.wording import visible
 
     word, style = ("closed", "green") if info.closes else ("open", "red")
-    residual = "" if info.residual is None else f", residual {info.residual:.1e}"
+    residual = f", residual {info.residual:.1e}" if math.isfinite(info.residual) else ""
     heading = Text.assemble((visible(info.name), "bold"), "  ", (word, style), f"{residual}, from {info.start}")
     write_rendered(heading, *([_joints(info)] if info.joints else []), *([] if info.closes else [_closures(info)]))
 
 
 def _joints(info: AssemblyInfo) -> Table:
-    table = new_table("joint", "type", "coordinates", "unit", "")
+    rows = []
     for joint in info.joints:
         numbers = "  ".join(_number(coordinate.value) for coordinate in joint.coordinates)
-        notes = [
-            word
-            for word, applies in (
-                ("held", joint.held),
-                ("beyond its limits", joint.beyond_limits),
-                ("actuated", joint.actuated),
-            )
-            if applies
-        ]
+        words = ("held", joint.held), ("beyond its limits", joint.beyond_limits), ("actuated", joint.actuated)
+        notes = [word for word, applies in words if applies]
         style = "red" if joint.beyond_limits else "cyan"
-        table.add_row(cell(joint.name, "bold"), joint.type.value, numbers, _units(joint), cell(", ".join(notes), style))
-    return table
+        note = cell(", ".join(notes), style)
+        rows.append((cell(joint.name, "bold"), joint.type.value, numbers, _units_shown(joint), note))
+    return new_table("joint", "type", "coordinates", "unit", "", rows=rows)
 
 
 def _number(value: float) -> str:
@@ -242,7 +274,7 @@ def _number(value: float) -> str:
     return f"{rounded:.9f}".rstrip("0").rstrip(".") if abs(rounded) < 1e9 else repr(rounded)
 
 
-def _units(joint: JointPosition) -> str:
+def _units_shown(joint: JointPosition) -> str:
     """The unit of the coordinates, once if all are equal; for a quaternion the order of its numbers."""
     units = [coordinate.unit for coordinate in joint.coordinates if coordinate.unit]
     words = list(dict.fromkeys(units)) if len(set(units)) == 1 else units
@@ -251,12 +283,9 @@ def _units(joint: JointPosition) -> str:
 
 
 def _closures(info: AssemblyInfo) -> Table:
-    table = new_table("closure", "m", "rad", "")
-    for column in table.columns[1:3]:
-        column.justify = "right"
+    rows = []
     for closure in info.closures:
-        numbers = ("-" if number is None else f"{number:.1e}" for number in (closure.position, closure.angle))
-        table.add_row(
-            cell(closure.name, "bold"), *numbers, cell("closed", "green") if closure.closed else cell("open", "red")
-        )
-    return table
+        numbers = (f"{number:.1e}" if math.isfinite(number) else "-" for number in (closure.position, closure.angle))
+        state = cell("closed", "green") if closure.closed else cell("open", "red")
+        rows.append((cell(closure.name, "bold"), *numbers, state))
+    return new_table("closure", "m", "rad", "", rows=rows, right=[1, 2])

@@ -2,26 +2,25 @@
 
 from __future__ import annotations
 
-import argparse
 import os
 import re
 import sys
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
-from eurdf.commands.cannot_run import CannotRun
-from eurdf.commands.loss_lines import loss_lines
-from eurdf.commands.migrate import print_notes, show_report
-from eurdf.commands.output import write_json, write_lines
+from eurdf.commands.command import FORCE, FORMAT, ROBOT, command, flag, option
+from eurdf.commands.conversion_lines import loss_lines, verification_lines
+from eurdf.commands.output import write_result
 from eurdf.commands.output_file import writing
-from eurdf.commands.progress import progress_bar
-from eurdf.commands.robot_options import add_robot_options, add_robot_path, ending, robot_options
-from eurdf.commands.selection import select_one
-from eurdf.commands.verification_lines import verification_lines
+from eurdf.commands.terminal import progress_bar, write_lines, write_notes, write_refusal
+from eurdf.convert.formats import ACTUATORS, CLOSURES, EXPORTS, MESH_FILES
+from eurdf.exceptions import CannotRun
 
 if TYPE_CHECKING:
+    from eurdf.convert.formats import Actuators, ClosureChoice, MeshFileChoice
+    from eurdf.convert.losses import Loss
     from eurdf.diagnostics import Place
-    from eurdf.linking.description import Linked
-    from eurdf.loss import Loss
+    from eurdf.linking.robot_files import ReadRobot
 
 _DESCRIPTION = """\
 Write a robot in the format of a simulator, with the closed loops that the format can state, and show every loss: what
@@ -30,98 +29,75 @@ the format cannot say, or only approximately.
 The files are written to a folder, all of them or none. With --verify, the program that they are for reads them back:
 MuJoCo, Drake, the library of USD or Pinocchio; MuJoCo and Drake also let the robot fall for 2 s.
 """
-_EPILOG = ending(
-    "0 exported, 1 the robot has errors, losses with --strict, or an error with --verify, 2 the command cannot run.",
-    "eurdf export my_robot --to mjcf",
-    "eurdf export my_robot --to mjcf --verify",
-    "eurdf export my_robot --to mjcf -o simulation --actuators position",
+
+
+_FORMATS: Any = (FORMAT, option("same as --format json", "--json", action="store_const", dest="form", const="json"))
+
+
+@command(
+    summary="write a robot in the format of a simulator, and show what it loses",
+    description=_DESCRIPTION,
+    exit_codes="0 exported, 1 the robot has errors, losses with --strict, or an error with --verify, 2 the command "
+    "cannot run.",
+    examples=(
+        "eurdf export my_robot --to mjcf",
+        "eurdf export my_robot --to mjcf --verify",
+        "eurdf export my_robot --to mjcf -o simulation --actuators position",
+    ),
 )
-
-#: Names of the formats, and of what actuators, closures and mesh files become. They are checked against
-#: `eurdf.exporting` by the tests: importing it here would slow every command down.
-FORMATS = ("mjcf", "usd", "drake", "loop-joint", "sdf", "urdf")
-ACTUATORS = ("motor", "position", "none")
-CLOSURES = ("stated", "hinge")
-MESH_FILES = ("copy", "reference")
-
-
-def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command to the parser."""
-    parser = subparsers.add_parser(
-        "export",
-        help="write a robot in the format of a simulator, and show what it loses",
-        description=_DESCRIPTION,
-        epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    add_robot_path(parser)
-    add_robot_options(parser)
-    parser.add_argument("--to", required=True, choices=FORMATS, metavar="FORMAT", help=", ".join(FORMATS))
-    parser.add_argument(
-        "-o", "--output", metavar="OUT", help="the folder to write to; default: the robot's name, _ and the format"
-    )
-    parser.add_argument(
-        "--configuration",
+def export(
+    options: dict[str, Any],
+    path: str = ROBOT,
+    to: str = option(", ".join(EXPORTS), required=True, choices=EXPORTS, metavar="FORMAT"),
+    output: str | None = option(
+        "the folder to write to; default: the robot's name, _ and the format", "-o", "--output", metavar="OUT"
+    ),
+    configuration: str = option(
+        "configuration to start simulations from; default: assembled, which is searched within the limits if there is "
+        "none",
         metavar="NAME",
         default="assembled",
-        help="configuration to start simulations from; default: assembled, which is searched within the limits if "
-        "there is none",
-    )
-    parser.add_argument(
-        "--actuators", choices=ACTUATORS, default="motor", help="what actuators become in MJCF and USD; default: motor"
-    )
-    parser.add_argument(
-        "--closures",
+    ),
+    actuators: Actuators = option(
+        "what actuators become in MJCF and USD; default: motor", choices=ACTUATORS, default="motor"
+    ),
+    closures: ClosureChoice = option(
+        "hinge: 3d closures become hinges where their bodies turn about one axis alone, for solvers that hold no ball "
+        "joint in a loop; default: stated",
         choices=CLOSURES,
         default="stated",
-        help="hinge: 3d closures become hinges where their bodies turn about one axis alone, for solvers that hold no "
-        "ball joint in a loop; default: stated",
-    )
-    parser.add_argument(
-        "--mesh-files",
+    ),
+    mesh_files: MeshFileChoice = option(
+        "copy mesh files to meshes/, or reference them where they are by absolute paths; default: copy",
         choices=MESH_FILES,
         default="copy",
-        help="copy mesh files to meshes/, or reference them where they are by absolute paths; default: copy",
-    )
-    parser.add_argument("--strict", action="store_true", help="write nothing if a loss is not exact")
-    parser.add_argument("--force", action="store_true", help="replace existing files")
-    parser.add_argument(
-        "--verify",
-        action="store_true",
-        help="read the result back: compare mass, mass matrix, loops and limits with the robot, simulate 2 s where the "
-        "program can, and say which loops open by more than 5 mm, or what diverges, and why",
-    )
-    parser.add_argument("--format", choices=("text", "json"), default="text", help="format of the output")
-    parser.add_argument("--json", action="store_const", dest="format", const="json", help="same as --format json")
-    parser.set_defaults(run=run)
+    ),
+    strict: bool = flag("write nothing if a loss is not exact"),
+    force: bool = FORCE,
+    verify: bool = flag(
+        "read the result back: compare mass, mass matrix, loops and limits with the robot, simulate 2 s where the "
+        "program can, and say which loops open by more than 5 mm, or what diverges, and why"
+    ),
+    form: str = _FORMATS,
+) -> int:
+    """Export, and show the losses."""
+    from eurdf.linking.robot_files import read_valid
 
+    read = read_valid(path, **options)
+    if read.diagnostics:  # such as closures of another dialect, which the file will not have
+        write_refusal(read.path, read.diagnostics, as_json=False)
 
-def run(args: argparse.Namespace) -> int:
-    """Export, show the losses, and return the exit code."""
-    from eurdf.linking.description import Unlinked, describe
+    from eurdf.convert.exceptions import CannotExport
+    from eurdf.convert.export import Choices, export_linked
+    from eurdf.convert.verification.verify import require_reader
 
-    path = select_one(args.path)
-    options = robot_options(args)
-    description = describe(path, **options)
-    as_json = args.format == "json"
-    if isinstance(description, Unlinked) or description.diagnostics.refused:
-        show_report(description.path, tuple(description.diagnostics), as_json)
-        return 1
-    if description.diagnostics:  # such as closures of another dialect, which the file will not have
-        show_report(description.path, tuple(description.diagnostics), False)
-
-    from eurdf.exporting.exceptions import CannotExport
-    from eurdf.exporting.export import Choices, export_linked
-    from eurdf.exporting.verification.verify import require_reader
-
-    if args.verify:
-        require_reader(args.to)
+    if verify:
+        require_reader(to)
     losses: tuple[Loss, ...]
     refusal, paths, verification = "", [], None
-    folder = args.output or f"{_file_name(description.mechanism.name)}_{args.to}"
     try:
-        choices = Choices(args.to, args.configuration, args.actuators, args.closures, args.mesh_files, args.strict)
-        exported = export_linked(description, choices, options["package_dirs"], allow_outside=options["allow_outside"])
+        choices = Choices(to, configuration, actuators, closures, mesh_files, strict)
+        exported = export_linked(read, choices, options["package_dirs"], allow_outside=options["allow_outside"])
     except CannotExport as reason:
         losses = reason.losses
         refusal = "nothing was written: --strict refuses losses" if losses else f"nothing was written: {reason}"
@@ -130,20 +106,21 @@ def run(args: argparse.Namespace) -> int:
     else:
         losses = exported.losses
         with writing():
-            paths = [os.fspath(each) for each in exported.write(folder, force=args.force)]
-        if args.verify:
+            folder = output or f"{_file_name(read.mechanism.name)}_{to}"
+            paths = [os.fspath(each) for each in exported.write(folder, force=force)]
+        if verify:
             with progress_bar("simulating") as progress:
                 verification = exported.verify(progress=progress)
-    if as_json:
-        from eurdf.commands.export_info import export_info
+    place_of = partial(_place, read)
+    if form == "json":
+        from eurdf.commands.conversion_info import ExportInfo, loss_infos, verification_info
 
-        info = export_info(
-            description.path, args.to, paths, losses, refusal, lambda loss: _place(loss, description), verification
-        )
-        write_json(info.model_dump(mode="json"))
+        verified = None if verification is None else verification_info(verification)
+        found = loss_infos(losses, place_of)
+        write_result(ExportInfo(read.path, to, tuple(paths), refusal or None, found, verified))
     else:
-        write_lines(loss_lines(losses, lambda loss: _place(loss, description)), sys.stdout)
-        print_notes([refusal] if refusal else [f"wrote '{each}'" for each in paths])
+        write_lines(loss_lines(losses, place_of), sys.stdout)
+        write_notes([refusal] if refusal else [f"wrote '{each}'" for each in paths])
         if verification is not None:
             write_lines(verification_lines(verification), sys.stdout)
     return 1 if refusal or (verification is not None and verification.findings) else 0
@@ -153,19 +130,17 @@ def _file_name(robot: str) -> str:
     return re.sub(r"[^A-Za-z0-9._-]", "_", robot).strip(".") or "robot"
 
 
-def _place(loss: Loss, description: Linked) -> Place | None:
+def _place(read: ReadRobot, loss: Loss) -> Place | None:
     """Where the element of a loss is stated, if it is in a file."""
-    from eurdf.linking.description import Described
-
-    name, urdf = loss.name, description.urdf
-    if any(constraint.name == name for constraint in description.mechanism.constraints):
-        if loss.concept.endswith(("closure", "coupling", "compliance")) and isinstance(description, Described):
-            return description.place_of_constraint(name)
+    name, urdf = loss.name, read.urdf
+    if any(constraint.name == name for constraint in read.mechanism.constraints):
+        if loss.concept.endswith(("closure", "coupling", "compliance")) and read.yaml is not None:
+            return read.place_of_constraint(name)
         return None
     if loss.concept in ("inertia", "link without mass"):
         return urdf.document.place(urdf.links[name].element, None) if name in urdf.links else None
     if loss.concept in ("actuator", "control range", "gear ratio"):
-        name = next((joint for joint, motor in description.mechanism.motors.items() if motor.name == name), name)
+        name = next((joint for joint, motor in read.mechanism.motors.items() if motor.name == name), name)
     if name in urdf.joints:
         return urdf.document.place(urdf.joints[name].element, None)
     return None

@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
-import argparse
-import os
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 from dataclasses import replace
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
-from eurdf.commands.cannot_run import CannotRun
-from eurdf.commands.editor_schema import NOT_BESIDE, EditorSchema, add_schema_option, schema_beside, write_described
-from eurdf.commands.migrate import print_notes, report_schema, show_report, urdf_named, urdf_notes, write_yaml
-from eurdf.commands.output import write_json
-from eurdf.commands.output_file import add_output_option, refuse_to_replace
-from eurdf.commands.robot_options import add_urdf_options, add_urdf_path, ending, require_urdf, urdf_options
-from eurdf.reading.given import shown
+from eurdf.commands.command import FORCE_DESCRIPTION, OUTPUT, URDF, cannot_run, command, flag, option, require_urdf
+from eurdf.commands.description_file import (
+    NOT_BESIDE,
+    SCHEMA,
+    DescriptionFile,
+    EditorSchema,
+    schema_beside,
+    urdf_named,
+    urdf_notes,
+)
+from eurdf.commands.output import write_result
+from eurdf.commands.output_file import refuse_to_replace
+from eurdf.commands.terminal import write_notes, write_refusal
+from eurdf.exceptions import CannotRun
+from eurdf.reading.robot_source import display_name
 
 if TYPE_CHECKING:
+    from eurdf.mechanism.mechanism import Root
     from eurdf.writing.generation import Generation
     from eurdf.writing.naming_conventions import GeneratedVersion
 
@@ -44,160 +51,111 @@ distinguishes the two frames, the group loop (optional) is their common part, an
 """
 
 
-def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command to the parser."""
-    parser = subparsers.add_parser(
-        "generate",
-        help="write a description from the names in a URDF",
-        description=_DESCRIPTION,
-        epilog=ending(
-            "0 written, 1 the URDF has errors or its names contradict each other, 2 the command cannot run.",
-            "eurdf generate arm.urdf -o arm.yaml",
-            "eurdf generate arm.urdf --closure '(?P<loop>rod\\d+)_(?P<side>top|bottom)' --motor 'drive$'",
-        ),
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    add_urdf_path(parser)
-    add_urdf_options(parser)
-    add_output_option(parser)
-    parser.add_argument("--force", action="store_true", help="replace OUT and its schema if they exist")
-    add_schema_option(parser)
-    for option, what in (
-        ("--closure", "the frames of closures"),
-        ("--motor", "actuated joints"),
-        ("--spherical", "spherical joints"),
-    ):
-        parser.add_argument(
-            option, metavar="PATTERN", action="append", default=[], help=f"names of {what} (repeatable)"
-        )
-    parser.add_argument(
-        "--type", choices=("3d", "6d"), help="type of all closures, instead of the type from name or motion"
-    )
-    parser.add_argument("--root", choices=("fixed", "floating"), default="fixed", help="default: fixed")
-    parser.add_argument(
-        "--version",
-        choices=("1", "2", "2.1"),
-        help="version of the format; 2 is 2.0; default: 2, or 2.1 if there is a hinge",
-    )
-    parser.add_argument("--json", action="store_true", help="write one JSON object: the text, and what was found")
-    parser.set_defaults(run=run)
+def _pattern(what: str) -> Any:
+    return option(f"names of {what} (repeatable)", metavar="PATTERN", action="append", default=[])
 
 
-def run(args: argparse.Namespace) -> int:
-    """Generate and write a description, print notes, and return the exit code."""
+@command(
+    summary="write a description from the names in a URDF",
+    description=_DESCRIPTION,
+    exit_codes="0 written, 1 the URDF has errors or its names contradict each other, 2 the command cannot run.",
+    examples=(
+        "eurdf generate arm.urdf -o arm.yaml",
+        "eurdf generate arm.urdf --closure '(?P<loop>rod\\d+)_(?P<side>top|bottom)' --motor 'drive$'",
+    ),
+)
+def generate(
+    options: dict[str, Any],
+    urdf: str = URDF,
+    output: str | None = OUTPUT,
+    force: bool = FORCE_DESCRIPTION,
+    schema: str = SCHEMA,
+    closure: list[str] = _pattern("the frames of closures"),
+    motor: list[str] = _pattern("actuated joints"),
+    spherical: list[str] = _pattern("spherical joints"),
+    closure_type: Literal["3d", "6d"] | None = option(
+        "type of all closures, instead of the type from name or motion", "--type", choices=("3d", "6d")
+    ),
+    root: Root = option("default: fixed", choices=("fixed", "floating"), default="fixed"),
+    version: GeneratedVersion | None = option(
+        "version of the format; 2 is 2.0; default: 2, or 2.1 if there is a hinge", choices=("1", "2", "2.1")
+    ),
+    json: bool = flag("write one JSON object: the text, and what was found"),
+) -> int:
+    """Generate and write a description, and print notes."""
     from eurdf.diagnostics import Diagnostics
-    from eurdf.linking.description import read_urdf_alone
-    from eurdf.writing.generation import generate
+    from eurdf.linking.robot_files import read_urdf_alone
+    from eurdf.writing import generation
     from eurdf.writing.naming_conventions import BadPattern, conventions, hints
 
-    if args.version == "1" and args.root != "fixed":
+    if version == "1" and root != "fixed":
         raise CannotRun("version 1 cannot state a floating root; use version 2")
-    require_urdf(args.urdf)
-    options = urdf_options(args)
-    try:
-        convention = conventions(args.closure, args.motor, args.spherical)
-    except BadPattern as reason:
-        raise CannotRun(str(reason)) from None
+    require_urdf(urdf)
+    with cannot_run(BadPattern):
+        convention = conventions(closure, motor, spherical)
     diagnostics = Diagnostics()
-    urdf = read_urdf_alone(args.urdf, diagnostics, **options)
-    if urdf is None:
-        show_report(shown(args.urdf), tuple(diagnostics), args.json)
-        return 1
-    source = urdf.document.source
-    if args.version == "1":  # which cannot name a xacro
+    tree = read_urdf_alone(urdf, diagnostics, **options)
+    source = tree.document.source
+    if version == "1":  # which cannot name a xacro
         source = replace(source, made_from=())
-    urdf_path = urdf_named(args.output or args.urdf, source)
-    if args.output is not None:
-        refuse_to_replace(args.output, args.force)
+    urdf_path = urdf_named(output or urdf, source)
+    if output is not None:
+        refuse_to_replace(output, force)
 
     @cache
     def beside(version: GeneratedVersion) -> EditorSchema | None:
-        return None if args.output is None else schema_beside(args.output, version, args.schema, urdf, args.force)
+        return None if output is None else schema_beside(output, version, schema, tree, force)
 
     def reference(version: GeneratedVersion) -> str | None:
-        schema = beside(version)
-        return None if schema is None else schema.reference
+        made = beside(version)
+        return None if made is None else made.reference
 
-    generation = generate(urdf, convention, args.version, args.root, urdf_path, reference, args.type)
-    schema = beside(generation.version)
-    advice = hints(urdf, generation.found, convention)
-    if generation.mechanism is None:
-        show_report(shown(args.urdf), tuple(generation.diagnostics), args.json)
-        print_notes(["nothing was written: the names contradict each other"])
+    made = generation.generate(tree, convention, version, root, urdf_path, reference, closure_type)
+    advice = hints(tree, made.found, convention)
+    if made.mechanism is None:
+        write_refusal(display_name(urdf), made.diagnostics, json)
+        write_notes(["nothing was written: the names contradict each other"])
         return 1
-    if args.output is not None:
-        write_described(args.output, generation.text, schema, args.force)
     warnings = [found.message for found in diagnostics if found.code == "x-xacro-warning"]
     ignored = (f"{found.message}; {found.hint}" for found in diagnostics if found.code == "urdf-closure-ignored")
     warnings += dict.fromkeys(ignored)
-    warnings += generation.found.warnings
+    warnings += made.found.warnings
     warnings += urdf_notes(source, urdf_path, options["xacro_args"])
-    if args.version == "1" and urdf_path != "robot.urdf":
+    if version == "1" and urdf_path != "robot.urdf":
         warnings.append(f"version 1 cannot name its URDF; rename '{urdf_path}' to robot.urdf, beside the description")
-    if args.json:
-        write_json(_result(generation, args.output, schema, warnings, advice))
-        return 0
-    if args.output is None:
-        write_yaml(generation.text)
-    print_notes(
-        [
-            *_summary(generation),
-            *(f"note: {note}" for note in generation.notes),
-            *(f"warning: {warning}" for warning in warnings),
-            *(f"hint: {hint}" for hint in advice),
+    notes = [
+        *_summary(made),
+        *(f"note: {note}" for note in made.notes),
+        *(f"warning: {warning}" for warning in warnings),
+        *(f"hint: {hint}" for hint in advice),
+    ]
+    file = DescriptionFile(output, made.text, beside(made.version))
+    file.write(force)
+    if json:
+        found = made.found
+        closures = [
+            {"name": each.name, "type": each.type, "frames": each.frames, **each.axis_keys} for each in found.closures
         ]
-    )
-    if args.output is not None:
-        print_notes([f"wrote '{args.output}'"])
-    elif args.schema != "none":
-        print_notes([NOT_BESIDE])
-    if schema is not None:
-        report_schema(schema)
+        names = {"motors": found.motors, "sphericals": found.sphericals, "merges": made.merges}
+        sentences = {"notes": made.notes, "warnings": warnings, "hints": advice}
+        write_result({**file.paths, "closures": closures, **names, **sentences, "text": made.text})
+    else:
+        file.show(notes if output is not None or schema == "none" else [*notes, NOT_BESIDE], as_text=output is None)
     return 0
 
 
 def _summary(generation: Generation) -> list[str]:
     found = generation.found
     closures = [f"{closure.name} ({', '.join(closure.frames)}, {closure.type})" for closure in found.closures]
-    lines = [_count("closure", closures), _count("motor", found.motors)]
-    if found.sphericals:
-        lines.append(_count("spherical joint", found.sphericals))
-    if generation.merges:
-        lines.append(
-            _count(
-                "spherical joint", generation.merges, ", each merged from three revolute joints whose axes intersect"
-            )
-        )
-    return lines
+    merged = ", each merged from three revolute joints whose axes intersect"
+    return [
+        _count("closure", closures),
+        _count("motor", found.motors),
+        *([_count("spherical joint", found.sphericals)] if found.sphericals else []),
+        *([_count("spherical joint", generation.merges, merged)] if generation.merges else []),
+    ]
 
 
 def _count(what: str, names: Collection[str], more: str = "") -> str:
     many = f"{len(names)} {what}{'' if len(names) == 1 else 's'}{more}"
     return many + (f": {', '.join(names)}" if names else "")
-
-
-def _result(
-    generation: Generation,
-    output: str | None,
-    schema: EditorSchema | None,
-    warnings: Sequence[str],
-    advice: Sequence[str],
-) -> dict[str, Any]:
-    from eurdf.diagnostics.report import encodable
-
-    found = generation.found
-    return {
-        "output": None if output is None else encodable(output),
-        "schema": None if schema is None else encodable(os.fspath(schema.path)),
-        "closures": [
-            {"name": closure.name, "type": closure.type, "frames": list(closure.frames), **closure.axis_keys}
-            for closure in found.closures
-        ],
-        "motors": list(found.motors),
-        "sphericals": list(found.sphericals),
-        "merges": {name: list(three) for name, three in generation.merges.items()},
-        "notes": [encodable(note) for note in generation.notes],
-        "warnings": [encodable(warning) for warning in warnings],
-        "hints": [encodable(hint) for hint in advice],
-        "text": generation.text,
-    }

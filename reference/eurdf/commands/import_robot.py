@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-import argparse
 import os
 import sys
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eurdf.commands.check import write_reports
-from eurdf.commands.loss_lines import loss_lines
-from eurdf.commands.migrate import print_notes
-from eurdf.commands.output import write_json, write_lines
+from eurdf.commands.command import FORCE, FORMAT, OUTPUT_FOLDER, command, flag, option
+from eurdf.commands.conversion_info import ImportInfo, loss_infos
+from eurdf.commands.conversion_lines import loss_lines
+from eurdf.commands.output import write_result
 from eurdf.commands.output_file import writing
-from eurdf.commands.robot_options import ending
+from eurdf.commands.terminal import write_lines, write_notes, write_reports
+from eurdf.reading.other_formats import IMPORTED
 
 if TYPE_CHECKING:
+    from eurdf.convert.import_robot import Import
+    from eurdf.convert.losses import Loss
     from eurdf.diagnostics import Place
-    from eurdf.importing.import_robot import Import
-    from eurdf.loss import Loss
 
 _DESCRIPTION = """\
 Describe a robot that is in a file of a simulator, with its closed loops, and show every loss: what a description cannot
@@ -28,85 +30,62 @@ The files are written to a folder, all of them or none: robot.urdf, robot.yaml, 
 If the loops are open at the keyframe or reference pose of the file, a configuration is searched that closes them.
 What was written is checked, as by `eurdf check`.
 """
-_EPILOG = ending(
-    "0 imported, 1 the file or the robot has errors, or losses with --strict, 2 the command cannot run.",
-    "eurdf import cassie.xml -o cassie",
-    "eurdf import scene/arm.xml -o arm --within .",
+
+
+@command(
+    summary="describe a robot that is in a file of a simulator, and show what is lost",
+    description=_DESCRIPTION,
+    exit_codes="0 imported, 1 the file or the robot has errors, or losses with --strict, 2 the command cannot run.",
+    examples=("eurdf import cassie.xml -o cassie", "eurdf import scene/arm.xml -o arm --within ."),
 )
-
-#: Names of the formats. They are checked against `eurdf.importing` by the tests: importing it here would slow every
-#: command down.
-FORMATS = ("mjcf", "sdf", "loop-joint", "drake", "urdf-plus")
-
-
-def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command to the parser."""
-    parser = subparsers.add_parser(
-        "import",
-        help="describe a robot that is in a file of a simulator, and show what is lost",
-        description=_DESCRIPTION,
-        epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    parser.add_argument("file", metavar="FILE", help="the file to import")
-    parser.add_argument("-o", "--output", metavar="FOLDER", required=True, help="the folder to write to")
-    parser.add_argument(
-        "--from",
-        dest="format_",
-        choices=FORMATS,
-        metavar="FORMAT",
-        help=f"{', '.join(FORMATS)}; default: recognized by the content",
-    )
-    parser.add_argument(
-        "--within",
-        metavar="FOLDER",
-        help="a folder that the files may be in which FILE names, besides the robot's folder: the nearest one with a "
+def import_robot(
+    file: str = option("the file to import", "file", metavar="FILE"),
+    output: str = OUTPUT_FOLDER,
+    format_: str | None = option(
+        f"{', '.join(IMPORTED)}; default: recognized by the content", "--from", choices=IMPORTED, metavar="FORMAT"
+    ),
+    within: str | None = option(
+        "a folder that the files may be in which FILE names, besides the robot's folder: the nearest one with a "
         "package.xml, or else that of FILE",
-    )
-    parser.add_argument("--allow-outside", action="store_true", help="read files that are outside these folders")
-    parser.add_argument(
-        "--strict", action="store_true", help="write nothing if a loss is not exact, or the robot has errors"
-    )
-    parser.add_argument("--force", action="store_true", help="replace existing files")
-    parser.add_argument("--format", choices=("text", "json"), default="text", help="format of the output")
-    parser.set_defaults(run=run)
-
-
-def run(args: argparse.Namespace) -> int:
-    """Import, show the losses, and return the exit code."""
-    from eurdf.checking.check import check
+        metavar="FOLDER",
+    ),
+    allow_outside: bool = flag("read files that are outside these folders"),
+    strict: bool = flag("write nothing if a loss is not exact, or the robot has errors"),
+    force: bool = FORCE,
+    form: str = FORMAT,
+) -> int:
+    """Import, and show the losses."""
+    import eurdf
+    from eurdf.convert.exceptions import CannotImport
     from eurdf.diagnostics.report import Report
-    from eurdf.importing.exceptions import CannotImport
-    from eurdf.importing.import_robot import import_robot
 
     try:
-        found = import_robot(
-            args.file, format=args.format_, within=args.within, strict=args.strict, allow_outside=args.allow_outside
-        )
+        found = eurdf.import_robot(file, format=format_, within=within, strict=strict, allow_outside=allow_outside)
     except CannotImport as reason:
-        places = _Places((Path(args.file),))
-        if args.format == "json":
-            from eurdf.commands.import_info import refused_import
-
-            info = refused_import(args.file, args.format_, reason, places.of)
-            write_json(info.model_dump(mode="json"))
+        place_of = _places((Path(file),))
+        if form == "json":
+            reported = tuple(Report(file, reason.diagnostics).to_json()["diagnostics"])
+            losses = loss_infos(reason.losses, place_of)
+            write_result(ImportInfo(file, format_, (), str(reason), None, (), None, losses, reported))
         else:
-            write_lines(loss_lines(reason.losses, places.of), sys.stdout)
+            write_lines(loss_lines(reason.losses, place_of), sys.stdout)
             if reason.diagnostics:
-                write_reports([Report(args.output, reason.diagnostics)])
-            print_notes([f"nothing was written: {reason}"])
+                write_reports([Report(output, reason.diagnostics)])
+            write_notes([f"nothing was written: {reason}"])
         return 1
-    places = _Places(found.sources)
+    place_of = _places(found.sources)
     with writing():
-        paths = [os.fspath(each) for each in found.write(args.output, force=args.force)]
-    report = check(args.output)
-    if args.format == "json":
-        from eurdf.commands.import_info import import_info
-
-        write_json(import_info(args.file, found, paths, report, places.of).model_dump(mode="json"))
+        paths = tuple(os.fspath(each) for each in found.write(output, force=force))
+    report = eurdf.check(output)
+    if form == "json":
+        reported = tuple(report.to_json()["diagnostics"])
+        losses = loss_infos(found.losses, place_of)
+        write_result(
+            ImportInfo(file, found.format, paths, None, found.start, found.opened, found.closes, losses, reported)
+        )
     else:
-        write_lines(loss_lines(found.losses, places.of), sys.stdout)
-        print_notes([*_loops(found), *(f"wrote '{each}'" for each in paths)])
+        write_lines(loss_lines(found.losses, place_of), sys.stdout)
+        write_notes([*_loops(found), *(f"wrote '{each}'" for each in paths)])
         if not report.ok:
             write_reports([report])
     return 0 if report.ok else 1
@@ -120,22 +99,18 @@ def _loops(found: Import) -> list[str]:
     count = f"{len(found.opened)} constraint{'' if len(found.opened) == 1 else 's'}"
     if not is_open:
         return [f"{count} closed at {found.start}"]
-    widest = max(is_open, key=lambda opening: max(opening.position, opening.angle))
+    widest = max(is_open, key=lambda opening: opening.width)
     after = "closed in the configuration 'assembled'" if found.closes else "no configuration was found that closes them"
     return [f"{count}, {len(is_open)} open at {found.start}, the most {widest}; {after}"]
 
 
-class _Places:
-    """Where the elements of files are: the first one of a name."""
+def _places(sources: tuple[Path, ...]) -> Callable[[Loss], Place | None]:
+    """What finds the element of a loss in files: the first one of its name."""
 
-    def __init__(self, sources: tuple[Path, ...]) -> None:
-        self._sources = sources
-        self._of: dict[str, Place] | None = None
+    @cache
+    def by_name() -> dict[str, Place]:
+        from eurdf.convert.xml_elements import places_of_names
 
-    def of(self, loss: Loss) -> Place | None:
-        """Where the element of a loss is, if it has a name there."""
-        if self._of is None:
-            from eurdf.importing.places import places_of_names
+        return places_of_names(sources)
 
-            self._of = places_of_names(self._sources)
-        return self._of.get(loss.name)
+    return lambda loss: by_name().get(loss.name)

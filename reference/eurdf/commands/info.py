@@ -2,78 +2,52 @@
 
 from __future__ import annotations
 
-import argparse
+import math
 import sys
 from collections import Counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from eurdf.commands.output import cell, new_table, write_json, write_lines, write_rendered
-from eurdf.commands.robot_options import add_robot_options, add_robot_path, ending, robot_options
-from eurdf.commands.selection import select_one
-from eurdf.reading.given import shown
+from eurdf.commands.command import JSON, ROBOT, ROOT, command
+from eurdf.commands.output import write_result
+from eurdf.commands.terminal import cell, new_table, write_lines, write_rendered, write_reports
+from eurdf.reading.robot_source import display_name
 
 if TYPE_CHECKING:
     from rich.table import Table
     from rich.text import Text
 
     from eurdf.commands.robot_info import CouplingInfo, RobotInfo
+    from eurdf.mechanism.mechanism import Root
+
+Row = tuple[str, "int | str | None", str]
 
 # Maximum number of motions that are named.
 _MOST_MOTIONS = 12
 
 
-def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command to the parser."""
-    parser = subparsers.add_parser(
-        "info",
-        help="show a robot's dimensions, its closures, and how it can move",
-        description="Show what a robot is made of, whether its loops close, and what motions that leaves.",
-        epilog=ending(
-            "0 shown, 1 the robot has errors that keep it from being built, 2 the command cannot run.",
-            "eurdf info digit_leg --root floating",
-        ),
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    add_robot_path(parser)
-    add_robot_options(parser)
-    parser.add_argument("--root", choices=("fixed", "floating"), help="default: as the description says")
-    parser.add_argument("--json", action="store_true", help="write one JSON object")
-    parser.set_defaults(run=run)
-
-
-def run(args: argparse.Namespace) -> int:
-    """Load, analyse and show a robot, and return the exit code."""
-    path = select_one(args.path)
-    options = robot_options(args)
-
+@command(
+    summary="show a robot's dimensions, its closures, and how it can move",
+    description="Show what a robot is made of, whether its loops close, and what motions that leaves.",
+    exit_codes="0 shown, 1 the robot has errors that keep it from being built, 2 the command cannot run.",
+    examples=("eurdf info digit_leg --root floating",),
+    has_output=False,
+)
+def info(options: dict[str, Any], path: str = ROBOT, root: Root | None = ROOT, json: bool = JSON) -> int:
+    """Load, analyse and show a robot."""
     import eurdf
-
-    try:
-        robot = eurdf.load(path, root=args.root, geometry=False, check_loops=not args.json, **options)
-    except eurdf.InvalidRobot as refusal:
-        from eurdf.commands.check import write_reports
-        from eurdf.diagnostics.report import Report, reports_to_json
-
-        report = Report(refusal.path, tuple(refusal.diagnostics))
-        if args.json:
-            write_json(reports_to_json([report]))
-        else:
-            write_reports([report])
-        return 1
-
     from eurdf.commands.robot_info import robot_info
 
-    info = robot_info(robot, eurdf.analyze(robot))
-    if args.json:
-        write_json(info.model_dump(mode="json"))
+    robot = eurdf.load(path, root=root, geometry=False, check_loops=not json, **options)
+    found = robot_info(robot, eurdf.analyze(robot))
+    if json:
+        write_result(found)
         return 0
-    _show(info)
+    _show(found)
     if robot.diagnostics:
-        from eurdf.commands.check import write_reports
         from eurdf.diagnostics.report import Report
 
         write_lines([[]], sys.stdout)
-        write_reports([Report(shown(path), robot.diagnostics)])
+        write_reports([Report(display_name(path), robot.diagnostics)])
     return 0
 
 
@@ -81,91 +55,88 @@ def _show(info: RobotInfo) -> None:
     shown: list[Text | Table] = [_heading(info), _dimensions(info)]
     if info.left_out is not None:
         shown.append(cell(info.left_out, "yellow"))
-    if info.closure_list:
-        shown.append(_closures(info))
-    if info.coupling_list:
-        shown.append(_couplings(info))
-    if len(info.loop_list) > 1:
-        shown.append(_loops(info))
-    if info.motion_list and info.actuated:  # without actuators, all motions are uncontrolled
-        shown.append(_motions(info))
-    if info.dependent_list:
-        shown.append(_dependent(info))
-    if info.joint_list:
-        shown.append(_joints(info))
-    if info.frame_list:
-        shown.append(_frames(info))
-    if info.configuration_list:
-        shown.append(_configurations(info))
+    for applies, table in (
+        (info.closure_list, _closures),
+        (info.coupling_list, _couplings),
+        (len(info.loop_list) > 1, _loops),
+        (info.motion_list and info.actuated, _motions),  # without actuators, all motions are uncontrolled
+        (info.dependent_list, _dependent),
+        (info.joint_list, _joints),
+        (info.frame_list, _frames),
+        (info.configuration_list, _configurations),
+    ):
+        if applies:
+            shown.append(table(info))
     write_rendered(*shown)
 
 
 def _heading(info: RobotInfo) -> Text:
     from rich.text import Text
 
-    from eurdf.diagnostics.visible import visible
+    from eurdf.diagnostics.wording import visible
 
     format_name = f"Extended URDF {info.version}" if info.version else "URDF"
-    mass = "" if info.mass is None else f", {info.mass:.6g} kg"
+    mass = f", {info.mass:.6g} kg" if math.isfinite(info.mass) else ""
     return Text.assemble((visible(info.name), "bold"), f"  {format_name}, {info.root} root{mass}")
 
 
 def _dimensions(info: RobotInfo) -> Table:
-    table = new_table("", "", "")
-    table.show_header = False
-    table.columns[1].justify = "right"
-    if not (info.closures or info.couplings):
-        verdict = ("loops", "none", "a tree")
-    elif info.closes:
-        stated = any(configuration.name == "assembled" for configuration in info.configuration_list)
-        more = "" if stated else "; `eurdf assemble` shows a configuration"
-        verdict = ("loops", "close", f"residual {info.residual:.1e}{more}")
-    elif info.left_out is not None:
-        verdict = ("loops", "-", "")
-    else:
-        smallest = "" if info.residual is None else f"smallest residual found {info.residual:.1e}; "
-        verdict = ("loops", "open", f"{smallest}`eurdf assemble` shows how far each closure is")
+    from eurdf.kinematics.analysis import FIGURES
+
     types = [closure.type for closure in info.closure_list]
     kinds = ", ".join(f"{types.count(kind)} of {kind}" for kind in sorted(set(types)))
-    rows: list[tuple[str, int | str | None, str]] = [
+    figures: dict[str, Row] = {name: (name, getattr(info, name), meaning) for name, meaning in FIGURES.items()}
+    rows: list[Row] = [
         ("joints", info.joints, "moving joints of the spanning tree"),
-        ("nq", info.nq, "coordinates"),
-        ("nv", info.nv, "velocities of the spanning tree"),
+        figures.pop("nq"),
+        figures.pop("nv"),
         ("closures", info.closures, kinds),
         *([("couplings", info.couplings, "linear relations of joint coordinates")] if info.couplings else []),
-        verdict,
-        ("nc", info.nc, "constraint rows"),
-        ("rank", info.rank, "of the constraint Jacobian"),
-        ("redundant", info.redundant, "redundant constraint rows, nc - rank"),
-        ("mobility", info.mobility, "degrees of freedom of the closed mechanism, nv - rank"),
-        ("actuated", info.actuated, "velocities"),
-        ("uncontrolled", info.uncontrolled, "degrees of freedom left with every actuator held"),
-        ("dependent", info.dependent, "actuated velocities that depend on the others"),
+        _verdict(info),
     ]
-    if info.singularity is not None:
-        rows.append(("singularity", f"{info.singularity:.2g}", "distance to singularity; 0 if the closures lose rank"))
-    if info.actuation_singularity is not None:
-        rows.append(("", f"{info.actuation_singularity:.2g}", "the same with every actuator held"))
-    after = next(index for index, row in enumerate(rows) if row[0] == "mobility") + 1
-    rows[after:after] = _mobilities(info)
-    for name, value, meaning in rows:
-        shaky = name == "finite" and value != info.mobility
-        style = "red" if value == "open" else "green" if value == "close" else "yellow" if shaky else "bold"
-        table.add_row(name, cell("-" if value is None else str(value), style), cell(meaning, "dim"))
+    for row in figures.values():
+        rows += [row, *(_mobilities(info) if row[0] == "mobility" else [])]
+    for name, value, meaning in (
+        ("singularity", info.singularity, "distance to singularity; 0 if the closures lose rank"),
+        ("", info.actuation_singularity, "the same with every actuator held"),
+    ):
+        if value is not None and math.isfinite(value):
+            rows.append((name, _digits(value), meaning))
+    styles = {"open": "red", "close": "green"}
+    cells = []
+    for name, figure, meaning in rows:
+        shaky = name == "finite" and figure != info.mobility
+        style = styles.get(str(figure), "yellow" if shaky else "bold")
+        cells.append((name, cell("-" if figure is None else str(figure), style), cell(meaning, "dim")))
+    table = new_table("", "", "", rows=cells, right=[1])
+    table.show_header = False
     return table
 
 
-def _mobilities(info: RobotInfo) -> list[tuple[str, int | str | None, str]]:
+def _verdict(info: RobotInfo) -> Row:
+    """Whether the loops close."""
+    if not (info.closures or info.couplings):
+        return "loops", "none", "a tree"
+    if info.closes:
+        stated = any(configuration.name == "assembled" for configuration in info.configuration_list)
+        more = "" if stated else "; `eurdf assemble` shows a configuration"
+        return "loops", "close", f"residual {info.residual:.1e}{more}"
+    if info.left_out is not None:
+        return "loops", "-", ""
+    smallest = f"smallest residual found {info.residual:.1e}; " if math.isfinite(info.residual) else ""
+    return "loops", "open", f"{smallest}`eurdf assemble` shows how far each closure is"
+
+
+def _mobilities(info: RobotInfo) -> list[Row]:
     """The other mobilities, where the rank alone does not decide them."""
-    rows: list[tuple[str, int | str | None, str]] = []
+    rows: list[Row] = []
     if info.rounded_mobility is not None:
         meaning = f"degrees of freedom if the loops may be open by {info.rounded_tolerance:.0e}, by rounded numbers"
         rows.append(("rounded", info.rounded_mobility, meaning))
     if any(loops.evidence != "constant rank" for loops in info.loop_list):
         if info.infinitesimal_mobility != info.mobility:
-            rows.append(
-                ("first order", info.infinitesimal_mobility, "degrees of freedom to first order here: singular")
-            )
+            meaning = "degrees of freedom to first order here: singular"
+            rows.append(("first order", info.infinitesimal_mobility, meaning))
         meaning = "degrees of freedom of motions that continue from here"
         orders = [loops.rigid_order for loops in info.loop_list if loops.rigid_order]
         if max(orders, default=1) > 1:
@@ -175,8 +146,7 @@ def _mobilities(info: RobotInfo) -> list[tuple[str, int | str | None, str]]:
 
 
 def _closures(info: RobotInfo) -> Table:
-    table = new_table("closure", "type", "frame A", "frame B", "residual", "")
-    table.columns[4].justify = "right"
+    rows = []
     for closure in info.closure_list:
         frames = [
             cell(frame) if frame is not None else cell(f"on {body}", "dim")
@@ -185,16 +155,13 @@ def _closures(info: RobotInfo) -> Table:
         linear, angular = closure.compliance
         compliances = [f"{linear:g} m/N"] * bool(linear) + [f"{angular:g} rad/(N·m)"] * bool(angular)
         note = cell(f"compliance {', '.join(compliances)}" if compliances else "", "dim")
-        table.add_row(cell(closure.name, "bold"), closure.type, *frames, _number(closure.residual), note)
-    return table
+        rows.append((cell(closure.name, "bold"), closure.type, *frames, _number(closure.residual), note))
+    return new_table("closure", "type", "frame A", "frame B", "residual", "", rows=rows, right=[4])
 
 
 def _couplings(info: RobotInfo) -> Table:
-    table = new_table("coupling", "relation", "residual")
-    table.columns[2].justify = "right"
-    for coupling in info.coupling_list:
-        table.add_row(cell(coupling.name, "bold"), cell(_relation(coupling)), _number(coupling.residual))
-    return table
+    rows = ((cell(each.name, "bold"), cell(_relation(each)), _number(each.residual)) for each in info.coupling_list)
+    return new_table("coupling", "relation", "residual", rows=rows, right=[2])
 
 
 def _relation(coupling: CouplingInfo) -> str:
@@ -208,40 +175,37 @@ def _relation(coupling: CouplingInfo) -> str:
 
 
 def _loops(info: RobotInfo) -> Table:
-    table = new_table("loops of", "nv", "nc", "rank", "mobility", "redundant", "uncontrolled", "singularity")
-    for column in table.columns[1:]:
-        column.justify = "right"
-    for loops in info.loop_list:
-        counts = (loops.nv, loops.nc, loops.rank, loops.mobility, loops.redundant, loops.uncontrolled)
-        table.add_row(
+    counts = ("nv", "nc", "rank", "mobility", "redundant", "uncontrolled")
+    rows = (
+        (
             cell(", ".join(loops.closures), "bold"),
-            *(str(count) for count in counts),
-            "-" if loops.singularity is None else f"{loops.singularity:.2g}",
+            *(str(getattr(loops, count)) for count in counts),
+            _digits(loops.singularity),
         )
-    return table
+        for loops in info.loop_list
+    )
+    return new_table("loops of", *counts, "singularity", rows=rows, right=range(1, 8))
 
 
 def _motions(info: RobotInfo) -> Table:
-    table = new_table("uncontrolled motion of")
     counts = Counter(motion.joints for motion in info.motion_list)
-    for joints, count in counts.most_common(_MOST_MOTIONS):
-        table.add_row(cell(", ".join(joints) + (f"  ({count} motions)" if count > 1 else "")))
+    rows = [
+        cell(", ".join(joints) + (f"  ({count} motions)" if count > 1 else ""))
+        for joints, count in counts.most_common(_MOST_MOTIONS)
+    ]
     if len(counts) > _MOST_MOTIONS:
-        table.add_row(cell(f"and {len(counts) - _MOST_MOTIONS} more", "dim"))
-    return table
+        rows.append(cell(f"and {len(counts) - _MOST_MOTIONS} more", "dim"))
+    return new_table("uncontrolled motion of", rows=((row,) for row in rows))
 
 
 def _dependent(info: RobotInfo) -> Table:
-    table = new_table("actuators that depend on one another through the closures")
-    for joints in info.dependent_list:
-        table.add_row(cell(", ".join(joints), "yellow"))
-    return table
+    rows = ((cell(", ".join(joints), "yellow"),) for joints in info.dependent_list)
+    return new_table("actuators that depend on one another through the closures", rows=rows)
 
 
 def _joints(info: RobotInfo) -> Table:
-    table = new_table("joint", "type", "parent", "child", "nv", "")
-    table.columns[4].justify = "right"
     motors = {motor.joint: motor for motor in info.actuator_list}
+    rows = []
     for joint in info.joint_list:
         notes = [f"mimics {joint.mimics}"] if joint.mimics else []
         if any(joint.stiffness):
@@ -253,26 +217,23 @@ def _joints(info: RobotInfo) -> Table:
             control = "" if motor.control is None else f", {motor.control[0]:g} to {motor.control[1]:g}"
             notes.insert(0, f"actuated{name}{control}")
         note = cell("; ".join(notes), "dim" if motor is None else "cyan")
-        table.add_row(
-            cell(joint.name, "bold"), joint.type.value, cell(joint.parent), cell(joint.child), str(joint.nv), note
-        )
-    return table
+        links = cell(joint.parent), cell(joint.child)
+        rows.append((cell(joint.name, "bold"), joint.type.value, *links, str(joint.nv), note))
+    return new_table("joint", "type", "parent", "child", "nv", "", rows=rows, right=[4])
 
 
 def _frames(info: RobotInfo) -> Table:
-    table = new_table("frame", "on")
-    for frame in info.frame_list:
-        table.add_row(cell(frame.name, "bold"), cell(frame.body))
-    return table
+    return new_table("frame", "on", rows=((cell(each.name, "bold"), cell(each.body)) for each in info.frame_list))
 
 
 def _configurations(info: RobotInfo) -> Table:
-    table = new_table("configuration", "residual")
-    table.columns[1].justify = "right"
-    for configuration in info.configuration_list:
-        table.add_row(cell(configuration.name, "bold"), _number(configuration.residual))
-    return table
+    rows = ((cell(each.name, "bold"), _number(each.residual)) for each in info.configuration_list)
+    return new_table("configuration", "residual", rows=rows, right=[1])
 
 
-def _number(value: float | None) -> str:
-    return "-" if value is None else f"{value:.1e}"
+def _number(value: float) -> str:
+    return f"{value:.1e}" if math.isfinite(value) else "-"
+
+
+def _digits(value: float) -> str:
+    return f"{value:.2g}" if math.isfinite(value) else "-"

@@ -1,7 +1,7 @@
 """The command line ``eurdf``.
 
-Every command is a module with ``register``, which adds it to the parser, and ``run``, which runs it and returns the
-exit code. Only the module of the command that runs is imported, and modules that are slow to import, in its ``run``.
+Every command is a `Command` in a module of its own. Only the module of the command that runs is imported, and modules
+that are slow to import, in its function.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from collections.abc import Sequence
 from typing import NoReturn, TextIO
 
 from eurdf import __version__
-from eurdf.commands.cannot_run import CannotRun
-from eurdf.commands.exit_code import BROKEN_PIPE, INTERRUPTED
-from eurdf.exceptions import CannotExpand, MissingExtra
-from eurdf.system import BOUNDS_MEMORY
+from eurdf.commands import INTERRUPTED
+from eurdf.commands.command import Command
+from eurdf.exceptions import CannotExpand, CannotRun, MissingExtra
+from eurdf.sandbox import BOUNDS_MEMORY
 
-#: The commands, in the order in which the help shows them, and the module of each in `eurdf.commands`.
+#: The commands, in the order in which the help shows them, and the module and name of each in `eurdf.commands`.
 COMMANDS = {
     "check": "check",
     "info": "info",
@@ -40,6 +40,9 @@ COMMANDS = {
 }
 
 _UNBOUNDED = " (this system does not bound the memory that reading a mesh, a xacro or an MJCF file takes)"
+
+# Exit code of a program whose output nobody reads any more: 128 plus the number of SIGPIPE.
+_BROKEN_PIPE = 141
 
 # Errors of a full disk.
 _FULL = (errno.ENOSPC, errno.EFBIG)
@@ -75,9 +78,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     except BrokenPipeError:
         # The reader is gone. Redirect the final flush of the interpreter to nowhere.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return BROKEN_PIPE
+        return _BROKEN_PIPE
     except (CannotRun, CannotExpand, MissingExtra, OSError) as reason:  # OSError: also RobotNotFound
-        from eurdf.diagnostics.visible import visible
+        from eurdf.diagnostics.wording import visible
 
         said = str(reason)
         if isinstance(reason, OSError) and reason.errno in _FULL and reason.filename is None:  # no file
@@ -98,7 +101,7 @@ class _Parser(argparse.ArgumentParser):
     """A parser of arguments whose errors cannot control a terminal or a log."""
 
     def error(self, message: str) -> NoReturn:
-        from eurdf.diagnostics.visible import visible
+        from eurdf.diagnostics.wording import visible
 
         super().error(visible(message))
 
@@ -110,7 +113,8 @@ def _parser(command: str) -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=version, help="show the version and exit")
     subparsers = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
     for name in [command] if command in COMMANDS else COMMANDS:
-        importlib.import_module(f"eurdf.commands.{COMMANDS[name]}").register(subparsers)
+        added: Command = getattr(importlib.import_module(f"eurdf.commands.{COMMANDS[name]}"), COMMANDS[name])
+        added.register(subparsers, name)
     return parser
 
 

@@ -1,122 +1,123 @@
-"""Writing to the standard streams: styled on a terminal, plain text elsewhere."""
+"""The results of commands as JSON, and the JSON Schema of each, from its fields and the sentence below each of them.
+
+``python -m eurdf.commands.output FOLDER`` writes the schemas.
+"""
 
 from __future__ import annotations
 
-import io
+import inspect
 import json
-import os
+import math
+import re
 import sys
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, TextIO
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass
+from importlib import import_module
+from pathlib import Path
+from pkgutil import resolve_name
+from typing import Any, cast, get_args, get_type_hints
 
-if TYPE_CHECKING:
-    from rich.console import Console, RenderableType
-    from rich.table import Table
-    from rich.text import Text
+from eurdf.commands.terminal import write_json
+from eurdf.diagnostics.report import report_schema
+from eurdf.diagnostics.wording import encodable
 
-    from eurdf.diagnostics.text import Line
-
-# A table in a file is as wide as it needs to be.
-_UNBOUNDED = 10_000
-
-
-def is_terminal(stream: TextIO) -> bool:
-    """Whether to style the output: on a terminal or with FORCE_COLOR, but not with TERM=dumb."""
-    if os.environ.get("FORCE_COLOR"):
-        return True
-    return stream.isatty() and os.environ.get("TERM") != "dumb"
-
-
-def has_boxes(stream: TextIO) -> bool:
-    """Whether the stream is a terminal that shows more than ASCII."""
-    return is_terminal(stream) and (stream.encoding or "").lower().replace("-", "") == "utf8"
+#: The results by the names of their schemas: the module and the class of each.
+RESULTS = {
+    "assemble": ("assemble", "AssemblyInfo"),
+    "export": ("conversion_info", "ExportInfo"),
+    "import": ("conversion_info", "ImportInfo"),
+    "info": ("robot_info", "RobotInfo"),
+    "robots": ("robots", "Collection"),
+    "serial": ("serial_info", "SerialInfo"),
+    "transmission": ("transmission_info", "TransmissionInfo"),
+}
 
 
-def columns() -> int:
-    """Width of the terminal."""
-    import shutil  # only now: it imports what unpacks archives
-
-    return max(40, shutil.get_terminal_size().columns)
-
-
-def write_text(text: str) -> None:
-    """Write the text of a file to the standard output in UTF-8, whatever the locale."""
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(encoding="utf-8")
-    sys.stdout.write(text)
-
-
-def write_json(value: dict[str, Any]) -> None:
-    """Write one JSON value to the standard output."""
-    write_text(json.dumps(value, indent=2, allow_nan=False) + "\n")
+def to_json(result: Any) -> Any:
+    """A result, or part of one, as a value of JSON: what is not finite is null, and hidden fields are left out."""
+    if is_dataclass(result):
+        shown = (field.name for field in fields(result) if not field.metadata.get("exclude"))
+        return {name: to_json(getattr(result, name)) for name in shown}
+    if isinstance(result, str):
+        return encodable(str(result))
+    if isinstance(result, float):
+        return float(result) if math.isfinite(result) else None
+    if hasattr(result, "tolist"):  # an array
+        return to_json(result.tolist())
+    if isinstance(result, Mapping):
+        return {key: to_json(value) for key, value in result.items()}
+    return [to_json(value) for value in result] if isinstance(result, (list, tuple)) else result
 
 
-def write_lines(lines: Iterable[Line], stream: TextIO) -> None:
-    """Write styled lines without wrapping; none of them is a command of a workflow."""
-    from eurdf.diagnostics.visible import no_command
-
-    if not is_terminal(stream):
-        for line in lines:
-            stream.write(no_command("".join(piece for piece, _ in line).rstrip()) + "\n")
-        return
-    from rich.text import Text
-
-    console = _console(stream)
-    with console.capture() as captured:
-        for line in lines:
-            console.print(Text.assemble(*line), soft_wrap=True)
-    stream.write("".join(map(no_command, captured.get().splitlines(keepends=True))))
+def write_result(result: Any) -> None:
+    """Write a result to the standard output."""
+    write_json(to_json(result))
 
 
-def write_rendered(*renderables: RenderableType) -> None:
-    """Write rich renderables to the standard output, separated by empty lines; no line is a command of a workflow."""
-    from eurdf.diagnostics.visible import no_command
-
-    console = _console(sys.stdout)
-    with console.capture() as captured:
-        console.print(renderables[0])
-        for renderable in renderables[1:]:
-            console.print()
-            console.print(renderable)
-    sys.stdout.write("".join(no_command(line.rstrip()) + "\n" for line in captured.get().splitlines()))
+def output_schemas() -> dict[str, dict[str, Any]]:
+    """JSON Schema (2020-12) of the JSON of each command, by file name."""
+    found = {"diagnostics-report.schema.json": report_schema()}
+    for name, (module, result) in RESULTS.items():
+        found[f"{name}.schema.json"] = _schema(getattr(import_module(f"eurdf.commands.{module}"), result))
+    return dict(sorted(found.items()))
 
 
-def new_table(*headings: str) -> Table:
-    """An empty table for the standard output, with lines on a terminal."""
-    from rich import box
-    from rich.table import Table
+def _schema(result: type) -> dict[str, Any]:
+    """The JSON Schema of a result, and of the classes of its parts.
 
-    table = Table(
-        box=box.SIMPLE_HEAD if has_boxes(sys.stdout) else None,
-        border_style="dim",
-        header_style="dim",
-        show_edge=False,
-        pad_edge=False,
-    )
-    for heading in headings:
-        table.add_column(heading, overflow="fold")
-    return table
+    The sentence of a field is the text below it, or what the docstring of its class says under ``Attributes``, or that
+    of the class which the result is ``LIKE``, by module and name. It says None or inf where JSON has null.
+    """
+    from pydantic import ConfigDict, TypeAdapter
+
+    config = ConfigDict(extra="forbid", use_attribute_docstrings=True, arbitrary_types_allowed=True)
+    # The configuration of a tuple is also that of its members, which are classes without one.
+    parts = TypeAdapter(tuple[result], config=config).json_schema(mode="serialization")["$defs"]  # type: ignore[valid-type]
+    for own in parts.values():
+        own["description"] = " ".join(own["description"].partition("\n\nAttributes:")[0].split())
+    for part in _parts(result):
+        own = parts[part.__name__]
+        like = [resolve_name(part.LIKE)] if hasattr(part, "LIKE") else []
+        sentences = _sentences(*part.__mro__, *like)
+        for name, field in own["properties"].items():
+            text = field.get("description") or sentences[name]
+            text = re.sub(r"\b(None|inf)\b", "null", re.sub(r"(^|[.] )None", r"\1Null", text))
+            field.pop("default", None)  # a result has every field
+            own["properties"][name] = dict(sorted({**field, "description": text}.items()))
+        own["required"] = list(own["properties"])
+    own = parts.pop(result.__name__)
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **({"$defs": parts} if parts else {}), **own}
 
 
-def cell(text: str, style: str = "") -> Text:
-    """A table cell: text without markup, with control characters made visible."""
-    from rich.text import Text
+def _parts(result: Any) -> Iterator[type]:
+    """A class of results, and the classes of its parts."""
+    if is_dataclass(result):
+        yield cast(type, result)
+        hints = get_type_hints(result)
+        for field in fields(result):
+            if not field.metadata.get("exclude"):
+                yield from _parts(hints[field.name])
+    for argument in get_args(result):
+        yield from _parts(argument)
 
-    from eurdf.diagnostics.visible import visible
 
-    return Text(visible(text), style=style)
+def _sentences(*classes: type) -> dict[str, str]:
+    """What the docstrings of classes say of their attributes, by name."""
+    text = "\n".join(filter(None, map(inspect.getdoc, classes)))
+    found = re.findall(r"^    (\w+): (.+(?:\n     .*)*)", text, re.MULTILINE)
+    return {name: " ".join(text.split()).replace("``", "'").replace("`", "'") for name, text in found}
 
 
-def _console(stream: TextIO) -> Console:
-    # Render into a capture: on a broken pipe, rich would exit with code 1.
-    from rich.console import Console
+def schema_text(schema: dict[str, Any]) -> str:
+    """The text of the schema file."""
+    return json.dumps(schema, indent=2, ensure_ascii=False) + "\n"
 
-    terminal = is_terminal(stream)
-    return Console(
-        force_terminal=terminal,
-        width=columns() if terminal else _UNBOUNDED,
-        highlight=False,
-        markup=False,
-        emoji=False,
-        safe_box=not has_boxes(stream),
-    )
+
+def main(folder: str) -> None:
+    """Write every schema into a folder."""
+    for name, schema in output_schemas().items():
+        Path(folder, name).write_text(schema_text(schema), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

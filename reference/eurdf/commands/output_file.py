@@ -2,26 +2,11 @@
 
 from __future__ import annotations
 
-import argparse
 import contextlib
 import os
 from collections.abc import Iterator, Mapping
 
-from eurdf.commands.cannot_run import CannotRun
-
-#: The path that means the standard output.
-STDOUT = "-"
-
-
-def add_output_option(parser: argparse.ArgumentParser) -> None:
-    """Add ``--output`` to the parser of a command that writes one file; None means the standard output."""
-    parser.add_argument(
-        "-o",
-        "--output",
-        metavar="OUT",
-        type=lambda path: None if path == STDOUT else path,
-        help="the file to write; default, or -: the standard output",
-    )
+from eurdf.exceptions import CannotRun
 
 
 def refuse_to_replace(path: str | os.PathLike[str], force: bool) -> None:

@@ -1,4 +1,4 @@
-"""The robots that a path on the command line selects."""
+"""The robots that a path on the command line selects, and the configuration that a name selects."""
 
 from __future__ import annotations
 
@@ -7,13 +7,20 @@ import os
 import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from eurdf.collection import find_robot, has_urdf
-from eurdf.commands.cannot_run import CannotRun
 from eurdf.diagnostics import FileError
-from eurdf.exceptions import RobotNotFound
-from eurdf.reading.given import is_stream, is_text
+from eurdf.exceptions import CannotRun, RobotNotFound
+from eurdf.reading.robot_source import is_stream, is_text
 from eurdf.reading.source import FILE_LIMIT, begin_of_file
+
+if TYPE_CHECKING:
+    from eurdf.kinematics.array import Vector
+    from eurdf.pinocchio.robot import Robot
+
+#: The name of the neutral configuration, unless the description has one of this name.
+NEUTRAL = "neutral"
 
 _DESCRIPTIONS = ("robot.yaml", "robot.yml")
 _YAML_SUFFIXES = (".yaml", ".yml")
@@ -77,6 +84,25 @@ def select_one(path: str) -> str:
     if len(robots) > 1:
         raise CannotRun(f"'{path}' contains {len(robots)} robots, such as '{robots[0]}'; give one of them")
     return robots[0]
+
+
+def named_configuration(robot: Robot, name: str) -> Vector:
+    """A configuration of the description, or the neutral one.
+
+    Raises:
+        CannotRun: There is none of this name.
+    """
+    import pinocchio as pin
+
+    from eurdf.diagnostics import did_you_mean
+
+    if name in robot.configurations:
+        return robot.configurations[name]
+    if name == NEUTRAL:
+        return pin.neutral(robot.model)  # type: ignore[no-any-return]
+    known = [*robot.configurations, NEUTRAL]
+    hint = did_you_mean(name, known) or f"the configurations are: {', '.join(known)}"
+    raise CannotRun(f"there is no configuration '{name}'; {hint}")
 
 
 def _robots_at(path: str, allow_none: bool) -> list[str]:

@@ -10,7 +10,7 @@ import gc
 import signal
 from types import FrameType
 
-from eurdf.commands.exit_code import INTERRUPTED
+from eurdf.commands import INTERRUPTED
 
 
 def start() -> int:

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import argparse
 import csv
 import io
-import json
+import json as json_text
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
-from eurdf.commands.cannot_run import CannotRun
-from eurdf.commands.migrate import print_notes, show_report
-from eurdf.commands.output import cell, new_table, write_json, write_rendered
+from eurdf.commands.command import JSON, ROBOT, SERIAL_JOINTS, SERIAL_MOTORS, cannot_run, command, flag, option
+from eurdf.commands.output import write_result
 from eurdf.commands.output_file import refuse_to_replace, write_new, writing
-from eurdf.commands.robot_options import add_robot_options, add_robot_path, add_serial_joints, ending, robot_options
-from eurdf.commands.selection import select_one
+from eurdf.commands.terminal import cell, new_table, write_notes, write_rendered
+from eurdf.exceptions import CannotRun
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -32,12 +30,6 @@ leave to the joints, and the inertia that the joints feel.
 The joints are those of the equivalent serial robot, such as pitch and roll of an ankle. --grid moves them over all
 poses that they reach, on one branch, with no joint beyond its position limits.
 """
-_EPILOG = ending(
-    "0 shown, 1 the robot has errors or the map does not exist there, 2 the command cannot run.",
-    "eurdf transmission unitree_g1_ankle --joints free_pitch free_roll",
-    "eurdf transmission unitree_g1_ankle --joints free_pitch free_roll --grid 41 --csv ankle.csv",
-    "eurdf transmission unitree_g1_ankle --joints free_pitch free_roll --plot ankle.pdf --c controller",
-)
 
 # Number of points along each joint in a figure, unless --grid states it.
 _FIGURE = 25
@@ -45,127 +37,109 @@ _FIGURE = 25
 _MOST_POSES = 1_000_000
 
 
-def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command to the parser."""
-    parser = subparsers.add_parser(
-        "transmission",
-        help="show how motors drive joints through loops: velocities, torques, limits, inertia",
-        description=_DESCRIPTION,
-        epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    add_robot_path(parser)
-    add_robot_options(parser)
-    add_serial_joints(parser)
-    poses = parser.add_mutually_exclusive_group()
-    poses.add_argument(
-        "--at",
+@command(
+    summary="show how motors drive joints through loops: velocities, torques, limits, inertia",
+    description=_DESCRIPTION,
+    exit_codes="0 shown, 1 the robot has errors or the map does not exist there, 2 the command cannot run.",
+    examples=(
+        "eurdf transmission unitree_g1_ankle --joints free_pitch free_roll",
+        "eurdf transmission unitree_g1_ankle --joints free_pitch free_roll --grid 41 --csv ankle.csv",
+        "eurdf transmission unitree_g1_ankle --joints free_pitch free_roll --plot ankle.pdf --c controller",
+    ),
+)
+def transmission(
+    options: dict[str, Any],
+    path: str = ROBOT,
+    joints: list[str] = SERIAL_JOINTS,
+    motors: list[str] | None = SERIAL_MOTORS,
+    at: str | None = option(
+        "a configuration of the description, or a JSON file with coordinates by joint; the joints that it leaves out "
+        "follow; default: assembled",
+        group="pose",
         metavar="POSE",
-        help="a configuration of the description, or a JSON file with coordinates by joint; the joints that it leaves "
-        "out follow; default: assembled",
-    )
-    poses.add_argument(
-        "--grid", type=int, metavar="N", help="N positions of each joint, from its lower to its upper limit"
-    )
-    parser.add_argument("--json", action="store_true", help="write one JSON object")
-    parser.add_argument("--csv", metavar="FILE", help="write a table with one row for each pose")
-    parser.add_argument(
-        "--plot",
+    ),
+    grid: int | None = option(
+        "N positions of each joint, from its lower to its upper limit", group="pose", type=int, metavar="N"
+    ),
+    json: bool = JSON,
+    table: str | None = option("write a table with one row for each pose", "--csv", metavar="FILE"),
+    plot: str | None = option(
+        "draw what the joints reach, with limits and inertia there, as .png, .svg or .pdf; needs the extra plot",
         metavar="FILE",
-        help="draw what the joints reach, with limits and inertia there, as .png, .svg or .pdf; needs the extra plot",
-    )
-    parser.add_argument(
-        "--c", metavar="FOLDER", help="write the map as C99 without dependencies, for controllers; it starts at --at"
-    )
-    parser.add_argument("--force", action="store_true", help="replace files of --csv, --plot and --c")
-    parser.set_defaults(run=run)
-
-
-def run(args: argparse.Namespace) -> int:
-    """Show the transmission, and return the exit code."""
-    from eurdf.exceptions import EurdfError, InvalidRobot, MissingExtra
-
-    path = select_one(args.path)
-    if args.force and not (args.csv or args.plot or args.c):
-        raise CannotRun("--force has no effect without --csv, --plot or --c; add one of them")
-    for file in (args.csv, args.plot):
-        if file:
-            refuse_to_replace(file, args.force)
-    from eurdf.checking.load import load
+    ),
+    c: str | None = option(
+        "write the map as C99 without dependencies, for controllers; it starts at --at", metavar="FOLDER"
+    ),
+    force: bool = flag("replace files of --csv, --plot and --c"),
+) -> int:
+    """Show the transmission."""
+    import eurdf
+    from eurdf.exceptions import EurdfError
     from eurdf.transmissions.exceptions import NoTransmission
 
+    if force and not (table or plot or c):
+        raise CannotRun("--force has no effect without --csv, --plot or --c; add one of them")
+    for file in (table, plot):
+        if file:
+            refuse_to_replace(file, force)
+    robot = eurdf.load(path, geometry=False, **options)
+    written: list[str] = []
     try:
-        robot = load(path, geometry=False, **robot_options(args))
-    except InvalidRobot as refusal:
-        show_report(path, tuple(refusal.diagnostics), args.json)
-        return 1
-    try:
-        info = _info(robot, args)
-        written = [*_drawn(robot, args), *_generated(robot, args)]
+        with cannot_run(EurdfError, ValueError, unless=(NoTransmission,)):
+            q = _configuration(robot, at) if grid is None else None
+            info = _info(robot, joints, motors, q, grid)
+            if plot:
+                from eurdf.transmissions.plot import plot_workspace
+                from eurdf.transmissions.workspace import workspace
+
+                found = workspace(robot, joints, q, motors, grid=_FIGURE if grid is None else grid)
+                with writing():
+                    written.append(os.fspath(plot_workspace(found, plot)))
+            if c:
+                from eurdf.transmissions.prepared import prepare_transmission
+
+                source = prepare_transmission(robot, joints, q, motors).c_source()
+                with writing():
+                    written += [os.fspath(each) for each in source.write(c, force=force)]
     except NoTransmission as reason:
-        print_notes([str(reason)])
+        write_notes([str(reason)])
         return 1
-    except MissingExtra:
-        raise
-    except (EurdfError, ValueError) as reason:
-        raise CannotRun(str(reason)) from None
-    if args.csv:
-        write_new(args.csv, csv_text(info), args.force)
-    if args.json:
-        write_json(info.model_dump(mode="json"))
+    if table:
+        write_new(table, csv_text(info), force)
+    if json:
+        write_result(info)
     else:
         _show(info)
-    print_notes([*_notes(info, args), *(f"wrote '{each}'" for each in written)])
+    count = [f"wrote {len(info.poses)} poses to '{table}'"] if table else []
+    write_notes([*_notes(info), *count, *(f"wrote '{each}'" for each in written)])
     return 0 if any(pose.G is not None for pose in info.poses) else 1
 
 
-def _info(robot: Robot, args: argparse.Namespace) -> TransmissionInfo:
+def _info(
+    robot: Robot, joint_names: Sequence[str], motor_names: Sequence[str] | None, q: Vector | None, grid: int | None
+) -> TransmissionInfo:
+    """The transmission at q, or over a grid."""
     from eurdf.commands.transmission_info import transmission_info
     from eurdf.transmissions.motors import motors_of
     from eurdf.transmissions.selection import selection
     from eurdf.transmissions.workspace import workspace
 
-    joints = selection(robot, args.joints, "--joints")
-    motors = motors_of(robot, joints) if args.motors is None else selection(robot, args.motors, "--motors")
-    if args.grid is None:
-        q = _pose(robot, args.at)
+    joints = selection(robot, joint_names, "--joints")
+    motors = motors_of(robot, joints) if motor_names is None else selection(robot, motor_names, "--motors")
+    if grid is None:
+        assert q is not None
         at = robot.coordinates(q)
         return transmission_info(robot, joints, motors, [q], [[value for name in joints.joints for value in at[name]]])
-    if args.grid < 2 or args.grid ** len(joints) > _MOST_POSES:
-        raise CannotRun(f"--grid {args.grid} makes {args.grid ** len(joints)} poses; give 2 to {_MOST_POSES}")
-    reached = workspace(robot, joints.joints, motors=motors.joints, grid=args.grid)
+    if grid < 2 or grid ** len(joints) > _MOST_POSES:
+        raise CannotRun(f"--grid {grid} makes {grid ** len(joints)} poses; give 2 to {_MOST_POSES}")
+    reached = workspace(robot, joints.joints, motors=motors.joints, grid=grid)
     found: dict[tuple[int, ...], Vector] = dict(zip(map(tuple, reached.index.tolist()), reached.q, strict=True))
     nodes = list(product(*(range(len(axis)) for axis in reached.axes)))
     positions = [[float(axis[i]) for axis, i in zip(reached.axes, node, strict=True)] for node in nodes]
     return transmission_info(robot, joints, motors, [found.get(node) for node in nodes], positions)
 
 
-def _drawn(robot: Robot, args: argparse.Namespace) -> list[str]:
-    """Draw the workspace, if asked; the path of the figure."""
-    if not args.plot:
-        return []
-    from eurdf.transmissions.plot import plot_workspace
-    from eurdf.transmissions.workspace import workspace
-
-    q = None if args.grid is not None else _pose(robot, args.at)
-    found = workspace(robot, args.joints, q, args.motors, grid=_FIGURE if args.grid is None else args.grid)
-    with writing():
-        return [os.fspath(plot_workspace(found, args.plot))]
-
-
-def _generated(robot: Robot, args: argparse.Namespace) -> list[str]:
-    """Generate the C, if asked; the paths of the files."""
-    if not args.c:
-        return []
-    from eurdf.transmissions.prepared import prepare_transmission
-
-    q = None if args.grid is not None else _pose(robot, args.at)
-    source = prepare_transmission(robot, args.joints, q, args.motors).c_source()
-    with writing():
-        return [os.fspath(each) for each in source.write(args.c, force=args.force)]
-
-
-def _pose(robot: Robot, given: str | None) -> Vector:
+def _configuration(robot: Robot, given: str | None) -> Vector:
     """A closed configuration (nq,)."""
     from eurdf.kinematics.assembly import assemble
     from eurdf.kinematics.forward import forward_kinematics
@@ -182,7 +156,7 @@ def _coordinates(robot: Robot, file: str) -> Mapping[str, Any]:
     """The coordinates in a JSON file, by joint."""
     try:
         with open(file, encoding="utf-8") as stream:
-            found = json.load(stream)
+            found = json_text.load(stream)
     except FileNotFoundError:
         known = ", ".join(robot.configurations) or "none"
         raise CannotRun(
@@ -229,11 +203,11 @@ def _flat(rows: Sequence[Sequence[float]]) -> list[float]:
     return [number for row in rows for number in row]
 
 
-def _notes(info: TransmissionInfo, args: argparse.Namespace) -> list[str]:
+def _notes(info: TransmissionInfo) -> list[str]:
     """What follows the tables."""
-    one = info.poses[0] if len(info.poses) == 1 else None
     notes: list[str] = []
-    if one is not None:
+    if len(info.poses) == 1:
+        (one,) = info.poses
         if one.reason:
             notes.append(f"G does not exist: {one.reason}")
         if one.inverse_reason:
@@ -244,8 +218,6 @@ def _notes(info: TransmissionInfo, args: argparse.Namespace) -> list[str]:
         notes.append("the motors have no armature; state gear_ratio and rotor_inertia of the actuators")
     if info.limits_reason:
         notes.append(f"no limits of the joints: {info.limits_reason}")
-    if args.csv:
-        notes.append(f"wrote {len(info.poses)} poses to '{args.csv}'")
     return notes
 
 
@@ -256,7 +228,7 @@ def _has_rotors(pose: PoseInfo) -> bool:
 def _show(info: TransmissionInfo) -> None:
     from rich.text import Text
 
-    from eurdf.diagnostics.visible import visible
+    from eurdf.diagnostics.wording import visible
 
     names = (", ".join(axis.name for axis in axes) for axes in (info.motors, info.joints))
     motors, joints = map(visible, names)
@@ -273,55 +245,56 @@ def _map_table(info: TransmissionInfo, pose: PoseInfo) -> Table:
     """G, with the positions of the motors; B_J, with those of the joints, where there is no G."""
     backward = pose.G is None and pose.B_J is not None
     of, by = (info.joints, info.motors) if backward else (info.motors, info.joints)
-    positions, rows = (pose.joints, pose.B_J) if backward else (pose.motors or (), pose.G)
-    table = new_table("joint" if backward else "motor", "position", "unit", *(f"per {axis.name}" for axis in by))
-    for row, (axis, position) in enumerate(zip(of, positions, strict=True)):
-        numbers = ["-"] * len(by) if rows is None else map(_number, rows[row])
-        table.add_row(cell(axis.name, "bold"), _number(position), axis.unit, *numbers)
-    return table
+    positions, matrix = (pose.joints, pose.B_J) if backward else (pose.motors or (), pose.G)
+    rows = (
+        (cell(axis.name, "bold"), _number(position), axis.unit, *(map(_number, row) if row else ["-"] * len(by)))
+        for axis, position, row in zip(of, positions, matrix or [()] * len(of), strict=True)
+    )
+    headings = ("joint" if backward else "motor", "position", "unit", *(f"per {axis.name}" for axis in by))
+    return new_table(*headings, rows=rows)
 
 
 def _joint_table(info: TransmissionInfo, pose: PoseInfo) -> Table:
     """Positions, limits and inertia of the joints."""
-    table = new_table("", *(axis.name for axis in info.joints))
-    for column in table.columns[1:]:
-        column.justify = "right"
     units = [axis.unit for axis in info.joints]
-    table.add_row("position", *(f"{_number(value)} {unit}" for value, unit in zip(pose.joints, units, strict=True)))
+    rows = [("position", _with_units(pose.joints, units))]
     if pose.limits:
-        for label, numbers in _limit_rows(pose.limits, units):
-            table.add_row(label, *numbers)
+        rows += _limit_rows(pose.limits, units)
     if pose.inertia:
-        terms = [("linkage", pose.inertia.linkage)]
-        if _has_rotors(pose):
-            terms.insert(0, ("rotors", pose.inertia.rotors))
-        for label, term in terms:
-            own = [term[j][j] for j in range(len(units))]
-            shown = [f"{_number(value)} {_INERTIA[unit]}" for value, unit in zip(own, units, strict=True)]
-            table.add_row(f"inertia of {label}", *shown)
-    return table
+        for label in _terms([pose]):
+            own = [row[j] for j, row in enumerate(getattr(pose.inertia, label))]
+            rows.append((f"inertia of {label}", _with_units(own, [_INERTIA[unit] for unit in units])))
+    return _table_of_joints("", info, rows)
+
+
+def _table_of_joints(heading: str, info: TransmissionInfo, rows: Iterable[tuple[str, list[str]]]) -> Table:
+    names = [axis.name for axis in info.joints]
+    return new_table(heading, *names, rows=((label, *cells) for label, cells in rows), right=range(1, len(names) + 1))
 
 
 _INERTIA = {"rad": "kg·m²", "m": "kg"}
 _TORQUE = {"rad": "N·m", "m": "N"}
 
 
+def _terms(poses: Iterable[PoseInfo]) -> tuple[str, ...]:
+    """The terms of the inertia that are shown."""
+    return ("rotors", "linkage") if any(map(_has_rotors, poses)) else ("linkage",)
+
+
 def _limit_rows(limits: LimitsInfo, units: Sequence[str]) -> list[tuple[str, list[str]]]:
-    torques, speeds = [_TORQUE[unit] for unit in units], [f"{unit}/s" for unit in units]
-    return [
-        ("torque, others zero", _ranges(limits.torque, torques)),
-        ("torque, all at once", _sides(limits.torque_box, torques)),
-        ("velocity, others zero", _ranges(limits.velocity, speeds)),
-        ("velocity, all at once", _sides(limits.velocity_box, speeds)),
-    ]
+    rows: list[tuple[str, list[str]]] = []
+    for word, by in (("torque", [_TORQUE[unit] for unit in units]), ("velocity", [f"{unit}/s" for unit in units])):
+        ranges, sides = getattr(limits, word), getattr(limits, f"{word}_box")
+        ends = zip(ranges, by, strict=True)
+        rows.append(
+            (f"{word}, others zero", [f"{_number(lower)} to {_number(upper)} {u}" for (lower, upper), u in ends])
+        )
+        rows.append((f"{word}, all at once", [f"±{each}" for each in _with_units(sides, by)]))
+    return rows
 
 
-def _ranges(ranges: Sequence[tuple[float, float]], units: Sequence[str]) -> list[str]:
-    return [f"{_number(lower)} to {_number(upper)} {unit}" for (lower, upper), unit in zip(ranges, units, strict=True)]
-
-
-def _sides(sides: Sequence[float], units: Sequence[str]) -> list[str]:
-    return [f"±{_number(side)} {unit}" for side, unit in zip(sides, units, strict=True)]
+def _with_units(values: Sequence[float], units: Sequence[str]) -> list[str]:
+    return [f"{_number(value)} {unit}" for value, unit in zip(values, units, strict=True)]
 
 
 def _grid_tables(info: TransmissionInfo) -> list[Any]:
@@ -330,35 +303,27 @@ def _grid_tables(info: TransmissionInfo) -> list[Any]:
     poses = info.poses
     counts = f"{len(poses)} poses, {sum(pose.reached for pose in poses)} of them reached within all position limits"
     units = [axis.unit for axis in info.joints]
-    spread = new_table("", *(f"{axis.name}: least to most" for axis in info.joints))
     inside = [pose for pose in poses if pose.reached]
-    for label, word, by_unit in (
-        ("torque, others zero", "torque", _TORQUE),
-        ("velocity, others zero", "velocity", {unit: f"{unit}/s" for unit in units}),
-    ):
-        rows = [getattr(pose.limits, word) for pose in inside if pose.limits]
-        if rows:
-            ends = [[min(-row[j][0], row[j][1]) for row in rows] for j in range(len(units))]
-            spread.add_row(label, *(_span(own, by_unit[unit]) for own, unit in zip(ends, units, strict=True)))
-    for label in ("rotors", "linkage") if any(map(_has_rotors, inside)) else ("linkage",):
+    # Of each joint, its value at each pose.
+    spreads: list[tuple[str, list[list[float]], list[str]]] = []
+    for word, by in (("torque", [_TORQUE[unit] for unit in units]), ("velocity", [f"{unit}/s" for unit in units])):
+        ranges = [getattr(pose.limits, word) for pose in inside if pose.limits]
+        ends = [[min(-lower, upper) for lower, upper in joint] for joint in zip(*ranges, strict=True)]
+        spreads.append((f"{word}, others zero", ends, by))
+    for label in _terms(inside):
         terms = [getattr(pose.inertia, label) for pose in inside if pose.inertia]
-        if terms:
-            own = [[term[j][j] for term in terms] for j in range(len(units))]
-            shown = (_span(each, _INERTIA[unit]) for each, unit in zip(own, units, strict=True))
-            spread.add_row(f"inertia of {label}", *shown)
-    tables: list[Any] = [Text(counts), *([spread] if spread.row_count else [])]
+        own = [[term[j][j] for term in terms] for j in range(len(units))] if terms else []
+        spreads.append((f"inertia of {label}", own, [_INERTIA[unit] for unit in units]))
+    rows = [
+        (label, *(f"{_number(min(own))} to {_number(max(own))} {unit}" for own, unit in zip(values, by, strict=True)))
+        for label, values, by in spreads
+        if values
+    ]
+    headings = ("", *(f"{axis.name}: least to most" for axis in info.joints))
+    tables: list[Any] = [Text(counts), *([new_table(*headings, rows=rows)] if rows else [])]
     if info.common:
-        table = new_table("at all poses reached", *(axis.name for axis in info.joints))
-        for column in table.columns[1:]:
-            column.justify = "right"
-        for label, numbers in _limit_rows(info.common, units):
-            table.add_row(label, *numbers)
-        tables.append(table)
+        tables.append(_table_of_joints("at all poses reached", info, _limit_rows(info.common, units)))
     return tables
-
-
-def _span(values: Sequence[float], unit: str) -> str:
-    return f"{_number(min(values))} to {_number(max(values))} {unit}"
 
 
 def _number(value: float) -> str:

@@ -1,13 +1,14 @@
-"""The output of ``eurdf transmission --json``, and its JSON Schema."""
+"""The output of ``eurdf transmission --json``."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field
 
+from eurdf.json_schema import Count
 from eurdf.transmissions.inertia import reflected_inertia
 from eurdf.transmissions.limits import CommonLimits, SerialLimits, serial_limits
 from eurdf.transmissions.linkage_bodies import linkage_bodies
@@ -16,17 +17,15 @@ from eurdf.transmissions.selection import Selection
 from eurdf.transmissions.transmission import at_one
 
 if TYPE_CHECKING:
+    from eurdf.kinematics.array import Matrix as Array
     from eurdf.kinematics.array import Vector
     from eurdf.pinocchio.robot import Robot
 
 Matrix = tuple[tuple[float, ...], ...]
 
 
-class _Entry(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
-
-
-class AxisInfo(_Entry):
+@dataclass(frozen=True, slots=True)
+class AxisInfo:
     """A joint or motor velocity."""
 
     name: str
@@ -35,7 +34,8 @@ class AxisInfo(_Entry):
     """Unit of its position; velocities are per s, torques in N·m for rad, forces in N for m."""
 
 
-class LimitsInfo(_Entry):
+@dataclass(frozen=True, slots=True)
+class LimitsInfo:
     """What the limits of the motors leave to the joints, in the order of the joints."""
 
     torque: tuple[tuple[float, float], ...]
@@ -48,51 +48,47 @@ class LimitsInfo(_Entry):
     """Half sides of the largest box of velocities around zero that the motors allow."""
 
 
-class InertiaInfo(_Entry):
+@dataclass(frozen=True, slots=True)
+class InertiaInfo:
     """Terms of the inertia that the joints feel, in kg·m², kg·m or kg."""
 
+    LIKE: ClassVar = "eurdf.transmissions.inertia:ReflectedInertia"
+
     rotors: Matrix
-    """Armature of the motors, Gᵀ I_m G."""
     linkage: Matrix
-    """Cranks, rods and other bodies that a serial robot does not have."""
     serial: Matrix
-    """The other bodies."""
     other_armature: Matrix
-    """Armature of the joints that are not motors."""
 
 
-class PoseInfo(_Entry):
+@dataclass(frozen=True, slots=True)
+class PoseInfo:
     """The transmission at one configuration."""
+
+    LIKE: ClassVar = "eurdf.transmissions.transmission:Transmission"
 
     joints: tuple[float, ...]
     """Positions of the joints."""
     reached: bool
     """Whether the joints reach these positions within the position limits; if not, what follows is null or empty."""
-    motors: tuple[float, ...] | None
+    motors: tuple[float, ...] | None = None
     """Positions of the motors."""
-    beyond: tuple[str, ...]
+    beyond: tuple[str, ...] = ()
     """Joints beyond their position limits there; none at the poses of a grid."""
-    G: Matrix | None
-    """Velocities of the motors by those of the joints, one row for each motor; null if it does not exist."""
-    B_J: Matrix | None
-    """Velocities of the joints by those of the motors, one row for each joint; null if it does not exist."""
-    rank_motors: Annotated[int, Field(ge=0)] | None
-    """Number of independent motor velocities."""
-    rank_joints: Annotated[int, Field(ge=0)] | None
-    """Number of independent joint velocities."""
-    condition: float | None
-    """Condition number of G, in units of the characteristic length; null if there is none."""
-    reason: str | None
-    """Why G does not exist, or null."""
-    inverse_reason: str | None
-    """Why B_J does not exist, or null."""
-    limits: LimitsInfo | None
+    G: Matrix | None = None
+    B_J: Matrix | None = None
+    rank_motors: Count | None = None
+    rank_joints: Count | None = None
+    condition: float | None = None
+    reason: str | None = None
+    inverse_reason: str | None = None
+    limits: LimitsInfo | None = None
     """Limits of the joints; null where there are none, see limits_reason of the robot."""
-    inertia: InertiaInfo | None
+    inertia: InertiaInfo | None = None
     """The inertia that the joints feel; null if G does not exist."""
 
 
-class TransmissionInfo(_Entry):
+@dataclass(frozen=True, slots=True)
+class TransmissionInfo:
     """The output of 'eurdf transmission --json'."""
 
     name: str
@@ -137,7 +133,7 @@ def transmission_info(
         linkage=linkage_bodies(robot, joints.joints, motors.joints),
         limits_reason=reasons[0] if reasons else None,
         poses=tuple(poses),
-        common=_common(robot, joints, motors, inside) if inside else None,
+        common=_limits(serial_limits(robot, joints.joints, np.array(inside), motors.joints)) if inside else None,
     )
 
 
@@ -149,27 +145,18 @@ def _pose(
     positions: Sequence[float],
     reasons: list[str],
 ) -> PoseInfo:
-    nothing: dict[str, Any] = dict.fromkeys(PoseInfo.model_fields)
     if q is None:
-        return PoseInfo(**{**nothing, "joints": tuple(positions), "reached": False, "beyond": ()})
+        return PoseInfo(tuple(positions), reached=False)
     at, coordinates = at_one(robot, joints, q, motors), robot.coordinates(q)
     limits = inertia = None
-    complete = at.G is not None and at.B_J is not None
-    if complete and at.rank_joints == len(at.joints):
-        try:
-            found = serial_limits(robot, joints.joints, q, motors.joints)
-        except ValueError as reason:  # a motor has no limits
-            reasons.append(str(reason))
-        else:
-            limits = _limits(found)
     if at.G is not None and at.rank_joints == len(at.joints):
+        if at.B_J is not None:
+            try:
+                limits = _limits(serial_limits(robot, joints.joints, q, motors.joints))
+            except ValueError as reason:  # a motor has no limits
+                reasons.append(str(reason))
         terms = reflected_inertia(robot, joints.joints, q, motors.joints)
-        inertia = InertiaInfo(
-            rotors=_rows(terms.rotors),
-            linkage=_rows(terms.linkage),
-            serial=_rows(terms.serial),
-            other_armature=_rows(terms.other_armature),
-        )
+        inertia = InertiaInfo(*map(_rows, (terms.rotors, terms.linkage, terms.serial, terms.other_armature)))
     return PoseInfo(
         joints=tuple(positions),
         reached=True,
@@ -192,31 +179,16 @@ def _limits(found: SerialLimits | CommonLimits) -> LimitsInfo:
     if isinstance(found, CommonLimits):
         axes = [np.stack((each[..., 0].max(axis=0), each[..., 1].min(axis=0)), axis=-1) for each in axes]
     torque, velocity = (tuple((lower, upper) for lower, upper in each.tolist()) for each in axes)
-    return LimitsInfo(
-        torque=torque,
-        torque_box=tuple(found.torque_box.tolist()),
-        velocity=velocity,
-        velocity_box=tuple(found.velocity_box.tolist()),
-    )
-
-
-def _common(robot: Robot, joints: Selection, motors: Selection, configurations: Sequence[Vector | None]) -> LimitsInfo:
-    return _limits(serial_limits(robot, joints.joints, np.array(configurations), motors.joints))
+    return LimitsInfo(torque, tuple(found.torque_box.tolist()), velocity, tuple(found.velocity_box.tolist()))
 
 
 def _axes(robot: Robot, chosen: Selection) -> tuple[AxisInfo, ...]:
     units: list[Literal["rad", "m"]] = []
     for name in chosen.joints:
-        kinds = robot.slots[name].joint.coordinates.names
+        kinds = robot.slots[name].joint.type.coordinates
         units += ["m" if kind == "length" else "rad" for kind in kinds]
-    return tuple(AxisInfo(name=name, unit=unit) for name, unit in zip(chosen.names, units, strict=True))
+    return tuple(AxisInfo(name, unit) for name, unit in zip(chosen.names, units, strict=True))
 
 
-def _rows(matrix: np.ndarray[Any, Any]) -> Matrix:
+def _rows(matrix: Array) -> Matrix:
     return tuple(tuple(row) for row in matrix.tolist())
-
-
-def transmission_schema() -> dict[str, Any]:
-    """The JSON Schema (2020-12) of `TransmissionInfo`."""
-    schema = TransmissionInfo.model_json_schema(mode="serialization")
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}

@@ -6,11 +6,9 @@ from eurdf.diagnostics.diagnostic import (
     FileError,
     Hint,
     Place,
-    did_you_mean,
-    enumerated,
-    quoted,
 )
 from eurdf.diagnostics.registry import REGISTRY, Phase, Rule, Severity
+from eurdf.diagnostics.wording import did_you_mean, enumerated, quoted
 
 __all__ = [
     "REGISTRY",

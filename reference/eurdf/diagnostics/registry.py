@@ -6,13 +6,14 @@ is advice of this parser (EU-DIA-006): a warning that no clause requires.
 
 from __future__ import annotations
 
+from enum import Enum
 from typing import NamedTuple
 
-from eurdf.text_enum import TextEnum
 
-
-class Phase(TextEnum):
+class Phase(str, Enum):
     """The stage of the pipeline that reports an error; an error suppresses the later ones that it would cause."""
+
+    __str__ = str.__str__
 
     YAML = "yaml"
     SCHEMA = "schema"
@@ -31,8 +32,10 @@ OWN_PREFIX = "x-"
 REFUSED_PHASES = frozenset({Phase.YAML, Phase.SCHEMA, Phase.URDF, Phase.LINK, Phase.SEMANTIC})
 
 
-class Severity(TextEnum):
+class Severity(str, Enum):
     """An error violates a MUST of the specification; a warning violates a SHOULD, or is advice."""
+
+    __str__ = str.__str__
 
     ERROR = "error"
     WARNING = "warning"

@@ -8,6 +8,7 @@ from typing import Any
 
 from eurdf.diagnostics.diagnostic import Diagnostic
 from eurdf.diagnostics.registry import OWN_PREFIX, Phase, Severity
+from eurdf.diagnostics.wording import encodable
 
 #: Version of the JSON form; it increases by one when a field changes its meaning or is removed.
 REPORT_VERSION = 1
@@ -83,106 +84,78 @@ def _diagnostic_to_json(found: Diagnostic) -> dict[str, Any]:
     }
 
 
-def encodable(text: str) -> str:
-    """The text with lone surrogates (as in an undecodable file name) replaced by escapes."""
-    return text.encode("utf-8", "backslashreplace").decode("utf-8")
-
-
 def report_schema() -> dict[str, Any]:
     """The JSON Schema (2020-12) of `reports_to_json`."""
     position = {"type": ["integer", "null"], "minimum": 1}
+    text, maybe_text = {"type": "string"}, {"type": ["string", "null"]}
     diagnostic = _closed_object(
         "One diagnostic.",
-        {
-            "code": {
-                "type": "string",
-                "pattern": "^[a-z0-9]+(-[a-z0-9]+)*$",
-                "description": "A permanent name of the error, never used for anything else. A code that begins with "
-                f"'{OWN_PREFIX}' is advice of this parser, which no clause of the specification requires.",
-                "examples": ["unknown-frame"],
-            },
-            "severity": {
-                "enum": [severity.value for severity in Severity],
-                "description": "An error violates a MUST of the specification; a warning, a SHOULD, or it is advice.",
-            },
-            "phase": {
-                "enum": [phase.value for phase in Phase],
-                "description": "The phase that reports it; an error can prevent later phases from running.",
-            },
-            "clause": {
-                "type": ["string", "null"],
-                "pattern": "^EU-[A-Z]{3}-[0-9]{3}$",
-                "description": "Id of the violated clause of the specification; null for advice.",
-                "examples": ["EU-FRM-001"],
-            },
-            "message": {
-                "type": "string",
-                "description": "What is wrong, as one sentence without a full stop.",
-                "examples": ["closure 'knee' names the frame 'rod_tpi', which does not exist"],
-            },
-            "hint": {
-                "type": ["string", "null"],
-                "description": "What to do about it; null if unknown.",
-                "examples": ["did you mean 'rod_tip'?"],
-            },
-            "file": {
-                "type": "string",
-                "description": "Path of the file, as given or relative to the working directory.",
-                "examples": ["robots/four_bar/robot.yaml"],
-            },
-            "line": {**position, "description": "Line, from 1; null for the whole file."},
-            "column": {**position, "description": "Column, from 1, in Unicode code points; null if unknown."},
-            "end_column": {
-                **position,
-                "description": "Column after the last character of the place, on the same line; null if unknown.",
-            },
-            "pointer": {
-                "type": "string",
-                "description": "JSON pointer of the value in a YAML file, XPath of the element or attribute in a URDF.",
-                "examples": ["/closures/0/frames/1", "/robot/joint[3]/limit/@lower"],
-            },
-        },
+        code=_value(
+            {**text, "pattern": "^[a-z0-9]+(-[a-z0-9]+)*$"},
+            "A permanent name of the error, never used for anything else. A code that begins with "
+            f"'{OWN_PREFIX}' is advice of this parser, which no clause of the specification requires.",
+            "unknown-frame",
+        ),
+        severity=_value(
+            {"enum": [severity.value for severity in Severity]},
+            "An error violates a MUST of the specification; a warning, a SHOULD, or it is advice.",
+        ),
+        phase=_value(
+            {"enum": [phase.value for phase in Phase]},
+            "The phase that reports it; an error can prevent later phases from running.",
+        ),
+        clause=_value(
+            {**maybe_text, "pattern": "^EU-[A-Z]{3}-[0-9]{3}$"},
+            "Id of the violated clause of the specification; null for advice.",
+            "EU-FRM-001",
+        ),
+        message=_value(
+            text,
+            "What is wrong, as one sentence without a full stop.",
+            "closure 'knee' names the frame 'rod_tpi', which does not exist",
+        ),
+        hint=_value(maybe_text, "What to do about it; null if unknown.", "did you mean 'rod_tip'?"),
+        file=_value(
+            text, "Path of the file, as given or relative to the working directory.", "robots/four_bar/robot.yaml"
+        ),
+        line=_value(position, "Line, from 1; null for the whole file."),
+        column=_value(position, "Column, from 1, in Unicode code points; null if unknown."),
+        end_column=_value(position, "Column after the last character of the place, on the same line; null if unknown."),
+        pointer=_value(
+            text,
+            "JSON pointer of the value in a YAML file, XPath of the element or attribute in a URDF.",
+            "/closures/0/frames/1",
+            "/robot/joint[3]/limit/@lower",
+        ),
     )
     robot = _closed_object(
         "The diagnostics of one robot.",
-        {
-            "path": {
-                "type": "string",
-                "description": "The robot as given: a folder, a file, or a name of the collection.",
-                "examples": ["robots/four_bar"],
-            },
-            "ok": {
-                "type": "boolean",
-                "description": "Whether the robot passes: no error and, in a strict check, no warning.",
-            },
-            "diagnostics": {
-                "type": "array",
-                "items": diagnostic,
-                "description": "The diagnostics, in the order found.",
-            },
-        },
+        path=_value(text, "The robot as given: a folder, a file, or a name of the collection.", "robots/four_bar"),
+        ok=_value({"type": "boolean"}, "Whether the robot passes: no error and, in a strict check, no warning."),
+        diagnostics=_value({"type": "array", "items": diagnostic}, "The diagnostics, in the order found."),
     )
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Report of a check of Extended URDF robots",
         **_closed_object(
             "What 'eurdf check --format json' writes.",
-            {
-                "version": {"const": REPORT_VERSION, "description": "Version of this form."},
-                "ok": {"type": "boolean", "description": "Whether every robot passes."},
-                "robots": {"type": "array", "items": robot, "description": "One entry for each robot."},
-                "skipped": {
-                    "type": "array",
-                    "items": {"type": "string"},
-                    "description": "Folders without a robot that were given among others.",
-                    "examples": [["robots/textures"]],
-                },
-            },
+            version=_value({"const": REPORT_VERSION}, "Version of this form."),
+            ok=_value({"type": "boolean"}, "Whether every robot passes."),
+            robots=_value({"type": "array", "items": robot}, "One entry for each robot."),
+            skipped=_value(
+                {"type": "array", "items": text},
+                "Folders without a robot that were given among others.",
+                ["robots/textures"],
+            ),
         ),
     }
 
 
-def _closed_object(description: str, properties: dict[str, Any]) -> dict[str, Any]:
+def _value(schema: dict[str, Any], description: str, *examples: Any) -> dict[str, Any]:
+    return {**schema, "description": description, **({"examples": list(examples)} if examples else {})}
+
+
+def _closed_object(description: str, **properties: Any) -> dict[str, Any]:
     return {
         "type": "object",
         "description": description,

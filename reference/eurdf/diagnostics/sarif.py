@@ -5,14 +5,16 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable
+from functools import cache
+from importlib.metadata import PackageNotFoundError, metadata
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
 from eurdf.diagnostics.diagnostic import Diagnostic, Place
-from eurdf.diagnostics.help_uri import help_uri
 from eurdf.diagnostics.registry import REGISTRY
-from eurdf.diagnostics.report import Report, encodable
+from eurdf.diagnostics.report import Report
+from eurdf.diagnostics.wording import encodable
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 
@@ -96,3 +98,26 @@ def _uri(file: str, folder: str) -> str:
     if path.is_relative_to(base):
         return quote(os.fsencode(path.relative_to(base).as_posix()))
     return path.as_uri()
+
+
+def help_uri(code: str) -> str:
+    """The page of a code on the documentation site of the package, or else the code's URN.
+
+    The site is the URL ``Documentation`` of the package's metadata (``[project.urls]`` in pyproject.toml). Without it,
+    the result is ``urn:extended-urdf:…``, as for schemas.
+    """
+    site = _site()
+    return f"{site}/diagnostics/{code}.html" if site else f"urn:extended-urdf:diagnostic:{code}"
+
+
+@cache
+def _site() -> str | None:
+    try:
+        urls: list[str] = metadata("eurdf").get_all("Project-URL") or []
+    except PackageNotFoundError:
+        return None
+    for url in urls:
+        label, _, address = url.partition(",")
+        if label.strip().lower() == "documentation":
+            return address.strip().rstrip("/")
+    return None

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from eurdf.diagnostics.diagnostic import Diagnostic
 from eurdf.diagnostics.registry import Severity
 from eurdf.diagnostics.report import Report
-from eurdf.diagnostics.visible import visible
+from eurdf.diagnostics.wording import visible
 
 #: The pieces of one line, each with a rich style (empty for none).
 Line = list[tuple[str, str]]

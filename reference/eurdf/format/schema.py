@@ -16,7 +16,6 @@ from eurdf.format.urdf.data import Urdf
 from eurdf.format.version1 import Version1
 from eurdf.format.version2 import Version2
 from eurdf.format.version2_1 import Version2_1
-from eurdf.mechanism.joint_type import JointType
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
@@ -59,7 +58,7 @@ class Names:
 
 def names_of(urdf: Urdf) -> Names:
     """The names in a URDF."""
-    movable = tuple(name for name, joint in urdf.joints.items() if joint.type is not JointType.FIXED)
+    movable = tuple(name for name, joint in urdf.joints.items() if not joint.type.is_fixed)
     return Names(tuple(urdf.links), tuple(urdf.joints), movable)
 
 

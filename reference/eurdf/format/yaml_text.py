@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from eurdf.reading.core_schema import resolve
 
@@ -92,6 +93,19 @@ def section(key: str, items: Iterable[Entry], above: Iterable[str] = (), beside:
     """A key and, indented below it, the entries of its mapping or list."""
     lines = (line for item in items for line in item.text("  "))
     return Entry((f"{scalar(key)}:", *lines), tuple(above), beside)
+
+
+def entries_of(content: Mapping[str, Any]) -> Iterator[Entry]:
+    """The entries of a description of version 2: a line for each key of a closure, and for each element of others."""
+    for key, value in content.items():
+        if key == "closures":
+            yield section(key, [Entry(item_of_mapping(item)) for item in value])
+        elif key in ("couplings", "frames"):
+            yield section(key, [Entry(lines_of_item(item)) for item in value])
+        elif key in ("joints", "configurations", "metadata"):
+            yield section(key, [Entry(lines_of(name, item)) for name, item in value.items()])
+        else:
+            yield Entry(lines_of(key, value))
 
 
 def modeline(schema: str) -> str:

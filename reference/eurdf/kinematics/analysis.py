@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from eurdf.json_schema import HIDDEN, Count, NullIfInfinite
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import Assembly, assembled, close, start
 from eurdf.kinematics.derived import borrowed
@@ -32,7 +33,7 @@ _MOVES = (0.05, 0.1, 0.2, 0.2)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Motion:
-    """A motion of the closed mechanism with every actuator held.
+    """A motion left with every actuator held.
 
     Attributes:
         joints: Names of the joints that it moves.
@@ -42,59 +43,61 @@ class Motion:
     """
 
     joints: tuple[str, ...]
-    velocities: Indices
-    values: Vector
-    q: Vector
+    velocities: Indices = field(metadata=HIDDEN)
+    values: Vector = field(metadata=HIDDEN)
+    q: Vector = field(metadata=HIDDEN)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LoopAnalysis:
-    """Dimensions of an independent group of loops: they share joints with one another and with no other loop.
+    """An independent group of loops: they share joints with one another and with no other loop.
 
     Attributes:
-        closures: Names of its closures, in file order.
+        closures: Names of its closures and couplings, in file order.
         joints: Names of its joints, in the model's order.
-        nv: Velocities of its joints.
-        nc: Rows of its closures.
-        rank: Rank of its block of K.
-        mobility: nv - rank.
-        redundant: Redundant rows, nc - rank.
-        uncontrolled: Motions left with its actuators held, nv - rank [K; Sᵀ].
+        nv: Number of velocities of its joints.
+        nc: Number of its constraint rows.
+        rank: Rank of its block of the constraint Jacobian.
+        mobility: Degrees of freedom of the closed loops, nv - rank.
+        redundant: Redundant constraint rows, nc - rank.
+        uncontrolled: Degrees of freedom left with its actuators held, nv - rank [K; Sᵀ].
         actuated: Number of its velocities that are actuated.
-        controlled: Motions that its actuators control, mobility - uncontrolled: the rank of Sᵀ on the null space of K.
-        singularity: See `Analysis`.
-        actuation_singularity: See `Analysis`.
-        dependent_actuators: See `Analysis`.
+        controlled: Degrees of freedom that its actuators control, mobility - uncontrolled: the rank of Sᵀ on the null
+            space of K.
+        singularity: Its distance to singularity, as for the whole robot.
+        actuation_singularity: Its distance to a singularity of the actuation, as for the whole robot.
+        dependent_actuators: Its sets of dependent actuators: see `Analysis`.
         motions: Its uncontrolled motions: see `Analysis`.
-        infinitesimal_mobility: nv - rank of K at the analysed configuration.
-        finite_mobility: See `Analysis`.
-        evidence: What decides its finite mobility: the rank is the same all around (a proof), the second-order test (a
+        infinitesimal_mobility: Degrees of freedom to first order at the analysed configuration, nv - rank of K there.
+        finite_mobility: Degrees of freedom of motions that continue from the analysed configuration; 'unknown' if it
+            was not decided.
+        evidence: What decides the finite mobility: the rank is the same all around (a proof), the second-order test (a
             proof), or continuation (numerical evidence); None if it is unknown.
-        branches: Dimension of each branch of closed configurations that was found to pass through the analysed one; if
-            more than two velocities are free there, each dimension once.
-        rigid_order: If its finite mobility is 0: the order p of rigidity. A motion of size h opens it by about hᵖ, so
-            at p = 2 and above it is shaky. Else None.
+        branches: Degrees of freedom of each branch of closed configurations that was found to pass through the analysed
+            one; if more than two velocities are free there, each dimension once.
+        rigid_order: Order p of rigidity, if the finite mobility is 0; else None. A motion of size h opens the loops by
+            about hᵖ, so at p = 2 and above they are shaky.
     """
 
     closures: tuple[str, ...]
     joints: tuple[str, ...]
-    nv: int
-    nc: int
-    rank: int
-    mobility: int
-    redundant: int
-    uncontrolled: int
-    actuated: int
-    controlled: int
-    singularity: float
-    actuation_singularity: float
-    dependent_actuators: tuple[tuple[str, ...], ...]
-    motions: tuple[Motion, ...]
-    infinitesimal_mobility: int
-    finite_mobility: int | Literal["unknown"]
+    nv: Count
+    nc: Count
+    rank: Count
+    mobility: Count
+    redundant: Count
+    uncontrolled: Count
+    actuated: Count
+    controlled: Count
+    singularity: NullIfInfinite
+    actuation_singularity: NullIfInfinite
+    dependent_actuators: tuple[tuple[str, ...], ...] = field(metadata=HIDDEN)
+    motions: tuple[Motion, ...] = field(metadata=HIDDEN)
+    infinitesimal_mobility: Count
+    finite_mobility: Count | Literal["unknown"]
     evidence: Evidence | None
-    branches: tuple[int, ...]
-    rigid_order: int | None
+    branches: tuple[Count, ...]
+    rigid_order: Count | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -104,40 +107,45 @@ class Analysis:
     Values that depend on ranks are None, or empty, if the loops do not close or if ``left_out`` is not empty.
 
     Attributes:
-        nq: Coordinates of the spanning tree.
-        nv: Velocities of the spanning tree.
-        nc: Constraint rows.
-        rank: Rank of the constraint Jacobian K at a generic closed configuration.
-        mobility: nv - rank.
-        redundant: Redundant rows, nc - rank.
-        uncontrolled: Uncontrolled mobility, nv - rank [K; Sᵀ]: degrees of freedom left with every actuator held. The
-            actuators suffice if it is 0.
+        nq: Coordinates of the spanning tree: the length of Pinocchio's configuration vector.
+        nv: Number of velocities of the spanning tree.
+        nc: Number of constraint rows of all closures and couplings.
+        rank: Rank of the constraint Jacobian at a generic closed configuration; None if the loops do not close.
+        mobility: Degrees of freedom of the closed mechanism, nv - rank; None if the loops do not close.
+        redundant: Redundant constraint rows, nc - rank; None if the loops do not close.
+        uncontrolled: Degrees of freedom left with every actuator held, nv - rank [K; Sᵀ]; None if the loops do not
+            close. The actuators suffice if it is 0.
         actuated: Number of actuated velocities.
-        controlled: Motions that the actuators control, mobility - uncontrolled: the rank of Sᵀ on the null space of K.
-        dependent: Number of actuated velocities that depend on the others through the closures, actuated - controlled.
-            A space of torques of this dimension moves nothing and only loads the closures: if it is not 0, the
-            actuation is redundant.
+        controlled: Degrees of freedom that the actuators control, mobility - uncontrolled: the rank of Sᵀ on the null
+            space of K; None if the loops do not close.
+        dependent: Actuated velocities that depend on the others through the closures, actuated - controlled; None if
+            the loops do not close. A space of torques of this dimension moves nothing and only loads the closures: if
+            it is not 0, the actuation is redundant.
         dependent_actuators: Sets of names of dependent actuators: no actuator of a set can move unless another one of
             the set moves; an actuator that is alone in its set cannot move at all.
         motions: The uncontrolled motions: a basis of the null space of [K; Sᵀ], each of few joints, at ``q`` or, if q
             is singular, at a configuration near it.
-        singularity: Distance to singularity at ``q``: singular value number ``rank`` of K, in units of the
-            characteristic length. It is the least change of K that lowers its rank (Eckart, Young, 1936), and 0 at a
-            singular q. The smallest of all groups of loops; inf if no closure constrains, None without loops.
-        actuation_singularity: The same for [K; Sᵀ]: 0 if the held actuators leave one more motion at ``q``.
+        singularity: Distance to singularity at the analysed configuration: singular value number ``rank`` of K, in
+            units of the characteristic length. It is the least change of K that lowers its rank (Eckart, Young, 1936),
+            and 0 at a singular configuration. The smallest of all groups of loops; inf if no closure constrains,
+            None without loops.
+        actuation_singularity: The same for the constraint Jacobian stacked with the rows that select the actuated
+            velocities, [K; Sᵀ]: 0 if the held actuators leave one more motion there.
         loops: The independent groups of loops.
-        residual: Norm of the residual at q, m and rad: the smallest found.
-        closes: Whether the loops close: each closure is open by at most 1e-6 (m, rad) at q.
+        residual: Norm of the residual of all closures and couplings at the analysed configuration, the smallest found,
+            m and rad.
+        closes: Whether a configuration was found at which every loop is closed: each is open by at most 1e-6 (m, rad).
         q: The analysed configuration (nq,): closed, or the least open one found.
         left_out: Why the ranks were not computed though the loops close; else empty.
-        infinitesimal_mobility: nv - rank of K at ``q``: degrees of freedom to first order. Above ``mobility`` at a
-            singular ``q``.
-        finite_mobility: Dimension of the closed configurations around ``q``: degrees of freedom of motions that
-            continue; that of the largest branch. Below ``infinitesimal_mobility`` at a singular ``q`` and for a shaky
-            structure. "unknown" if it was not decided.
-        rounded_mobility: For loops that do not close, but only by rounding of the numbers in the files: the degrees of
-            freedom that they have if they may be open by ``rounded_tolerance``. Else None, and if it was not decided.
-        rounded_tolerance: That tolerance, dimensionless (rad, or characteristic lengths): ten times the least residual.
+        infinitesimal_mobility: Degrees of freedom to first order at the analysed configuration, nv - rank of K there;
+            None if the loops do not close. Above the mobility at a singular configuration.
+        finite_mobility: Degrees of freedom of motions that continue from the analysed configuration, on the largest
+            branch; 'unknown' if it was not decided, None if the loops do not close. Below the mobility to first order
+            at a singular configuration and for a shaky structure.
+        rounded_mobility: Degrees of freedom of loops that fail to close only by the rounding of numbers in the files:
+            those that they have if they may be open by 'rounded_tolerance'. Else None, and if it was not decided.
+        rounded_tolerance: How far open the loops may be for 'rounded_mobility', rad or characteristic lengths: ten
+            times the least residual; else None.
     """
 
     nq: int
@@ -163,6 +171,20 @@ class Analysis:
     finite_mobility: int | Literal["unknown"] | None = None
     rounded_mobility: int | None = None
     rounded_tolerance: float | None = None
+
+
+#: The figures that `eurdf info` and the viewer show, in this order, and what each of them counts, in few words.
+FIGURES = {
+    "nq": "coordinates",
+    "nv": "velocities of the spanning tree",
+    "nc": "constraint rows",
+    "rank": "of the constraint Jacobian",
+    "redundant": "redundant constraint rows, nc - rank",
+    "mobility": "degrees of freedom of the closed mechanism, nv - rank",
+    "actuated": "velocities",
+    "uncontrolled": "degrees of freedom left with every actuator held",
+    "dependent": "actuated velocities that depend on the others",
+}
 
 
 def analyze(robot: Robot, q: Vector | None = None) -> Analysis:

@@ -17,7 +17,8 @@ from eurdf.closures.coupling import Couplings
 from eurdf.closures.kind import ClosureKind, RelativePoses
 from eurdf.closures.se3 import velocity_of_origin
 from eurdf.kinematics.derived import derived
-from eurdf.kinematics.tree_many import ManyPairs, TreeMany
+from eurdf.kinematics.pairs_many import ManyPairs
+from eurdf.kinematics.tree_many import TreeMany
 from eurdf.mechanism.constraint import Constraint, Coupling
 from eurdf.pinocchio.tree_few import FewPairs, Pair, as_slice, poses_once
 
@@ -35,7 +36,7 @@ class _Group(NamedTuple):
         members: Their indices among the constraints.
         pairs: Which pairs of frames are theirs.
         rows: Which rows of the residual.
-        size: Number of these rows.
+        m: Their number.
     """
 
     kind: type[ClosureKind]
@@ -43,7 +44,7 @@ class _Group(NamedTuple):
     members: Indices
     pairs: slice
     rows: slice | Indices
-    size: int
+    m: int
 
 
 class State(NamedTuple):
@@ -107,7 +108,7 @@ class Evaluator:
         # The rows of the residual are those of one kind, in order.
         self._is_plain = self._couplings is None and len(self._groups) == 1
         self._tree: TreeKinematics | None = tree
-        self._key = b""  # of the configuration of the last state of one element
+        self._key: bytes | None = None  # of the configuration of the last state of one element
         self._last: Any = None
         if not few:
             self._pairs = ManyPairs(derived(tree, TreeMany), self._sites, velocities)
@@ -158,7 +159,7 @@ class Evaluator:
             return np.array(group.kind.residual(poses, group.fixed)).reshape(B, self.m)  # poses are kept
         r = np.empty((B, self.m))
         for group, poses in zip(self._groups, at.by_kind, strict=True):
-            r[:, group.rows] = group.kind.residual(poses, group.fixed).reshape(B, group.size)
+            r[:, group.rows] = group.kind.residual(poses, group.fixed).reshape(B, group.m)
         if self._couplings is not None:
             couplings, _, rows = self._couplings
             r[:, rows] = couplings.residual(at.q)
@@ -185,7 +186,7 @@ class Evaluator:
             motions = self._pairs.motions(q, v)
             for group in self._groups:
                 part = group.kind.drift(motions.of(group.pairs), group.fixed)
-                d[:, group.rows] = part.reshape(len(q), group.size)
+                d[:, group.rows] = part.reshape(len(q), group.m)
         return d
 
     def openings(self, at: State) -> tuple[Matrix, Matrix]:

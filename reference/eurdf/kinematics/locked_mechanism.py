@@ -11,8 +11,7 @@ from types import MappingProxyType
 from eurdf.kinematics.exceptions import CannotLock
 from eurdf.mechanism.constraint import Constraint
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_transform import joint_transform
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.mimic import Mimic, drivers
 from eurdf.mechanism.pose import Pose
@@ -47,7 +46,7 @@ class LockedMechanism:
 def lock_joints(mechanism: Mechanism, joints: Iterable[str], coordinates: Coordinates) -> LockedMechanism:
     """Fix joints at given coordinates.
 
-    The placement of a locked joint becomes ``placement * joint_transform(joint, c) * offset``, so the child link and
+    The placement of a locked joint becomes ``placement * joint.transform(c) * offset``, so the child link and
     the joint's frame stay in place. The function does not check that the removed constraints were met.
 
     Args:
@@ -63,7 +62,7 @@ def lock_joints(mechanism: Mechanism, joints: Iterable[str], coordinates: Coordi
     by_name = {joint.name: joint for joint in mechanism.joints}
     mimics = drivers({joint.name: joint.mimic for joint in mechanism.joints if joint.mimic is not None})
     locked = _locked(by_name, joints, mimics)
-    at = {name: joint_transform(by_name[name], _coordinates(by_name, name, coordinates, mimics)) for name in locked}
+    at = {name: by_name[name].transform(_coordinates(by_name, name, coordinates, mimics)) for name in locked}
     ordered = tuple(_fixed(joint, at) for joint in mechanism.joints)
     rigid = rigid_roots(mechanism.bodies[0].name, ordered)
     # The coordinate of each locked joint that has one.
@@ -81,7 +80,7 @@ def lock_joints(mechanism: Mechanism, joints: Iterable[str], coordinates: Coordi
         name: MappingProxyType({joint: values for joint, values in configuration.items() if joint not in at})
         for name, configuration in mechanism.configurations.items()
         if all(
-            _near(pose, joint_transform(by_name[joint], _coordinates(by_name, joint, configuration, mimics)))
+            _near(pose, by_name[joint].transform(_coordinates(by_name, joint, configuration, mimics)))
             for joint, pose in at.items()
         )
     }
@@ -117,7 +116,7 @@ def _locked(by_name: Mapping[str, Joint], names: Iterable[str], mimics: Mapping[
             locked.append(name)
         elif name in named:
             raise CannotLock(name, f"it is a mimic joint of '{leader}'; lock '{leader}' instead", leader)
-    return [name for name in locked if by_name[name].type is not JointType.FIXED]
+    return [name for name in locked if not by_name[name].type.is_fixed]
 
 
 def _coordinates(
@@ -125,9 +124,9 @@ def _coordinates(
 ) -> Sequence[float]:
     if name in mimics:
         mimic = mimics[name]
-        (leading,) = coordinates.get(mimic.joint, by_name[mimic.joint].coordinates.neutral)
+        (leading,) = coordinates.get(mimic.joint, by_name[mimic.joint].type.neutral)
         return (mimic.multiplier * leading + mimic.offset,)
-    return coordinates.get(name, by_name[name].coordinates.neutral)
+    return coordinates.get(name, by_name[name].type.neutral)
 
 
 def _fixed(joint: Joint, at: Mapping[str, Pose]) -> Joint:

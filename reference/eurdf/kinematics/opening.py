@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from eurdf.kinematics.tolerances import CLOSED
@@ -35,4 +36,15 @@ class Opening:
     @property
     def is_open(self) -> bool:
         """Whether it is open by more than `CLOSED`; what is no number is open."""
-        return not max(self.position, self.angle) <= CLOSED
+        return not self.width <= CLOSED
+
+    @property
+    def width(self) -> float:
+        """The larger of its two numbers, in m or rad."""
+        return max(self.position, self.angle)
+
+
+def widest(openings: Iterable[Opening], most: int = 4) -> str:
+    """The open ones for a message, the widest first, a few at most."""
+    wide = sorted((each for each in openings if each.is_open), key=lambda each: each.width, reverse=True)
+    return "; ".join(map(str, wide[:most])) + (f"; and {len(wide) - most} more" if len(wide) > most else "")

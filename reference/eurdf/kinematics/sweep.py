@@ -16,7 +16,7 @@ from eurdf.kinematics.path import Elements, follow
 from eurdf.kinematics.position_limit import PositionLimits, chosen_limits
 from eurdf.kinematics.scale import characteristic_length
 from eurdf.kinematics.tolerances import DEAD, START
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.pinocchio.arguments import checked_count
 
 if TYPE_CHECKING:

@@ -10,7 +10,6 @@ from eurdf.diagnostics import Hint, did_you_mean
 from eurdf.format.extension import ActuatorEntry
 from eurdf.format.urdf.data import Urdf
 from eurdf.mechanism.joint import Joint, JointProperties
-from eurdf.mechanism.joint_type import JointType
 from eurdf.reading.reporter import YamlReporter
 from eurdf.reading.yaml_node import Pointer
 from eurdf.reading.yaml_reader import YamlDocument
@@ -56,14 +55,14 @@ def link_actuators(
                 f"actuate '{first}' or '{second}'",
             )
         elif joint is None:
-            movable = (other.name for other in joints.values() if other.type is not JointType.FIXED)
+            movable = (other.name for other in joints.values() if not other.type.is_fixed)
             hint: Hint = partial(did_you_mean, name, movable)
             if name in urdf.links:
                 hint = f"'{name}' is a link; name the joint that moves it"
             reporter.report("unknown-actuator", f"actuator '{name}' is not a joint of the robot", pointer, hint)
         elif name in listed:
             reporter.report("actuator-duplicate", f"joint '{name}' is actuated twice", pointer, "remove one")
-        elif joint.type is JointType.FIXED:
+        elif joint.type.is_fixed:
             hint = "remove it, or actuate a joint that moves"
             reporter.report("actuator-immobile", f"joint '{name}' is fixed and cannot be actuated", pointer, hint)
         elif joint.mimic is not None:
@@ -111,7 +110,7 @@ def with_motor(joint: Joint, entry: ActuatorEntry, *, armature_given: bool) -> J
     """
     if entry.gear_ratio is None and entry.rotor_inertia is None:
         return joint
-    nv = joint.coordinates.nv
+    nv = joint.type.nv
     ratio = 1.0 if entry.gear_ratio is None else entry.gear_ratio
     rotor = 0.0 if entry.rotor_inertia is None else entry.rotor_inertia
     own = joint.properties

@@ -11,7 +11,6 @@ from eurdf.diagnostics import Hint, did_you_mean
 from eurdf.format.extension import ConfigurationEntry
 from eurdf.format.yaml_text import Value, flow
 from eurdf.mechanism.joint import LIMIT_TOLERANCE, Joint
-from eurdf.mechanism.joint_type import JointType
 from eurdf.reading.reporter import YamlReporter
 
 #: A quaternion in a file may be off unit length by this much; it is normalised when read (EU-CFG-003).
@@ -92,12 +91,12 @@ def _joint(
 ) -> Joint | None:
     """EU-CFG-001: a configuration names joints that have coordinates of their own."""
     joint = joints.get(name)
-    if joint is not None and joint.type is not JointType.FIXED and joint.mimic is None:
+    if joint is not None and not joint.type.is_fixed and joint.mimic is None:
         return joint
     hint: Hint = None
     if joint is None:
         why = "is not a joint of the robot"
-        free = (other.name for other in joints.values() if other.type is not JointType.FIXED and not other.mimic)
+        free = (other.name for other in joints.values() if not other.type.is_fixed and not other.mimic)
         hint = partial(did_you_mean, name, free)
     elif name in merged:
         why = f"was merged into the spherical joint '{merged[name]}'"
@@ -131,10 +130,10 @@ def beyond_limits(joints: Iterable[Joint], coordinates: Mapping[str, Sequence[fl
     return [
         BeyondLimit(joint.name, name, value, lower, upper)
         for joint in joints
-        if joint.coordinates.quaternion is None and (joint.mimic is None or joint.name in coordinates)
+        if joint.type.quaternion is None and (joint.mimic is None or joint.name in coordinates)
         for name, value, (lower, upper) in zip(
-            joint.coordinates.names,
-            coordinates.get(joint.name, joint.coordinates.neutral),
+            joint.type.coordinates,
+            coordinates.get(joint.name, joint.type.neutral),
             joint.ranges,
             strict=True,
         )
@@ -162,7 +161,7 @@ def _check_left_out(joints: Sequence[Joint], entry: ConfigurationEntry, reporter
 
 def _nearest(joint: Joint) -> float | list[float]:
     """The coordinates within the limits that are nearest to neutral, as a file states them."""
-    neutral = zip(joint.coordinates.neutral, joint.ranges, strict=True)
+    neutral = zip(joint.type.neutral, joint.ranges, strict=True)
     nearest = [value if within_limits(value, *ends) else min(max(value, ends[0]), ends[1]) for value, ends in neutral]
     return nearest[0] if len(nearest) == 1 else nearest
 
@@ -173,16 +172,15 @@ def _coordinates(
     entry: ConfigurationEntry,
     reporter: YamlReporter,
 ) -> tuple[float, ...] | None:
-    coordinates = joint.coordinates
-    if len(values) != len(coordinates.names):
+    names, start = joint.type.coordinates, joint.type.quaternion
+    if len(values) != len(names):
         reporter.report(
             "configuration-length",
             f"{joint.type} joint '{joint.name}' has {len(values)} coordinates in configuration '{entry.name}'; "
-            f"it must have {len(coordinates.names)}: {', '.join(coordinates.names)}",
+            f"it must have {len(names)}: {', '.join(names)}",
             (*entry.pointer, joint.name),
         )
         return None
-    start = coordinates.quaternion
     if start is not None:
         norm = math.sqrt(sum(value * value for value in values[start : start + 4]))
         if abs(norm - 1.0) > QUATERNION_TOLERANCE:

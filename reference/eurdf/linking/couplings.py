@@ -10,12 +10,9 @@ from eurdf.format.extension import CouplingEntry
 from eurdf.format.urdf.data import Urdf
 from eurdf.mechanism.constraint import Coupling
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mimic import drivers
 from eurdf.reading.reporter import YamlReporter
 from eurdf.reading.yaml_node import Pointer
-
-_COUPLED_TYPES = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC, JointType.HELICAL})
 
 #: Coefficients relative to the largest one are equal if they differ by no more.
 _EQUAL = 1e-9
@@ -84,7 +81,7 @@ def _can_be_coupled(
     joint = joints.get(name)
     if joint is None and name not in merged:
         hint = f"'{name}' is a link; name the joint that moves it" if name in urdf.links else None
-        candidates = [other.name for other in joints.values() if other.type in _COUPLED_TYPES and other.mimic is None]
+        candidates = [other.name for other in joints.values() if other.type.nv == 1 and other.mimic is None]
         reporter.report(
             "unknown-coupled-joint",
             f"'{name}' is not a joint of the robot",
@@ -102,10 +99,10 @@ def _can_be_coupled(
         why = f"it mimics '{leader.joint}'"
         hint = f"couple '{leader.joint}': '{name}' is {leader.multiplier:g} · '{leader.joint}'"
         hint += f" {'-' if leader.offset < 0.0 else '+'} {abs(leader.offset):g}" if leader.offset else ""
-    elif joint.type is JointType.FIXED:
+    elif joint.type.is_fixed:
         why, hint = "it is fixed", "leave it out; if it is locked at an angle, add what it contributes to the offset"
-    elif joint.type not in _COUPLED_TYPES:
-        why = f"it is {joint.type} and has {joint.coordinates.nv} velocities"
+    elif joint.type.nv != 1:
+        why = f"it is {joint.type} and has {joint.type.nv} velocities"
         hint = "couple revolute, continuous, prismatic or helical joints"
     else:
         return True

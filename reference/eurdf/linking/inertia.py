@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Iterable, Sequence
 from functools import partial
 
@@ -12,9 +11,8 @@ from eurdf.diagnostics import Diagnostics
 from eurdf.format.urdf.data import Urdf, UrdfLink
 from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
-from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, squarable
+from eurdf.mechanism.mechanism import Mechanism, root_joint
+from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 from eurdf.mechanism.spanning_tree import rigid_roots
 
 #: A moment may be negative, and a sum of two below the third, by this part of the largest (rounding in files).
@@ -27,18 +25,6 @@ Moments = tuple[float, float, float, float, float, float]
 
 #: The pose of a link in the frame that its joint moves, and its inertia.
 Member = tuple[Pose, Inertia]
-
-_SLIDES = frozenset({JointType.PRISMATIC, JointType.CYLINDRICAL, JointType.PLANAR, JointType.FLOATING})
-_TURNS = frozenset(
-    {
-        JointType.REVOLUTE,
-        JointType.CONTINUOUS,
-        JointType.HELICAL,
-        JointType.UNIVERSAL,
-        JointType.CYLINDRICAL,
-        JointType.PLANAR,
-    }
-)
 
 
 def check_inertias(urdf: Urdf, diagnostics: Diagnostics) -> set[str]:
@@ -101,14 +87,14 @@ def check_leaves(
     """
     root = mechanism.bodies[0].name
     rigid = rigid_roots(root, mechanism.joints)
-    inner = {rigid[joint.parent] for joint in mechanism.joints if joint.type is not JointType.FIXED}
+    inner = {rigid[joint.parent] for joint in mechanism.joints if not joint.type.is_fixed}
     inertia_of = {body.name: body.inertia for body in mechanism.bodies}
     poses: dict[str, Pose] = {root: IDENTITY}
     members: dict[str, list[Member]] = {}
     moving: list[Joint] = []
     passed_over: set[str] = set()
     for joint in mechanism.joints:
-        if joint.type is JointType.FIXED:
+        if joint.type.is_fixed:
             parent = poses.get(joint.parent)
             if parent is None or rigid[joint.child] in inner:
                 continue
@@ -125,7 +111,7 @@ def check_leaves(
             if joint.child in faulty:
                 passed_over.add(rigid[joint.child])
     if mechanism.root == "floating" and root not in inner:
-        moving.append(Joint(ROOT_JOINT, JointType.FLOATING, "", root))
+        moving.append(root_joint(root))
         if (inertia := inertia_of[root]) is not None:
             members.setdefault(root, []).append((IDENTITY, inertia))
             if root in faulty:
@@ -145,26 +131,23 @@ def _immaterial(joint: Joint, members: Sequence[Member]) -> str | None:
     mass = sum(inertia.mass for _, inertia in members)
     if mass == 0.0 and not any(any(inertia.moments) for _, inertia in members):
         return "has no mass, and no link attached to it has mass"
-    if mass == 0.0 and kind in _SLIDES:
+    if mass == 0.0 and kind.slides:
         return "has no mass"
     scale = sum(_trace_about_origin(pose, inertia) for pose, inertia in members)
-    if kind in (JointType.PLANAR, JointType.FLOATING):
-        # They slide as well: what then resists turning is the inertia about the centre of mass.
+    if kind.moving_frame and kind.slides:
+        # What resists turning is the inertia about the centre of mass.
         members = _centred(members, mass)
-    if kind is JointType.SPHERICAL and not _positive(members, SINGULAR * scale):
-        return "has no inertia about one of the axes through the joint"
-    if kind is JointType.FLOATING and not _positive(members, SINGULAR * scale):
-        return "has no inertia about one of the axes through its centre of mass"
-    if kind in _TURNS:
-        # Of a universal joint the first axis moves in the child: only mass on the second resists nothing for ever.
-        axis: Vector3 = (0.0, 0.0, 1.0) if kind is JointType.PLANAR else squarable(joint.axes[-1])
-        squared = sum(value * value for value in axis)
-        resists = sum(_about_axis(axis, pose, inertia) for pose, inertia in members) / squared
-        if kind is JointType.HELICAL:
-            advance = joint.pitch / (2.0 * math.pi)
-            resists, scale = resists + advance * advance * mass, scale + advance * advance * mass
-        if resists <= SINGULAR * scale:
-            return f"has no inertia about the joint's {'second ' if kind is JointType.UNIVERSAL else ''}axis"
+    # Of a universal joint the first axis moves in the child: only mass on the second resists nothing for ever.
+    axis, turns, advance = joint.motions[-1]
+    if axis is None:
+        if not _positive(members, SINGULAR * scale):
+            point = "its centre of mass" if kind.slides else "the joint"
+            return f"has no inertia about one of the axes through {point}"
+    elif turns:
+        with_it = advance * advance * mass
+        resists = sum(_about_axis(axis, pose, inertia) for pose, inertia in members) + with_it
+        if resists <= SINGULAR * (scale + with_it):
+            return f"has no inertia about the joint's {'second ' if len(joint.axes) > 1 else ''}axis"
     return None
 
 
@@ -176,7 +159,7 @@ def _centred(members: Sequence[Member], mass: float) -> list[Member]:
 
 
 def _about_axis(axis: Vector3, pose: Pose, inertia: Inertia) -> float:
-    """Inertia about an axis through the joint's origin, times the axis's length squared: aᵀ I a + m |a × c|²."""
+    """Inertia about an axis a of unit length through the joint's origin: aᵀ I a + m |a × c|²."""
     at = pose * inertia.pose
     x, y, z = at.inverse().rotate(axis)
     xx, xy, xz, yy, yz, zz = inertia.moments

@@ -22,9 +22,8 @@ from eurdf.linking.replacement import Joints, replace_joints
 from eurdf.linking.urdf_tree import bodies_of, joint_of
 from eurdf.mechanism.frame import Frame
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, Root
-from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic, drivers
+from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, Root, root_joint
+from eurdf.mechanism.mimic import Mimic, drivers
 from eurdf.mechanism.motor import Motor
 from eurdf.mechanism.spanning_tree import depth_first, rigid_roots
 from eurdf.reading.reporter import YamlReporter
@@ -85,7 +84,7 @@ def link(
 def _refuse_too_large(mechanism: Mechanism, urdf: Urdf, extension: Extension | None, diagnostics: Diagnostics) -> None:
     """EU-FIL-002: a robot is not so large that its model takes more memory than a machine has."""
     joints = len(mechanism.joints)
-    velocities = sum(joint.coordinates.nv for joint in mechanism.joints)
+    velocities = sum(joint.type.nv for joint in mechanism.joints)
     if joints > JOINT_LIMIT:
         message = f"the robot has {joints:,} joints; the maximum is {JOINT_LIMIT:,}"
         diagnostics.report("file-too-large", message, urdf.document.place(urdf.document.root))
@@ -130,7 +129,7 @@ def _described(urdf: Urdf, extension: Extension, reporter: YamlReporter, root: R
     actuators = link_actuators(entries, urdf, joints.by_name, joints.merged, joints.split, reporter)
     named = joints.by_name
     if extension.root == "floating":
-        named = {**named, ROOT_JOINT: Joint(ROOT_JOINT, JointType.FLOATING, "", urdf.root)}
+        named = {**named, ROOT_JOINT: root_joint(urdf.root)}
     configurations = link_configurations(extension.configurations, named, joints.merged, faulty, reporter)
     if root == "fixed":  # whatever the description says
         for coordinates in configurations.values():
@@ -171,7 +170,7 @@ def _led(mechanism: Mechanism, mimics: Mapping[str, Mimic]) -> Mapping[str, Mapp
     led = {
         name: mimic
         for name, mimic in mimics.items()
-        if all(other in joints and joints[other].type in MIMIC_TYPES for other in (name, mimic.joint))
+        if all(other in joints and joints[other].type.is_axial for other in (name, mimic.joint))
     }
     if not led:
         return mechanism.configurations

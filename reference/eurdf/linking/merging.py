@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from eurdf.format.urdf.data import Urdf
 from eurdf.mechanism.joint import Joint, JointProperties
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import ROTARY, JointType
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, squarable
 
 #: A link lighter than this, in kg, counts as being without inertia (EU-JNT-012).
@@ -27,8 +27,6 @@ _ORDERS = tuple(itertools.permutations(range(3)))
 
 #: Sums of cosines that differ by no more are equal (EU-JNT-028).
 _AS_LARGE = 1e-9
-
-_ROTARY = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS})
 
 
 class NotMergeable(Exception):  # noqa: N818 - a finding, which one of the two callers takes for an answer
@@ -61,7 +59,7 @@ def check_chain(
     urdf: Urdf,
     closure_links: Collection[str],
     *,
-    rotary: Collection[JointType] = _ROTARY,
+    rotary: Collection[str] = ROTARY,
 ) -> Chain:
     """EU-JNT-011 to -014: the joints follow one another, nothing else hangs or weighs between them, their axes meet.
 

@@ -8,9 +8,6 @@ from functools import partial
 from eurdf.diagnostics import Diagnostics, quoted
 from eurdf.format.urdf.data import Urdf, UrdfJoint
 from eurdf.mechanism.joint import Joint, is_no_range
-from eurdf.mechanism.joint_type import JointType
-
-_RANGED = frozenset({JointType.REVOLUTE, JointType.PRISMATIC})
 
 
 def check_ranges(urdf: Urdf, joints: Mapping[str, Joint], diagnostics: Diagnostics) -> None:
@@ -43,4 +40,4 @@ def check_ranges(urdf: Urdf, joints: Mapping[str, Joint], diagnostics: Diagnosti
 
 def _has_no_range(joint: UrdfJoint, made: Joint | None) -> bool:
     """Whether the range from 0 to 0 of a joint of the URDF is that of its joint in the mechanism."""
-    return joint.type in _RANGED and made is not None and made.type in _RANGED and made.lacks_range
+    return joint.type.is_ranged and made is not None and made.type.is_ranged and made.lacks_range

@@ -15,30 +15,10 @@ from eurdf.format.urdf.data import Urdf
 from eurdf.linking.merging import PARALLEL, NotMergeable, check_chain, find_chains, fixed, merge
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint, JointProperties
-from eurdf.mechanism.joint_type import COORDINATES, JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import Vector3, direction
 from eurdf.reading.reporter import YamlReporter
 from eurdf.reading.yaml_node import Pointer
-
-_ROTARY = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS})
-_SLIDING = frozenset({JointType.PRISMATIC})
-
-#: What each new type may replace (EU-JNT-005). A universal joint has axes of its own; the others need the URDF's one.
-_REPLACES: dict[str, frozenset[JointType]] = {
-    "spherical": _ROTARY,
-    "universal": _ROTARY,
-    "cylindrical": _ROTARY | _SLIDING,
-    "helical": _ROTARY | _SLIDING,
-    "fixed": frozenset(JointType) - {JointType.FIXED},
-}
-
-#: Types without a spring: their velocities are not the rates of their coordinates (EU-JNT-009).
-_SPRINGLESS = frozenset({JointType.SPHERICAL, JointType.PLANAR, JointType.FLOATING})
-
-#: Types whose coordinates are angles and lengths that a limit can bound (EU-JNT-009).
-_LIMITED = frozenset(
-    {JointType.REVOLUTE, JointType.PRISMATIC, JointType.UNIVERSAL, JointType.CYLINDRICAL, JointType.HELICAL}
-)
 
 _LETTERS: dict[str, Vector3] = {"X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
 
@@ -260,10 +240,10 @@ class _Replacement:
     # -- new types ------------------------------------------------------------------------------------------------
 
     def retype(self, joint: Joint, new: NewType) -> Joint | None:
-        """EU-JNT-005: each new type replaces a joint that moves like a part of it."""
-        allowed = _REPLACES[new]
-        if joint.type not in allowed:
-            wanted = sorted(str(kind) for kind in allowed) if new != "fixed" else ["moving"]
+        """EU-JNT-005: each new type replaces a joint that moves like a part of it; fixed, every joint that moves."""
+        replaces = JointType(new).replaces
+        if joint.type.is_fixed if new == "fixed" else joint.type not in replaces:
+            wanted = sorted(replaces) or ["moving"]
             self.reporter.report(
                 "joint-kind",
                 f"joint '{joint.name}' is {joint.type} in the URDF and cannot become {new}",
@@ -298,7 +278,7 @@ class _Replacement:
         """
         own, properties = joint.properties, JointProperties.unlimited(kind)
         if own is not JointProperties.unlimited(joint.type):
-            nv = COORDINATES[kind].nv
+            nv = kind.nv
             lower, upper = limits or (properties.lower, properties.upper)
             properties = JointProperties(
                 lower,
@@ -371,7 +351,7 @@ class _Replacement:
     def cylindrical(self, joint: Joint) -> Joint:
         """EU-JNT-027: limits of the URDF's joint stay with the coordinate of its kind; the other has none."""
         (lower,), (upper,) = joint.properties.lower, joint.properties.upper
-        if joint.type is JointType.PRISMATIC:
+        if joint.type.slides:
             limits = (lower, -math.inf), (upper, math.inf)
         else:
             limits = (-math.inf, lower), (math.inf, upper)
@@ -388,7 +368,7 @@ class _Replacement:
             self.report("number-out-of-bounds", message, "pitch", hint=HINT)
             return None
         properties = joint.properties
-        if joint.type is JointType.PRISMATIC:
+        if joint.type.slides:
             lead = pitch / (2.0 * math.pi)
             # No negative zero, where the pitch is negative.
             lower, upper = sorted((properties.lower[0] / lead + 0.0, properties.upper[0] / lead + 0.0))
@@ -413,7 +393,7 @@ class _Replacement:
         entry = self.entry
         if _stated(entry) == _NOTHING:
             return joint
-        if joint.type is JointType.FIXED:
+        if joint.type.is_fixed:
             keys = next(keys for attribute, keys in _PROPERTIES.items() if getattr(entry, attribute) is not None)
             self.report("joint-property", f"fixed joint '{joint.name}' cannot have the property '{keys[-1]}'", *keys)
             return None
@@ -423,13 +403,13 @@ class _Replacement:
             if stated is None:
                 continue
             bounds_position = attribute in ("lower", "upper")
-            if bounds_position and joint.type not in _LIMITED:
+            if bounds_position and not joint.type.limited:
                 self.report("joint-property", f"{joint.type} joint '{joint.name}' cannot have position limits", *keys)
                 return None
-            if attribute in ("stiffness", "rest") and joint.type in _SPRINGLESS:
+            if attribute in ("stiffness", "rest") and joint.type.moving_frame:
                 self.report("joint-property", f"{joint.type} joint '{joint.name}' cannot have a spring", *keys)
                 return None
-            n = joint.coordinates.nv
+            n = joint.type.nv
             values = stated if isinstance(stated, tuple) else (stated,) * n
             if len(values) != n:
                 wanted = "be one number" if n == 1 else f"have {n}, or be one number for all"
@@ -441,7 +421,7 @@ class _Replacement:
                 return None
             changes[attribute] = values
         if "stiffness" in changes:
-            changes.setdefault("rest", (0.0,) * joint.coordinates.nv)
+            changes.setdefault("rest", (0.0,) * joint.type.nv)
         properties = replace(joint.properties, **changes)
         if "armature" in changes:
             self.joints.armature_given.add(joint.name)

@@ -7,11 +7,9 @@ import math
 from eurdf.format.urdf.data import Limit, Urdf, UrdfJoint
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint, JointProperties
-from eurdf.mechanism.joint_type import JointType
 
 _NONE = JointProperties()
 _UNLIMITED = Limit(-math.inf, math.inf, math.inf, math.inf)
-_AXIAL = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC})
 
 
 def bodies_of(urdf: Urdf) -> dict[str, Body]:
@@ -26,15 +24,15 @@ def joint_of(joint: UrdfJoint) -> Joint:
     their coordinates, of different units.
     """
     kind = joint.type
-    properties = _NONE if kind is JointType.FIXED else JointProperties.unlimited(kind)
-    if kind not in _AXIAL:
+    properties = _NONE if kind.is_fixed else JointProperties.unlimited(kind)
+    if not kind.is_axial:
         return Joint(joint.name, kind, joint.parent, joint.child, joint.placement, properties=properties)
     if joint.limit is not None or joint.damping or joint.friction:
         lower, upper, velocity, effort, *rates = joint.limit or _UNLIMITED
         acceleration, deceleration, jerk = (() if math.isinf(limit) else (limit,) for limit in rates)
         properties = JointProperties(
-            properties.lower if kind is JointType.CONTINUOUS else (lower,),
-            properties.upper if kind is JointType.CONTINUOUS else (upper,),
+            (lower,) if kind.limited else properties.lower,
+            (upper,) if kind.limited else properties.upper,
             (velocity,),
             (effort,),
             (joint.damping,),

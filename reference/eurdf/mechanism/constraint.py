@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, ClassVar, Literal
+from dataclasses import dataclass, field, fields, replace
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
 from eurdf.mechanism.frame import Anchor
 
@@ -49,6 +49,31 @@ class Constraint:
         return self
 
 
+class Key(NamedTuple):
+    """What a file states of a closure in one of its keys, beside the frames.
+
+    Attributes:
+        title: Its name for readers.
+        description: What it is, with its unit.
+        unit: Its unit; empty if it has none.
+        least: The least value, or None.
+        examples: Values as files have them.
+    """
+
+    title: str
+    description: str
+    unit: str = ""
+    least: float | None = None
+    examples: tuple[Any, ...] = ()
+
+
+def key(
+    title: str, description: str, *, unit: str = "", least: float | None = None, example: Any, **options: Any
+) -> Any:
+    """A field of a kind that a file states in a key; ``options`` are those of `dataclasses.field`."""
+    return field(metadata={"key": Key(title, description, unit, least, (example,))}, **options)
+
+
 @dataclass(frozen=True, slots=True)
 class Compliance:
     """How much a closure gives way under load: for simulators with soft constraints, without effect on kinematics.
@@ -83,6 +108,16 @@ class Closure(Constraint):
     def anchors(self) -> tuple[Anchor, ...]:
         """Frames A and B."""
         return self.a, self.b
+
+    @property
+    def own(self) -> dict[str, Any]:
+        """What the closures of its kind state beside name, frames and compliance, by key."""
+        return {each.name: getattr(self, each.name) for each in fields(self) if "key" in each.metadata}
+
+    def stated(self) -> dict[str, Any]:
+        """The same as a file states it: what is not stated is the default."""
+        default = {each.name: each.default for each in fields(self)}
+        return {name: value for name, value in self.own.items() if value != default[name]}
 
     def with_orientation_free(self) -> Closure:
         """The closure that constrains positions alone as this one does; itself if it leaves orientations free."""

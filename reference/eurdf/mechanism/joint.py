@@ -3,17 +3,37 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
+from typing import NamedTuple
 
-from eurdf.mechanism.joint_type import COORDINATES, Coordinates, JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mimic import Mimic
-from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
+from eurdf.mechanism.pose import IDENTITY, Pose, Quaternion, Vector3, direction
 
 #: A coordinate may be beyond its limit by this much, rad or m (EU-CFG-004).
 LIMIT_TOLERANCE = 1e-9
 
 _NO_RANGE = (-math.inf, math.inf)
+_ORIGIN = (0.0, 0.0, 0.0)
+
+
+class Motion(NamedTuple):
+    """What a coordinate of a joint does, or the four of a quaternion.
+
+    Attributes:
+        axis: Unit vector in the joint's frame; None for the rotations of a ball.
+        turns: Whether it turns about the axis, by the coordinate.
+        advance: By how much it moves along the axis, m for each unit of the coordinate.
+    """
+
+    axis: Vector3 | None
+    turns: bool
+    advance: float
+
+
+_BALL = Motion(None, turns=True, advance=0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +43,7 @@ class JointProperties:
     An empty tuple means no limit, no loss, no motor and no spring.
 
     Attributes:
-        lower: Lower position limits as in the files, one per coordinate as in `Coordinates`; -inf where there is none.
+        lower: Lower position limits as in the files, one per coordinate; -inf where there is none.
             `Joint.ranges` has what they mean.
         upper: Upper position limits as in the files; inf where there is none.
         velocity: Velocity limits, rad/s or m/s; inf where there is none.
@@ -66,8 +86,7 @@ class JointProperties:
     @cache
     def unlimited(cls, kind: JointType) -> JointProperties:
         """The properties of a joint without limits, losses, motor and springs, every number written out."""
-        coordinates = COORDINATES[kind]
-        n, nv = len(coordinates.names), coordinates.nv
+        n, nv = len(kind.coordinates), kind.nv
         infinite, zero = (math.inf,) * nv, (0.0,) * nv
         return cls((-math.inf,) * n, (math.inf,) * n, infinite, infinite, zero, zero, zero, (1.0,) * nv, zero)
 
@@ -119,17 +138,67 @@ class Joint:
         )
 
     @property
-    def coordinates(self) -> Coordinates:
-        """How its configuration is written in files and answers."""
-        return COORDINATES[self.type]
+    def motions(self) -> tuple[Motion, ...]:
+        """EU-JNT-015 to -018, EU-JNT-025: the steps of its type, with its axes and its pitch."""
+        found = []
+        for kind, at in self.type.steps:
+            if kind == "ball":
+                found.append(_BALL)
+                continue
+            lead = self.pitch / (2.0 * math.pi) if kind == "screw" else float(kind == "slide")
+            found.append(Motion(direction(self.axes[at]) if isinstance(at, int) else at, kind != "slide", lead))
+        return tuple(found)
+
+    def transform(self, coordinates: Sequence[float]) -> Pose:
+        """Pose of its moving frame in its frame at rest, jMj'(c): what its `motions` make, one after the other.
+
+        Its child body is at ``placement * transform(c) * offset`` in its parent.
+
+        Args:
+            coordinates: As files have them (`JointType.coordinates`): rad, m, quaternions x, y, z, w, brought to unit
+                length.
+
+        Raises:
+            ValueError: There are too few or too many coordinates, or a quaternion has length 0.
+        """
+        names, c = self.type.coordinates, tuple(float(value) for value in coordinates)
+        if len(c) != len(names):
+            raise ValueError(
+                f"joint '{self.name}' is given {len(c)} coordinates; it has {len(names)}: "
+                + (", ".join(names) or "none")
+            )
+        if c == self.type.neutral:
+            return IDENTITY
+        shift, turns = _ORIGIN, []
+        for (axis, turns_about, advance), value in zip(self.motions, c, strict=False):  # slides come before turns
+            if axis is None:
+                turns.append(Pose(_ORIGIN, self._unit_quaternion(c[-4:])))
+                continue
+            if advance:
+                length = advance * value
+                shift = shift[0] + length * axis[0], shift[1] + length * axis[1], shift[2] + length * axis[2]
+            if turns_about:
+                s, cosine = math.sin(value / 2.0), math.cos(value / 2.0)
+                turns.append(Pose(_ORIGIN, (s * axis[0], s * axis[1], s * axis[2], cosine)))
+        turned = turns[0] if turns else IDENTITY
+        for turn in turns[1:]:
+            turned = turned * turn
+        return Pose(shift, turned.quaternion)
+
+    def _unit_quaternion(self, quaternion: Sequence[float]) -> Quaternion:
+        norm = math.hypot(*quaternion)
+        if norm == 0.0:
+            raise ValueError(f"the quaternion of joint '{self.name}' has length 0")
+        x, y, z, w = (value / norm for value in quaternion)
+        return x, y, z, w
 
     @property
     def ranges(self) -> tuple[tuple[float, float], ...]:
-        """The least and the greatest value of each coordinate, as in `Coordinates`, rad or m; infinite for no limit.
+        """The least and the greatest value of each coordinate, rad or m; infinite for no limit.
 
         Limits that are both 0 are no range (EU-URD-025). Other equal limits lock the coordinate.
         """
-        n = len(self.coordinates.names)
+        n = len(self.type.coordinates)
         lower, upper = self.properties.lower or (-math.inf,) * n, self.properties.upper or (math.inf,) * n
         return tuple(_NO_RANGE if is_no_range(*pair) else pair for pair in zip(lower, upper, strict=True))
 

@@ -17,12 +17,18 @@ from eurdf.mechanism.body import Body
 from eurdf.mechanism.constraint import Closure, Constraint, Coupling
 from eurdf.mechanism.frame import Frame
 from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.motor import Motor
 
 Root = Literal["fixed", "floating"]
 
 #: Name of the joint by which a floating root moves in the world, in every model.
 ROOT_JOINT = "root_joint"
+
+
+def root_joint(root: str) -> Joint:
+    """The joint by which a floating root moves in the world."""
+    return Joint(ROOT_JOINT, JointType.FLOATING, "", root)
 
 
 def _read_only(content: dict[Any, Any]) -> MappingProxyType[Any, Any]:

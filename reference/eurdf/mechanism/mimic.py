@@ -1,14 +1,9 @@
-"""Mimic joints: the joint types that allow it, and the leader of each chain."""
+"""Mimic joints, and the leader of each chain."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-
-from eurdf.mechanism.joint_type import JointType
-
-#: The types of the joints that can mimic and be mimicked (EU-URD-023): those of URDF with one coordinate.
-MIMIC_TYPES = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC})
 
 
 @dataclass(frozen=True, slots=True)

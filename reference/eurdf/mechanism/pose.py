@@ -113,3 +113,13 @@ def direction(axis: Vector3) -> Vector3:
     x, y, z = squarable(axis)
     norm = math.hypot(x, y, z)
     return x / norm, y / norm, z / norm
+
+
+def turn_from_x(axis: Vector3) -> Quaternion:
+    """The shortest rotation that takes x to an axis of any length but zero; about z where the axis is opposite."""
+    x, y, z = direction(axis)
+    cosine = 1.0 + x if x > 0.0 else (y * y + z * z) / (1.0 - x)  # 1 + x, without cancellation
+    norm = math.hypot(cosine, y, z)
+    if norm == 0.0:
+        return 0.0, 0.0, 1.0, 0.0
+    return 0.0, -z / norm, y / norm, cosine / norm

@@ -10,7 +10,7 @@ from eurdf.mechanism.body import Body
 from eurdf.mechanism.constraint import Constraint
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 
 _Named = TypeVar("_Named", Body, Joint, Frame, Constraint)

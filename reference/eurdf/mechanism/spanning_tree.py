@@ -7,7 +7,7 @@ from operator import attrgetter
 from typing import Protocol
 
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import IDENTITY, Pose
 
 
@@ -32,7 +32,7 @@ def rigid_roots(root: str, ordered: Iterable[Joint]) -> Mapping[str, str]:
     """For each body the one it is rigidly fixed to that is nearest to the root; itself where a joint moves it."""
     of = {root: root}
     for joint in ordered:
-        of[joint.child] = of[joint.parent] if joint.type is JointType.FIXED else joint.child
+        of[joint.child] = of[joint.parent] if joint.type.is_fixed else joint.child
     return of
 
 
@@ -54,5 +54,5 @@ def rigid_poses(root: str, ordered: Iterable[_Placed]) -> Mapping[str, tuple[str
     of = {root: (root, IDENTITY)}
     for joint in ordered:
         body, pose = of[joint.parent]
-        of[joint.child] = (body, pose * joint.placement) if joint.type is JointType.FIXED else (joint.child, IDENTITY)
+        of[joint.child] = (body, pose * joint.placement) if joint.type.is_fixed else (joint.child, IDENTITY)
     return of

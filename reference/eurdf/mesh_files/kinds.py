@@ -8,9 +8,10 @@ from __future__ import annotations
 import html
 import json
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
+from functools import partial
 from pathlib import PurePosixPath
-from typing import Any
+from typing import Any, NamedTuple
 
 #: Bytes of the beginning that tell the format.
 HEAD = 1 << 16
@@ -53,51 +54,9 @@ def _begins(pattern: bytes) -> Callable[[bytes, int], bool]:
     return lambda head, size: re.match(pattern, head) is not None
 
 
-#: By ending: the name of the format, and whether a file of some first bytes and size is of it.
-KINDS: dict[str, tuple[str, Callable[[bytes, int], bool]]] = {
-    ".stl": ("STL", _is_stl),
-    ".obj": ("OBJ", _is_obj),
-    ".dae": ("COLLADA", _is_collada),
-    ".gltf": ("glTF", _is_gltf),
-    ".glb": ("binary glTF", _begins(rb"glTF")),
-    ".ply": ("PLY", _begins(rb"ply\s")),
-    ".off": ("OFF", _begins(rb"\s*(ST)?C?N?4?n?OFF\b")),
-    ".3ds": ("3DS", _begins(rb"MM")),
-    ".vtk": ("VTK", _begins(rb"# vtk DataFile")),
-    ".msh": ("MSH", _is_msh),
-}
-
-
-#: Endings of the formats that the mesh loader reads.
-LOADED = tuple(suffix for suffix in KINDS if suffix not in (".vtk", ".msh"))
-
-#: By ending, of a mesh or its materials: the endings of the files that it may name.
-REFERENCES: dict[str, frozenset[str]] = {
-    ".obj": frozenset({".mtl"}),
-    ".mtl": _PICTURES,
-    ".dae": _PICTURES,
-    ".gltf": _PICTURES | {".bin"},
-    ".glb": _PICTURES | {".bin"},
-    ".ply": _PICTURES,
-    ".3ds": _PICTURES,
-}
-
-
 def suffix_of(path: str) -> str:
     """The ending of the name of a file, in lower case."""
     return PurePosixPath(path).suffix.lower()
-
-
-def references_of(suffix: str, content: bytes) -> tuple[str, ...]:
-    """The names of the files that a mesh or its materials name, as it writes them, each once.
-
-    It takes time that is proportional to the size, whatever the content is.
-
-    Args:
-        suffix: Ending of its name, in lower case.
-        content: Its content.
-    """
-    return tuple(dict.fromkeys(_REFERENCES[suffix](content))) if suffix in _REFERENCES else ()
 
 
 def is_embedded(uri: str) -> bool:
@@ -149,6 +108,13 @@ def joined_lines(content: bytes) -> bytes:
     return re.sub(rb"\\[ \t\r]*\n", b"", content)
 
 
+# The names of other files in a content: found in time that is proportional to its size, whatever it is.
+
+
+def _no_names(content: bytes) -> tuple[()]:
+    return ()
+
+
 def _of_obj(content: bytes) -> Iterator[str]:
     for name in _statements(rb"mtllib", content):
         # One name with spaces, or several names.
@@ -177,18 +143,15 @@ def _of_collada(content: bytes) -> Iterator[str]:
             yield html.unescape(_text(text))
 
 
-def _of_gltf(suffix: str) -> Callable[[bytes], Iterator[str]]:
-    def names(content: bytes) -> Iterator[str]:
-        try:
-            document, _ = gltf_document(suffix, content)
-        except ValueError:
-            return
-        for each in (*listed(document.get("buffers")), *listed(document.get("images"))):
-            uri = each.get("uri")
-            if isinstance(uri, str) and not is_embedded(uri):
-                yield uri
-
-    return names
+def _of_gltf(suffix: str, content: bytes) -> Iterator[str]:
+    try:
+        document, _ = gltf_document(suffix, content)
+    except ValueError:
+        return
+    for each in (*listed(document.get("buffers")), *listed(document.get("images"))):
+        uri = each.get("uri")
+        if isinstance(uri, str) and not is_embedded(uri):
+            yield uri
 
 
 def _of_ply(content: bytes) -> Iterator[str]:
@@ -201,16 +164,43 @@ def _of_3ds(content: bytes) -> Iterator[str]:
     yield from map(_text, re.findall(rb"\x00\xa3.{4}([ -~]{3,255})\0", content, re.DOTALL))
 
 
-_REFERENCES: dict[str, Callable[[bytes], Iterator[str]]] = {
-    ".obj": _of_obj,
-    ".mtl": _of_mtl,
-    ".dae": _of_collada,
-    ".gltf": _of_gltf(".gltf"),
-    ".glb": _of_gltf(".glb"),
-    ".ply": _of_ply,
-    ".3ds": _of_3ds,
-}
-
-
 def _text(data: bytes) -> str:
     return data.decode("utf-8", "surrogateescape")
+
+
+class MeshKind(NamedTuple):
+    """A format of mesh files.
+
+    Attributes:
+        name: Its name.
+        matches: Whether a file of some first bytes and size is of it.
+        names: The names of other files in a content, as it writes them.
+        may_name: The endings of these.
+        is_loaded: Whether the mesh loader reads it.
+        is_alone: Whether a file is given to the mesh loader as it is: its reader in assimp opens no other file.
+    """
+
+    name: str
+    matches: Callable[[bytes, int], bool]
+    names: Callable[[bytes], Iterable[str]] = _no_names
+    may_name: Collection[str] = ()
+    is_loaded: bool = True
+    is_alone: bool = False
+
+
+#: The formats of meshes, by the ending of their files.
+KINDS = {
+    ".stl": MeshKind("STL", _is_stl, is_alone=True),
+    ".obj": MeshKind("OBJ", _is_obj, _of_obj, (".mtl",)),
+    ".dae": MeshKind("COLLADA", _is_collada, _of_collada, _PICTURES, is_alone=True),
+    ".gltf": MeshKind("glTF", _is_gltf, partial(_of_gltf, ".gltf"), _PICTURES | {".bin"}),
+    ".glb": MeshKind("binary glTF", _begins(rb"glTF"), partial(_of_gltf, ".glb"), _PICTURES | {".bin"}),
+    ".ply": MeshKind("PLY", _begins(rb"ply\s"), _of_ply, _PICTURES, is_alone=True),
+    ".off": MeshKind("OFF", _begins(rb"\s*(ST)?C?N?4?n?OFF\b"), is_alone=True),
+    ".3ds": MeshKind("3DS", _begins(rb"MM"), _of_3ds, _PICTURES, is_alone=True),
+    ".vtk": MeshKind("VTK", _begins(rb"# vtk DataFile"), is_loaded=False),
+    ".msh": MeshKind("MSH", _is_msh, is_loaded=False),
+}
+
+#: Materials, which only a mesh names.
+MATERIALS = MeshKind("MTL", lambda head, size: True, _of_mtl, _PICTURES)

@@ -18,21 +18,18 @@ from eurdf.mesh_files.folders import Folders
 from eurdf.mesh_files.kinds import (
     HEAD,
     KINDS,
-    REFERENCES,
+    MATERIALS,
+    MeshKind,
     gltf_document,
     is_embedded,
     joined_lines,
     listed,
-    references_of,
     suffix_of,
 )
-from eurdf.regular_file import open_regular
+from eurdf.regular_file import open_regular, reason_of
 
 #: Bytes that the mesh files of a robot may have together, with the files that they name.
 BYTES_LIMIT = 1 << 30
-
-#: Endings of the files that are given to the mesh loader as they are: their readers in assimp open no other file.
-_ALONE = (".stl", ".dae", ".ply", ".off", ".3ds")
 
 #: What the mesh loader needs of a glTF file. Pictures and materials are left out.
 _GEOMETRY = (
@@ -51,7 +48,8 @@ _GEOMETRY = (
 #: Files that a mesh may name.
 REFERENCES_LIMIT = 1_000
 
-_GIT_LFS = b"version https://git-lfs"
+#: How a pointer of Git LFS begins, which is there where the file was not fetched.
+GIT_LFS = b"version https://git-lfs"
 
 
 class RefusedFile(Exception):  # noqa: N818 - named like InvalidRobot
@@ -124,7 +122,7 @@ class MeshReader:
         content = self._content(file)
         found: dict[str, bytes] = {}
         left_out: dict[str, str] = {}
-        self._read_references(file, suffix_of(file), content, found, left_out)
+        self._read_references(file, KINDS[suffix_of(file)], content, found, left_out)
         return MeshFile(content, found, left_out)
 
     def alone(self, path: str, scratch: Callable[[], Path]) -> tuple[str, int]:
@@ -138,7 +136,7 @@ class MeshReader:
             RefusedFile: As for `read`, or the mesh loader does not know its format.
         """
         suffix = suffix_of(path)
-        if suffix in _ALONE:
+        if suffix in KINDS and KINDS[suffix].is_alone:
             size = self.size(path)
             self._spend(size)
             return path, size
@@ -151,7 +149,7 @@ class MeshReader:
             suffix, clean = ".gltf", self._self_contained(path, suffix)
         else:
             self.size(path)
-            raise RefusedFile(f"the mesh loader does not read {KINDS[suffix][0]}; convert it to STL or OBJ")
+            raise RefusedFile(f"the mesh loader does not read {KINDS[suffix].name}; convert it to STL or OBJ")
         copy = f"{scratch()}{suffix}"
         try:
             Path(copy).write_bytes(clean)
@@ -170,14 +168,13 @@ class MeshReader:
             head = stream.read(HEAD)
             stream.seek(0)
         except OSError as error:
-            raise RefusedFile((error.strerror or str(error)).lower()) from None
-        name, matches = KINDS[suffix]
-        if head.startswith(_GIT_LFS):
+            raise RefusedFile(reason_of(error)) from None
+        if head.startswith(GIT_LFS):
             reason = "it is a pointer of Git LFS; fetch the file with `git lfs pull`"
         elif not size:
             reason = "it is empty"
-        elif not matches(head, size):
-            reason = f"its content is not {name}, as its name says"
+        elif not KINDS[suffix].matches(head, size):
+            reason = f"its content is not {KINDS[suffix].name}, as its name says"
         else:
             return stream, size
         stream.close()
@@ -203,7 +200,7 @@ class MeshReader:
             try:
                 return stream.read(size)
             except OSError as error:
-                raise RefusedFile((error.strerror or str(error)).lower()) from None
+                raise RefusedFile(reason_of(error)) from None
 
     def _spend(self, size: int) -> None:
         if size > self._left:
@@ -213,15 +210,15 @@ class MeshReader:
         self._left -= size
 
     def _read_references(
-        self, file: str, suffix: str, content: bytes, found: dict[str, bytes], left_out: dict[str, str]
+        self, file: str, kind: MeshKind, content: bytes, found: dict[str, bytes], left_out: dict[str, str]
     ) -> None:
-        names = references_of(suffix, content)
+        names = dict.fromkeys(kind.names(content))
         if len(names) > REFERENCES_LIMIT:
             left_out[f"{len(names):,} files"] = f"it names more than {REFERENCES_LIMIT:,}"
             return
         for name in names:
             try:
-                relative, path = self._named(file, name)
+                relative, path = self._named(file, kind, name)
                 if relative in found:
                     continue
                 found[relative] = other = self._all(*self._open(path))
@@ -231,13 +228,13 @@ class MeshReader:
             if suffix_of(path) == ".mtl":
                 # The pictures of materials are named from the folder of the materials.
                 within: dict[str, bytes] = {}
-                self._read_references(path, ".mtl", other, within, left_out)
+                self._read_references(path, MATERIALS, other, within, left_out)
                 folder = posixpath.dirname(relative)
                 found |= {posixpath.normpath(posixpath.join(folder, each)): data for each, data in within.items()}
 
-    def _named(self, file: str, name: str) -> tuple[str, str]:
+    def _named(self, file: str, kind: MeshKind, name: str) -> tuple[str, str]:
         """What a mesh or its materials name: the path from their folder, and the path of the file."""
-        if suffix_of(name) not in REFERENCES[suffix_of(file)]:
+        if suffix_of(name) not in kind.may_name:
             raise RefusedFile("its name is not that of a material, a buffer or a picture")
         if "\0" in name or name.startswith("/") or re.match(r"[A-Za-z][A-Za-z0-9+.-]*:", name):
             raise RefusedFile("its address is not a path from the folder of the mesh")
@@ -253,7 +250,7 @@ class MeshReader:
         try:
             document, data = gltf_document(suffix, self._content(path))
         except ValueError as error:
-            raise RefusedFile(f"its content is not {KINDS[suffix][0]}: {' '.join(str(error).split())}") from None
+            raise RefusedFile(f"its content is not {KINDS[suffix].name}: {' '.join(str(error).split())}") from None
         kept: dict[str, Any] = {key: document[key] for key in _GEOMETRY if key in document}
         kept["buffers"] = [
             {"byteLength": len(content), "uri": _embedded(content)} for content in self._buffers(path, document, data)
@@ -274,7 +271,7 @@ class MeshReader:
                 yield _data(uri)
             else:
                 try:
-                    yield self._all(*self._open(self._named(path, uri)[1]))
+                    yield self._all(*self._open(self._named(path, KINDS[suffix_of(path)], uri)[1]))
                 except RefusedFile as reason:
                     raise RefusedFile(f"its buffer '{uri}' cannot be read: {reason}") from None
 

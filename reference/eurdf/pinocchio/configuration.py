@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from eurdf.mechanism.joint_type import COORDINATES, Coordinates, JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.pinocchio.coordinates import Slot, slots
@@ -29,7 +29,7 @@ def configuration_vector(
     Args:
         mechanism: The mechanism.
         model: The result of `build_model`.
-        coordinates: For each joint its coordinates as files have them (`eurdf.mechanism.joint_type.COORDINATES`), for a
+        coordinates: For each joint its coordinates as files have them (`JointType.coordinates`), for a
             floating root those of a floating joint under ``root_joint``. Other joints are
             neutral. Quaternions are normalized. Coordinates of mimic joints are ignored.
         at: The `slots` of the mechanism, if the caller has them.
@@ -47,14 +47,14 @@ def configuration_vector(
     for name, given in coordinates.items():
         values = [float(value) for value in given]
         if name == ROOT_JOINT and mechanism.root == "floating":
-            q[:7] = _checked(name, values, COORDINATES[JointType.FLOATING])
+            q[:7] = _checked(name, values, JointType.FLOATING)
             continue
         slot = at.get(name)
         if slot is None:
             if name in mimics:
                 continue
             raise ValueError(f"'{name}' is not a joint with coordinates")
-        values = _checked(name, values, slot.joint.coordinates)
+        values = _checked(name, values, slot.joint.type)
         if slot.nq > len(values):  # the last of them is an angle, which Pinocchio has as (cos, sin)
             values[-1:] = math.cos(values[-1]), math.sin(values[-1])
         q[slot.idx_q : slot.idx_q + slot.nq] = values
@@ -84,7 +84,7 @@ def own_coordinates(mechanism: Mechanism, model: pin.Model, q: Vector) -> dict[s
         found[ROOT_JOINT] = tuple(numbers[:7])
     for name, slot in slots(mechanism).items():
         own = numbers[slot.idx_q : slot.idx_q + slot.nq]
-        if slot.nq > len(slot.joint.coordinates.names):
+        if slot.nq > len(slot.joint.type.coordinates):
             own[-2:] = [math.atan2(own[-1], own[-2])]
         found[name] = tuple(own)
     return found
@@ -114,13 +114,13 @@ def joint_coordinates(mechanism: Mechanism, model: pin.Model, q: Vector) -> dict
     return found
 
 
-def _checked(name: str, values: list[float], coordinates: Coordinates) -> list[float]:
-    if len(values) != len(coordinates.names):
+def _checked(name: str, values: list[float], kind: JointType) -> list[float]:
+    if len(values) != len(kind.coordinates):
         raise ValueError(
-            f"joint '{name}' is given {len(values)} coordinates; it has {len(coordinates.names)}: "
-            + ", ".join(coordinates.names)
+            f"joint '{name}' is given {len(values)} coordinates; it has {len(kind.coordinates)}: "
+            + ", ".join(kind.coordinates)
         )
-    start = coordinates.quaternion
+    start = kind.quaternion
     if start is not None:
         norm = math.hypot(*values[start : start + 4])
         if norm == 0.0:

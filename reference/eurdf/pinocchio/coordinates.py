@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import COORDINATES, JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.mimic import following
 
@@ -40,10 +40,9 @@ def slots(mechanism: Mechanism) -> dict[str, Slot]:
     found: dict[str, Slot] = {}
     for joint in (*led.late, *mechanism.joints):
         kind, name = joint.type, joint.name
-        if kind is JointType.FIXED or name in mimics or name in found:
+        if kind.is_fixed or name in mimics or name in found:
             continue
-        coordinates = COORDINATES[kind]
-        nq, nv = len(coordinates.names), coordinates.nv
+        nq, nv = len(kind.coordinates), kind.nv
         if kind is JointType.PLANAR or (kind is JointType.CONTINUOUS and name not in unwrapped):
             nq += 1  # Pinocchio has their angle as (cos, sin)
         found[name] = Slot(joint, idx_q, nq, idx_v, nv)

@@ -9,7 +9,7 @@ import numpy as np
 import pinocchio as pin
 
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import Vector3, squarable
 
 # Pinocchio takes an axis for a coordinate axis within this distance (Eigen's isApprox).

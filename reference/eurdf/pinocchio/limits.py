@@ -10,7 +10,7 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 
 # Pinocchio bounds a cosine, a sine and each component of a unit quaternion by this: never reached, and finite.
 _UNIT = 1.01
@@ -46,7 +46,7 @@ def set_limits(model: pin.Model, joints: Sequence[tuple[Joint, int]], root_nq: i
         lowest, highest = _position_bounds(joint, nq)
         lower += lowest
         upper += highest
-        nv = joint.coordinates.nv
+        nv = joint.type.nv
         properties = joint.properties
         velocity += properties.velocity or (_INF,) * nv
         effort += properties.effort or (_INF,) * nv
@@ -77,8 +77,8 @@ def _first(count: int, *vectors: Vector) -> list[list[float]]:
 
 def _position_bounds(joint: Joint, nq: int) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Lower and upper position limits as Pinocchio's coordinates have them, ``nq`` numbers each."""
-    lower = joint.properties.lower or (-_INF,) * len(joint.coordinates.names)
-    upper = joint.properties.upper or (_INF,) * len(joint.coordinates.names)
+    lower = joint.properties.lower or (-_INF,) * len(joint.type.coordinates)
+    upper = joint.properties.upper or (_INF,) * len(joint.type.coordinates)
     kind = joint.type
     if kind is JointType.SPHERICAL or (kind is JointType.CONTINUOUS and nq == 2):
         plain = 0

@@ -1,7 +1,6 @@
 """The process that reads mesh files: the request is JSON on standard input, the meshes are on standard output.
 
-Of this package, it imports only `eurdf.system`. The mesh loader of coal, assimp, is C++ that a damaged file makes
-crash, or take minutes and gigabytes; here this ends a process, not that of a caller.
+The mesh loader of coal, assimp, is C++. Of this package, this program imports only `eurdf.sandbox`.
 
 For each file, in order: a line of JSON, then, for a mesh, its vertices as doubles and its triangles as 64-bit integers.
 """
@@ -9,25 +8,19 @@ For each file, in order: a line of JSON, then, for a mesh, its vertices as doubl
 from __future__ import annotations
 
 import json
-import os
-import sys
 from typing import Any
 
 import coal
 import numpy as np
 
-from eurdf.system import bound_memory, bound_time, leave_no_core
+from eurdf.sandbox import bound_memory, bound_time, request_and_answers
 
 _FULL_SIZE = np.ones(3)
 
 
 def main() -> None:
     """Answer the request."""
-    request = json.load(sys.stdin.buffer)
-    # The mesh loader may print: its lines are no part of the answer.
-    answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-    leave_no_core()
+    request, answers = request_and_answers()
     for file in request["files"]:
         bound_time(request["patience"], file["seconds"])
         bound_memory(file["memory"])

@@ -17,8 +17,8 @@ import numpy.typing as npt
 
 from eurdf.mesh_files.folders import Folders, folders_of_files
 from eurdf.mesh_files.reader import MeshReader, RefusedFile
-from eurdf.program import command_of
-from eurdf.system import exceeded
+from eurdf.regular_file import reason_of
+from eurdf.sandbox import run
 
 #: Triangles that the meshes of a robot may have together, where those of each scale of a mesh count.
 TRIANGLES_LIMIT = 10_000_000
@@ -138,7 +138,7 @@ def _read_files(paths: Iterable[str], reader: MeshReader) -> dict[str, Mesh | st
             except RefusedFile as reason:
                 read[path] = str(reason)
             except OSError as error:  # it was there a moment ago
-                read[path] = (error.strerror or str(error)).lower()
+                read[path] = reason_of(error)
         read |= _read(files)
     return read | {path: read[one[0]] for one in same.values() for path in one[1:]}
 
@@ -169,20 +169,13 @@ def _read(files: list[_File]) -> dict[str, Mesh | str]:
 
 def _run(files: list[_File]) -> tuple[Iterator[Mesh | str], str | None]:
     """What a process reads of files, as far as it comes, and the bound that ended it."""
-    import subprocess  # only now: often no mesh is read
-
     request = {
         "patience": PATIENCE,
         "files": [{"path": file.alone, "seconds": file.seconds, "memory": file.memory} for file in files],
     }
-    done = subprocess.run(
-        command_of(_PROGRAM),
-        input=json.dumps(request).encode(),
-        capture_output=True,
-        check=False,
-        env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},  # each thread takes time to start, and address space
-    )
-    return _answers(done.stdout, files), exceeded(done.returncode, done.stderr)
+    # Each thread takes time to start, and address space.
+    done = run(_PROGRAM, request, environment={**os.environ, "OPENBLAS_NUM_THREADS": "1"})
+    return _answers(done.output, files), done.exceeded
 
 
 def _answers(data: bytes, files: list[_File]) -> Iterator[Mesh | str]:

@@ -8,9 +8,9 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from eurdf.mechanism.joint import Joint, JointProperties
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic, drivers
+from eurdf.mechanism.mimic import Mimic, drivers
 
 
 class Following(NamedTuple):
@@ -32,9 +32,7 @@ class Following(NamedTuple):
 
 def following(mechanism: Mechanism) -> Following:
     """EU-URD-032: the leader of each mimic joint, and the relation between the two."""
-    mimics = {
-        joint.name: joint.mimic for joint in mechanism.joints if joint.mimic is not None and joint.type in MIMIC_TYPES
-    }
+    mimics = {joint.name: joint.mimic for joint in mechanism.joints if joint.mimic is not None and joint.type.is_axial}
     if not mimics and not mechanism.couplings and not any(joint.properties.stiffness for joint in mechanism.joints):
         return Following()
     resolved = drivers(mimics)

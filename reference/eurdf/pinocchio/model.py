@@ -13,7 +13,6 @@ from collections.abc import Mapping
 import pinocchio as pin
 
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY
@@ -82,7 +81,7 @@ def build_model(mechanism: Mechanism) -> pin.Model:
         placement = placement_of(joint.placement)
         if parent_placement is not _HERE:
             placement = parent_placement * placement
-        if joint.type is JointType.FIXED:
+        if joint.type.is_fixed:
             if joint.offset is not IDENTITY:
                 placement = placement * placement_of(joint.offset)
             joint_id = parent_joint

@@ -18,7 +18,7 @@ _NOT_FINITE = {
     **dict.fromkeys(("-.inf", "-.Inf", "-.INF"), -inf),
     **dict.fromkeys((".nan", ".NaN", ".NAN"), nan),
 }
-WORDS: dict[str, Scalar] = {**_NULL, **_BOOL, **_NOT_FINITE}
+_WORDS: dict[str, Scalar] = {**_NULL, **_BOOL, **_NOT_FINITE}
 _INT = re.compile(r"[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+")
 _FLOAT = re.compile(r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?")
 _NUMBER = re.compile(f"({_INT.pattern})|{_FLOAT.pattern}")
@@ -29,7 +29,7 @@ def resolve(text: str) -> Scalar:
     """EU-YML-011: value of a plain scalar without a tag; a number beyond the range of a double is an infinity."""
     if text[:1] in _NUMBER_BEGINS and (number := _NUMBER.fullmatch(text)) is not None:
         return _integer(text) if number.lastindex else float(text)
-    return WORDS.get(text, text)
+    return _WORDS.get(text, text)
 
 
 def resolve_tagged(tag: str, text: str) -> Scalar:

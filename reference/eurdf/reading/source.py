@@ -10,7 +10,7 @@ from pathlib import Path
 from eurdf.diagnostics import FileError, Place
 from eurdf.diagnostics.lines import Lines
 from eurdf.reading.other_formats import of_binary, other_format
-from eurdf.regular_file import open_now, open_regular
+from eurdf.regular_file import open_now, open_regular, reason_of
 
 BOM = b"\xef\xbb\xbf"
 
@@ -161,8 +161,7 @@ def read_bytes(file: str, limit: int = FILE_LIMIT) -> bytes:
         finally:
             os.close(descriptor)
     except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise FileError("file-unreadable", f"'{file}' cannot be read: {reason}", place) from None
+        raise unreadable(file, f"'{file}'", error) from None
     except ValueError:  # a NUL in the path
         raise FileError("file-unreadable", f"{file!r} is not a valid path", place) from None
     if size > limit:
@@ -183,6 +182,11 @@ def begin_of_file(path: str | os.PathLike[str], size: int) -> bytes:
     """
     with open_regular(path) as stream:
         return stream.read(size)
+
+
+def unreadable(file: str, shown: str, error: OSError) -> FileError:
+    """The error of a file that the system does not read, under the name that is shown."""
+    return FileError("file-unreadable", f"{shown} cannot be read: {reason_of(error)}", Place(file))
 
 
 def too_large(file: str, most: str) -> FileError:

@@ -17,9 +17,9 @@ from typing import Any
 from eurdf.diagnostics import did_you_mean
 from eurdf.exceptions import CannotExpand, MissingExtra
 from eurdf.mesh_files.folders import Folders
-from eurdf.program import command_of
 from eurdf.reading.resource import package_homes
 from eurdf.reading.source import FILE_LIMIT, Source, too_large
+from eurdf.sandbox import run
 
 #: Time allowed for an expansion, s.
 TIME_LIMIT = 60.0
@@ -89,18 +89,12 @@ def expand(
 
 
 def _answer(file: str, request: Mapping[str, object]) -> dict[str, Any]:
-    import subprocess  # only now: few robots are a xacro
-
-    command = command_of(_PROGRAM)
-    try:
-        done = subprocess.run(
-            command, input=json.dumps(request).encode(), capture_output=True, timeout=TIME_LIMIT, check=False
-        )
-    except subprocess.TimeoutExpired:
-        raise CannotExpand(file, f"it takes longer than {TIME_LIMIT:g} s") from None
-    if done.returncode:
+    done = run(_PROGRAM, request, seconds=TIME_LIMIT)
+    if done.exceeded:
+        raise CannotExpand(file, f"it takes longer than {TIME_LIMIT:g} s")
+    if done.code:
         said = done.stderr.decode(errors="replace").split("\n")
         reason = next((line.strip() for line in reversed(said) if line.strip()), "it printed no reason")
-        raise CannotExpand(file, f"its process ended with exit code {done.returncode}: {reason}")
-    answer: dict[str, Any] = json.loads(done.stdout)
+        raise CannotExpand(file, f"its process ended with exit code {done.code}: {reason}")
+    answer: dict[str, Any] = json.loads(done.output)
     return answer

@@ -17,7 +17,7 @@ from types import ModuleType
 from typing import Any
 
 from eurdf.mesh_files.folders import Folders
-from eurdf.system import bound_memory
+from eurdf.sandbox import bound_memory, request_and_answers
 
 #: Memory that an expansion may take, bytes.
 MEMORY_LIMIT = 4 << 30
@@ -112,7 +112,7 @@ class _NoEnvironment(dict[str, str]):
 
 def main() -> None:
     """Answer the request."""
-    request = json.load(sys.stdin.buffer)
+    request, answers = request_and_answers()
     bound_memory(MEMORY_LIMIT)
     _find_packages_in(request["homes"])
     arguments = Arguments(request["arguments"])
@@ -133,7 +133,8 @@ def main() -> None:
         "unused": [] if error else unused,
         "files": list(watch.read),
     }
-    json.dump(answer, sys.stdout)
+    answers.write(json.dumps(answer).encode())
+    answers.flush()
 
 
 def _expanded(file: str, arguments: Arguments) -> tuple[str, str]:

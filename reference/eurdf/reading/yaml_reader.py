@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from functools import cached_property
 from math import isfinite
 from typing import Any
 
@@ -29,7 +28,6 @@ from eurdf.reading.other_formats import of_text, other_format
 from eurdf.reading.source import FILE_LIMIT, Source, short, too_large
 from eurdf.reading.yaml_node import Alias, Collection, Node, Span, json_pointer
 from eurdf.reading.yaml_syntax import stray_mark, syntax_error, unusual_name
-from eurdf.reading.yaml_values import usual_values
 
 #: Maximum depth of nested mappings and lists, aliases expanded.
 DEPTH_LIMIT = 64
@@ -54,18 +52,14 @@ class YamlDocument:
 
     Attributes:
         source: The text.
-        data: ``dict`` with string keys, ``list``, ``str``, ``int``, ``float``, ``bool`` and ``None``. A value with
-            several aliases is one object in several places.
+        root: The top level, with the place of everything in it.
+        data: The same as ``dict`` with string keys, ``list``, ``str``, ``int``, ``float``, ``bool`` and ``None``. A
+            value with several aliases is one object in several places.
     """
 
-    def __init__(self, source: Source, data: dict[str, Any]) -> None:
-        self.source = source
-        self.data = data
-
-    @cached_property
-    def root(self) -> Collection:
-        """The top level, with the place of everything in it."""
-        return _read_nodes(self.source)
+    def __init__(self, source: Source, root: Collection) -> None:
+        self.source, self.root = source, root
+        self.data: dict[str, Any] = root.data
 
     def span(self, pointer: Sequence[str | int] = (), key: bool = False) -> Span:
         """Indices in the text of the first character of a value, or of its key, and of the one after the last.
@@ -99,18 +93,12 @@ def read_yaml(source: Source) -> YamlDocument:
     Raises:
         FileError: ``file-too-large`` or one of the ``yaml-`` codes, at the first error.
     """
-    values = usual_values(source)
-    if values is not None:
-        return YamlDocument(source, values)
     try:
-        root = _read_nodes(source)
+        return YamlDocument(source, _read_nodes(source))
     except FileError as error:
         if found := of_text(source.text):
             raise other_format(error.diagnostic.code, found, source.place(0)) from None
         raise
-    document = YamlDocument(source, root.data)
-    document.root = root
-    return document
 
 
 def _read_nodes(source: Source) -> Collection:
@@ -125,11 +113,11 @@ def _read_nodes(source: Source) -> Collection:
     if data.count(b"\n%TAG") + data.count(b"\r%TAG") + data.startswith(b"%TAG") > DIRECTIVE_LIMIT:
         raise too_large(source.file, f"{DIRECTIVE_LIMIT} %TAG directives")
     try:
-        root = _Reader(source, CSafeLoader(data).get_event, original).read()
+        root = _NodeReader(source, CSafeLoader(data).get_event, original).read()
     except (YAMLError, UnicodeDecodeError) as error:
         if isinstance(error, MarkedYAMLError) and error.problem == _TOO_DEEP_TO_SCAN and error.problem_mark:
             start = data.decode()[: error.problem_mark.index].encode()
-            _Reader(source, CSafeLoader(start).get_event, original).read()  # which refuses less depth
+            _NodeReader(source, CSafeLoader(start).get_event, original).read()  # which refuses less depth
         raise syntax_error(source, error) from None
     if "\ufeff" in source.text and (mark := stray_mark(source, data)) is not None:
         raise mark
@@ -155,7 +143,7 @@ def without_other_breaks(source: Source) -> tuple[str, dict[int, str]]:
     return replaced, original
 
 
-class _Reader:
+class _NodeReader:
     """Builds the nodes of one document from libyaml's events, without recursion."""
 
     def __init__(self, source: Source, next_event: Any, original: dict[int, str]) -> None:

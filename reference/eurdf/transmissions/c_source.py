@@ -11,10 +11,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eurdf.closures.distance import DistanceClosure
-from eurdf.closures.frame import FrameClosure
-from eurdf.closures.hinge import HingeClosure
-from eurdf.closures.point import PointClosure
+from eurdf.closures.kind import MODULES
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import SPREADS
 from eurdf.kinematics.derived import derived
@@ -32,9 +29,8 @@ from eurdf.kinematics.tolerances import (
     RESTARTS,
     SHORTEST_STEP,
 )
-from eurdf.mechanism.constraint import Constraint, Coupling
+from eurdf.mechanism.constraint import Closure, Constraint, Coupling
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.pinocchio.mimic import following
@@ -44,13 +40,8 @@ from eurdf.writing.output_folder import write_files
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
-_KINDS: Mapping[type[Constraint], str] = {
-    PointClosure: "POINT",
-    FrameClosure: "FRAME",
-    HingeClosure: "HINGE",
-    DistanceClosure: "DISTANCE",
-    Coupling: "COUPLING",
-}
+#: What the kernel calls each kind of constraint.
+_KINDS = {type_: module.upper() for type_, module in MODULES.items()} | {Coupling.type: "COUPLING"}
 
 _X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 _HERE = (0.0, 0.0, 0.0)
@@ -162,7 +153,7 @@ class _Tables:
             if name not in needed:
                 continue
             first[name] = len(self.start), len(self.units)
-            quaternion = slot.joint.coordinates.quaternion
+            quaternion = slot.joint.type.quaternion
             for k in range(slot.nv):
                 self.velocity[slot.idx_v + k] = len(self.units)
                 self.units.append(float(scale[slot.idx_v + k]))
@@ -184,7 +175,7 @@ class _Tables:
     def _add(self, joint: Joint, mimic: Mimic | None, first: Mapping[str, tuple[int, int]]) -> None:
         parent, pose = self.places.get(joint.parent, (0, IDENTITY))
         pose = pose * joint.placement
-        if joint.type is JointType.FIXED:
+        if joint.type.is_fixed:
             self.places[joint.child] = parent, pose * joint.offset
             self.of_body[joint.child] = range(0)
             return
@@ -231,43 +222,20 @@ def _screws(
     joint: Joint, parent: int, pose: Pose, coordinate: int, velocity: int, mimic: Mimic | None, number: int
 ) -> list[_Screw]:
     """A joint as joints of one coordinate and balls in a row; ``number`` is that of the first of them."""
-    axes = [direction(axis) for axis in joint.axes]
     factor, offset = (1.0, 0.0) if mimic is None else (mimic.multiplier, mimic.offset)
-    parts: list[tuple[Vector3 | None, bool, Vector3]]  # axis, whether it turns, advance
-    match joint.type:
-        case JointType.REVOLUTE | JointType.CONTINUOUS:
-            parts = [(axes[0], True, _HERE)]
-        case JointType.PRISMATIC:
-            parts = [(axes[0], False, axes[0])]
-        case JointType.HELICAL:
-            x, y, z = axes[0]
-            lead = joint.pitch / (2.0 * math.pi)
-            parts = [(axes[0], True, (lead * x, lead * y, lead * z))]
-        case JointType.UNIVERSAL:
-            parts = [(axis, True, _HERE) for axis in axes]
-        case JointType.CYLINDRICAL:
-            parts = [(axes[0], False, axes[0]), (axes[0], True, _HERE)]
-        case JointType.PLANAR:
-            parts = [(_X, False, _X), (_Y, False, _Y), (_Z, True, _HERE)]
-        case JointType.SPHERICAL:
-            parts = [(None, True, _HERE)]
-        case JointType.FLOATING:
-            parts = [(_X, False, _X), (_Y, False, _Y), (_Z, False, _Z), (None, True, _HERE)]
-        case _:
-            raise ValueError(f"joint '{joint.name}' is {joint.type}, which the generated C does not support")
     return [
         _Screw(
             parent if k == 0 else number + k - 1,
             pose if k == 0 else IDENTITY,
             axis,
             turns,
-            advance,
+            (advance * axis[0], advance * axis[1], advance * axis[2]) if axis and advance else _HERE,
             coordinate + k,
             velocity + k,
             factor,
             offset,
         )
-        for k, (axis, turns, advance) in enumerate(parts)
+        for k, (axis, turns, advance) in enumerate(joint.motions)
     ]
 
 
@@ -343,7 +311,7 @@ def _source(tables: _Tables, name: str, drives: Sequence[Drive], steps: int, sub
     constraints: list[str] = []
     for index in tables.constraints:
         constraint, of_rows = robot.constraints[index], rows[index]
-        if type(constraint) not in _KINDS:
+        if constraint.type not in _KINDS:
             raise ValueError(
                 f"constraint '{constraint.name}' is {constraint.type}, which the generated C does not support"
             )
@@ -442,16 +410,13 @@ typedef struct {
 
 def _constraint(constraint: Constraint, tables: _Tables, first: int, last: int, scale: Vector) -> str:
     ends = tables.anchors(constraint) or [(0, IDENTITY), (0, IDENTITY)]
-    a, b, length = _Z, _Z, 0.0
-    if isinstance(constraint, HingeClosure):
-        a, b = (direction(axis) for axis in constraint.axes)
-    elif isinstance(constraint, DistanceClosure):
-        length = constraint.length
-    elif isinstance(constraint, Coupling):
-        length = constraint.offset
+    own = constraint.own if isinstance(constraint, Closure) else {}
+    a, b = (direction(axis) for axis in own.get("axes", (_Z, _Z)))
+    length = constraint.offset if isinstance(constraint, Coupling) else own.get("length", 0.0)
     frames = ", ".join(f"{_rotation(pose)}, {_vector(pose.xyz)}" for _, pose in ends)
     return (
-        f"{{{_KINDS[type(constraint)]}, {constraint.rows}, {first}, {last}, {ends[0][0]}, {ends[1][0]}, {frames}, "
+        f"{{{_KINDS[constraint.type]}, {constraint.rows}, {first}, {last}, "
+        f"{ends[0][0]}, {ends[1][0]}, {frames}, "
         f"{_number(length)}, {_vector(a)}, {_vector(b)}, {{{', '.join(map(_vector, _across(a)))}}}, {_vector(scale)}}}"
     )
 

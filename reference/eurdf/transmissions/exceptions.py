@@ -24,7 +24,7 @@ class NoTransmission(EurdfError, ValueError):  # noqa: N818 - part of the public
     def __init__(self, of: str, reason: str) -> None:
         self.map = of
         self.reason = reason
-        super().__init__(f"{of} does not exist: {reason}")
+        super().__init__(f"{of} is not determined: {reason}")
 
 
 class DependentVelocities(EurdfError, ValueError):  # noqa: N818 - part of the public interface
@@ -70,7 +70,7 @@ class OutOfReach(NotClosable):
             ", ".join(f"{name} {value + 0.0:.6g}" for name, value in each.items()) for each in (wanted, reached)
         )
         reason = (
-            f"{asked} cannot be reached on a straight path from the start, which leads to {farthest} "
+            f"{asked}: not reachable along a straight path from the start; the last reachable point is {farthest} "
             f"({100.0 * part:.1f} %); give values nearer to the start, or values in between one after the other"
         )
         super().__init__(reason, openings, q)

@@ -70,7 +70,7 @@ def coordinates_of(robot: Robot, joints: Selection) -> JointCoordinates:
     circular: list[bool] = []
     for name in joints.joints:
         slot = robot.slots[name]
-        units += ["m" if of == "length" else "rad" for of in slot.joint.coordinates.names]
+        units += ["m" if of == "length" else "rad" for of in slot.joint.type.coordinates]
         coordinates += range(slot.idx_q, slot.idx_q + slot.nv)
         circular += [slot.nq > slot.nv] * slot.nv
     return JointCoordinates(joints, tuple(units), np.array(coordinates, np.intp), np.array(circular))

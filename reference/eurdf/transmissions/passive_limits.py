@@ -78,7 +78,7 @@ def passive_limits(robot: Robot, q: Vector) -> tuple[PassiveLimit, ...]:
     lower, upper, fastest = motor_ranges(robot, at.motors)
     unit = velocity_scale(robot, characteristic_length(robot))
     units: list[Literal["rad", "m"]] = [
-        "m" if word == "length" else "rad" for name in determined for word in robot.slots[name].joint.coordinates.names
+        "m" if word == "length" else "rad" for name in determined for word in robot.slots[name].joint.type.coordinates
     ]
     moves = np.abs(at.B_J) * unit[at.motor_index] / unit[at.joint_index][:, None] > MOVES
     found = []

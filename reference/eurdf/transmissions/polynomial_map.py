@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Annotated
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from eurdf.json_schema import HIDDEN, LISTS, ROW, ROWS
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.pinocchio.arguments import checked_array
 
@@ -27,13 +29,13 @@ class PolynomialMap:
         error_of_G: Largest error (nm, nJ) of their derivative there.
     """
 
-    joints: tuple[str, ...]
-    motors: tuple[str, ...]
-    lower: Vector
-    upper: Vector
-    coefficients: Matrix
-    error: Vector
-    error_of_G: Matrix  # noqa: N815 - the field's own symbol
+    joints: tuple[str, ...] = field(metadata=HIDDEN)
+    motors: tuple[str, ...] = field(metadata=HIDDEN)
+    lower: Annotated[Vector, ROW]
+    upper: Annotated[Vector, ROW]
+    coefficients: Annotated[Matrix, LISTS]
+    error: Annotated[Vector, ROW]
+    error_of_G: Annotated[Matrix, ROWS]  # noqa: N815 - the field's own symbol
 
     @property
     def degree(self) -> int:

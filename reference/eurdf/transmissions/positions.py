@@ -54,7 +54,7 @@ def actuator_values(robot: Robot, joints: Mapping[str, float], q0: Vector | None
     Raises:
         OutOfReach: The loops cannot be closed at these positions, or not on a straight path to them.
         NotClosable: The loops cannot be closed at q0.
-        NoTransmission: The motors decide more than these joints; the error names joints to add.
+        NoTransmission: These joints do not determine the motors; the error names joints to add.
         ValueError: A name or a value is not right.
     """
     given = _single(robot, joints, "joints")
@@ -142,7 +142,7 @@ def _lists(values: Mapping[str, float]) -> dict[str, tuple[float]]:
 
 def _refuse_more(at: Transmission) -> None:
     if at.G is None and at.missing:
-        raise NoTransmission("the position of the motors", at.reason or "")
+        raise NoTransmission("the motor position", at.reason or "")
 
 
 def _decided(robot: Robot, candidates: Iterable[str], q: Vector) -> tuple[str, ...]:

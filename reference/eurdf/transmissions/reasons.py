@@ -25,7 +25,7 @@ class Reasons:
         forward: Why G does not exist; None if it does.
         inverse: Why B_J does not exist; None if it does.
         undetermined: Names of the joint velocities that the motors do not determine.
-        missing: Joints to add so that G exists, where the motors decide more than the joints.
+        missing: Joints to add so that G exists, where the joints do not determine the motors.
     """
 
     forward: str | None
@@ -75,7 +75,7 @@ def reasons(robot: Robot, motors: Selection, joints: Selection, Q: Matrix, ranks
         if rank > len(joints):
             missing = _missing(robot, motors, joints, Q)
             add = f"; add {_listed(missing)} to the joints, or give the motors" if missing else "; give the motors"
-            forward = f"the motors decide more than these joints: {moving} can move while the joints are still{add}"
+            forward = f"these joints do not determine the motors: {moving} can move while the joints are still{add}"
         else:
             forward = (
                 f"the pose is singular: only {rank_joints} of {len(joints)} joint velocities are independent, "

@@ -11,22 +11,11 @@ import numpy as np
 
 from eurdf.kinematics.array import Indices
 from eurdf.kinematics.several import several
-from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mimic import drivers
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.coordinates import Slot
     from eurdf.pinocchio.robot import Robot
-
-# Joints whose velocities are the rates of their coordinates.
-_TYPES = (
-    JointType.REVOLUTE,
-    JointType.CONTINUOUS,
-    JointType.PRISMATIC,
-    JointType.HELICAL,
-    JointType.UNIVERSAL,
-    JointType.CYLINDRICAL,
-)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -75,7 +64,7 @@ def selection(robot: Robot, joints: str | Iterable[str], argument: str = "joints
 
 def selectable(robot: Robot) -> list[tuple[str, Slot]]:
     """The joints that `selection` accepts."""
-    return [(name, slot) for name, slot in robot.slots.items() if slot.joint.type in _TYPES]
+    return [(name, slot) for name, slot in robot.slots.items() if not slot.joint.type.moving_frame]
 
 
 def _selected(names: Sequence[str], slots: Sequence[Slot]) -> Selection:
@@ -91,7 +80,7 @@ def _selected(names: Sequence[str], slots: Sequence[Slot]) -> Selection:
 def _slot(robot: Robot, name: str) -> Slot:
     slot = robot.slots.get(name)
     if slot is not None:
-        if slot.joint.type in _TYPES:
+        if not slot.joint.type.moving_frame:
             return slot
         kind = slot.joint.type.value
         raise ValueError(f"joint '{name}' is {kind}; a transmission is between joints whose coordinates have rates")

@@ -8,13 +8,11 @@ from types import MappingProxyType
 
 import numpy as np
 
-from eurdf.exporting.coordinates import rotation_matrix
-from eurdf.exporting.inertia import about_centre
+from eurdf.convert.coordinates import rotation_matrix
+from eurdf.convert.inertia import about_centre
 from eurdf.kinematics.array import Matrix
 from eurdf.mechanism.body import Body, Inertia
 from eurdf.mechanism.joint import Joint, JointProperties
-from eurdf.mechanism.joint_transform import joint_transform
-from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import IDENTITY, Pose
 
@@ -111,7 +109,7 @@ def _lumped(
 
 
 def _moved(joint: Joint, coordinates: Mapping[str, Sequence[float]]) -> Pose:
-    return IDENTITY if joint.type is JointType.FIXED else joint_transform(joint, coordinates[joint.name])
+    return IDENTITY if joint.type.is_fixed else joint.transform(coordinates[joint.name])
 
 
 def composite(parts: Sequence[tuple[Pose, Inertia]]) -> Inertia:

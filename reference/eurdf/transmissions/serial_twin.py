@@ -8,12 +8,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, cast
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, cast
 
 import numpy as np
 
+from eurdf.convert.export import export, files_of_meshes
 from eurdf.diagnostics import enumerated
-from eurdf.exporting.export import export, files_of_meshes
+from eurdf.json_schema import PAIRS, ROW, ROWS, Keywords
 from eurdf.kinematics.array import Mask, Matrix, Vector
 from eurdf.kinematics.problem import Problem
 from eurdf.mechanism.joint import JointProperties
@@ -71,20 +72,20 @@ class Neglected:
     """
 
     mass: float
-    armature: Matrix
-    rotors: Matrix
-    linkage: Matrix
-    coupling: Matrix
+    armature: Annotated[Matrix, PAIRS]
+    rotors: Annotated[Matrix, PAIRS]
+    linkage: Annotated[Matrix, PAIRS]
+    coupling: Annotated[Matrix, ROWS]
     inertia: float
-    gravity: Vector
-    torque: Matrix | None
-    velocity: Matrix | None
-    covered: float
+    gravity: Annotated[Vector, ROW]
+    torque: Annotated[Matrix, PAIRS] | None
+    velocity: Annotated[Matrix, PAIRS] | None
+    covered: Annotated[float, Keywords(minimum=0.0, maximum=1.0)]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SerialTwin:
-    """A serial robot that stands for one with a parallel transmission.
+    """The serial equivalent of a robot with a parallel transmission.
 
     Attributes:
         robot: The serial robot. Its joints are actuated, with the limits and armatures below.

@@ -56,7 +56,7 @@ class Transmission:
         reason: Why G does not exist; None if it does.
         inverse_reason: Why B_J does not exist; None if it does.
         undetermined: The joints that the motors do not determine.
-        missing: Joints to add so that G exists, where the motors decide more than the joints.
+        missing: Joints to add so that G exists, where the joints do not determine the motors.
         held: Joints that their springs hold where they are, since no motor decides their motion.
         motor_index: Indices (nm,) of the motors in v.
         joint_index: Indices (nJ,) of the joints in v.

@@ -6,10 +6,9 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pinocchio as pin
 
 from eurdf.kinematics.array import Indices, Matrix, Vector
-from eurdf.viewing.scene import Placed, Scene
+from eurdf.viewing.scene import Placed, Scene, wxyz
 
 if TYPE_CHECKING:
     import viser
@@ -79,23 +78,19 @@ class Figure:
                     flat_shading=not part.surface.smooth,
                     side="double" if not part.surface.smooth else "front",
                     position=part.pose.translation,
-                    wxyz=_wxyz(part.pose),
+                    wxyz=wxyz(part.pose),
                 ),
             )
         for number, name in enumerate(scene.bodies):
             self._add("link names", self._api.add_label(f"{root}/body{number}/name", name))
         length = 0.05 * scene.size
         for number, (name, body, pose) in enumerate(scene.frames):
-            place = {"position": pose.translation, "wxyz": _wxyz(pose)}
+            place = {"position": pose.translation, "wxyz": wxyz(pose)}
             node = f"{root}/body{body}/frame{number}"
             self._add("frames", self._api.add_frame(node, axes_length=length, axes_radius=0.03 * length, **place))
             self._add("frames", self._api.add_label(f"{node}/name", name))
         self._axes = self._api.add_batched_axes(
-            f"{root}/link_frames",
-            placed.wxyzs,
-            placed.origins,
-            axes_length=length,
-            axes_radius=0.03 * length,
+            f"{root}/link_frames", placed.wxyzs, placed.origins, axes_length=length, axes_radius=0.03 * length
         )
         self._add("link frames", self._axes)
         self._add_lines(f"{root}/skeleton", "skeleton", len(scene.parents) - 1, _SKELETON, 3.0, scene.skeleton)
@@ -162,13 +157,7 @@ class Figure:
         self._nodes[layer].append(node)
 
     def _add_lines(
-        self,
-        name: str,
-        layer: str,
-        count: int,
-        colors: Any,
-        pixels: float,
-        at: Callable[[Placed], Matrix],
+        self, name: str, layer: str, count: int, colors: Any, pixels: float, at: Callable[[Placed], Matrix]
     ) -> None:
         if not count:
             return
@@ -233,11 +222,6 @@ class Figure:
                 label.position = placed.pose(body).act(pose.translation)
             if label.visible != visible:
                 label.visible = visible
-
-
-def _wxyz(pose: Any) -> Vector:
-    x, y, z, w = pin.SE3ToXYZQUAT(pose)[3:]
-    return np.array((w, x, y, z))
 
 
 def _line_colors(colors: list[tuple[int, int, int]]) -> Any:

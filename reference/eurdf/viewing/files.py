@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 from typing import Any
 
-from eurdf.checking.load import load
+from eurdf.exceptions import InvalidRobot
 from eurdf.kinematics.residual import closure_openings
-from eurdf.linking.description import Described, Linked, Unlinked, describe
+from eurdf.linking.robot_files import ReadRobot, read_robot, read_valid
+from eurdf.loading import load
 from eurdf.pinocchio.robot import Robot, build_robot
-from eurdf.reading.given import Given, is_stream, is_text
+from eurdf.reading.robot_source import RobotSource, is_stream, is_text
 from eurdf.viewing.session import Session
 from eurdf.writing.saved_configuration import CannotSave, file_to_save_to, save_configuration
 
@@ -25,16 +26,16 @@ class RobotOnDisk:
         options: Keyword arguments of `eurdf.load`.
     """
 
-    def __init__(self, path: Given, options: dict[str, Any]) -> None:
+    def __init__(self, path: RobotSource, options: dict[str, Any]) -> None:
         self.path = path
         self.options = options
         given = [path, options.get("urdf")]
         self._can_reread = not any(each is not None and (is_stream(each) or is_text(each)) for each in given)
         self._stamps: dict[str, Stamp] = {}
 
-    def describe(self) -> Linked | Unlinked:
+    def read(self) -> ReadRobot:
         """Read and link the files."""
-        return describe(self.path, **self.options)
+        return read_robot(self.path, **self.options)
 
     def load(self) -> Robot:
         """Load it, and remember the state of its files.
@@ -45,7 +46,7 @@ class RobotOnDisk:
         """
         if not self._can_reread:
             return load(self.path, check_loops=True, **self.options)
-        files = set(self._stamps) | _files(self.describe())
+        files = set(self._stamps) | _files(self.read())
         stamps = {file: _stamp(file) for file in files}
         self._stamps = stamps  # before it is loaded: a file that changes meanwhile is loaded again
         robot = load(self.path, check_loops=True, **self.options)
@@ -57,9 +58,9 @@ class RobotOnDisk:
         """Whether configurations can be saved to its description."""
         if not self._can_reread:
             return False
-        description = self.describe()
+        read = self.read()
         try:
-            return isinstance(description, Described) and bool(file_to_save_to(self.path, description))
+            return read.yaml is not None and bool(file_to_save_to(self.path, read))
         except CannotSave:
             return False
 
@@ -81,19 +82,19 @@ class RobotOnDisk:
             CannotSave: The loops are open, or the file cannot be changed.
         """
         # The root may have been chosen for the page alone.
-        description = describe(self.path, **{**self.options, "root": None})
-        if isinstance(description, Unlinked) or description.diagnostics.refused:
-            raise CannotSave("the files have errors; nothing was written")
-        assert isinstance(description, Described)
+        try:
+            read = read_valid(self.path, **{**self.options, "root": None})
+        except InvalidRobot:
+            raise CannotSave("the files have errors; nothing was written") from None
         if not name.strip():
             raise CannotSave("the configuration needs a name")
-        robot = build_robot(description.mechanism, geometry=False)
+        robot = build_robot(read.mechanism, geometry=False)
         q = session.carried_to(robot)
         if any(opening.is_open for opening in closure_openings(robot, q)):
             raise CannotSave("the loops are open; assemble first")
-        file = file_to_save_to(self.path, description)
+        file = file_to_save_to(self.path, read)
         is_foreign = self.has_changed
-        changed = save_configuration(description, robot, q, name, force=replace)
+        changed = save_configuration(read, robot, q, name, force=replace)
         if not is_foreign and file in self._stamps:
             self._stamps[file] = _stamp(file)
         session.configurations[name] = session.q
@@ -105,11 +106,11 @@ class RobotOnDisk:
         return any(_stamp(file) != stamp for file, stamp in self._stamps.items())
 
 
-def _files(description: Linked | Unlinked) -> set[str]:
+def _files(read: ReadRobot) -> set[str]:
     """The description and the URDF, or the files that a xacro includes."""
-    sources = [] if description.urdf is None else [description.urdf.document.source]
-    if isinstance(description, Described):
-        sources.append(description.extension.document.source)
+    sources = [] if read.tree is None else [read.urdf.document.source]
+    if read.yaml is not None:
+        sources.append(read.description.document.source)
     return {file for source in sources for file in source.files}
 
 

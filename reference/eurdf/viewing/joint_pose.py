@@ -14,15 +14,19 @@ import pinocchio as pin
 
 from eurdf.closures.se3 import quaternion_log
 from eurdf.kinematics.array import Matrix, Vector
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 
-_POSITION, _ROTATION = ("position x", "position y", "position z"), ("rotation x", "rotation y", "rotation z")
+#: Names of the coordinates of a rotation.
+ROTATION = ("rotation x", "rotation y", "rotation z")
 
 #: Names of the coordinates of each type.
 NAMES: dict[JointType, tuple[str, ...]] = {
-    JointType.PLANAR: ("position x", "position y", "angle"),
-    JointType.SPHERICAL: _ROTATION,
-    JointType.FLOATING: (*_POSITION, *_ROTATION),
+    kind: (
+        *(name if name == "angle" else f"position {name}" for name in kind.coordinates[: kind.quaternion]),
+        *(() if kind.quaternion is None else ROTATION),
+    )
+    for kind in JointType
+    if kind.moving_frame
 }
 
 #: Length of the longest rotation vector, rad: at half a turn it has two directions.
@@ -39,7 +43,7 @@ def values_at(kind: JointType, q: Vector) -> Vector:
         kind: Type of the joint.
         q: Its coordinates as Pinocchio has them.
     """
-    if kind is JointType.PLANAR:
+    if kind.quaternion is None:
         x, y, cosine, sine = q
         return np.array((x, y, math.atan2(sine, cosine)))
     return np.concatenate((q[:-4], quaternion_log(np.asarray(q[-4:]))))
@@ -53,13 +57,13 @@ def motions(kind: JointType, here: Vector, there: Vector) -> Iterator[tuple[int,
     Yields:
         The number of the velocity in the joint, and how far to move it, m or rad.
     """
-    if kind is JointType.PLANAR:
+    if kind.quaternion is None:
         cosine, sine = math.cos(here[2]), math.sin(here[2])
         x, y, angle = there - here
         found = [cosine * x + sine * y, cosine * y - sine * x, math.remainder(angle, 2.0 * math.pi)]
     else:
         before, after = pin.exp3(here[-3:]), pin.exp3(there[-3:])
-        shift = before.T @ (there - here)[:3] if kind is JointType.FLOATING else ()
+        shift = before.T @ (there - here)[:3] if kind.slides else ()
         found = [*shift, *_angles(before.T @ after)]
     yield from ((number, float(amount)) for number, amount in enumerate(found) if abs(amount) > _NONE)
 

@@ -11,21 +11,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eurdf.closures.distance import DistanceClosure
-from eurdf.closures.hinge import HingeClosure
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
-from eurdf.mechanism.body import Shape
 from eurdf.mechanism.constraint import Closure, Constraint, Coupling
 from eurdf.mechanism.frame import Anchor
-from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
+from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, root_joint
 from eurdf.mechanism.mimic import drivers
 from eurdf.mechanism.pose import IDENTITY, Pose, direction
 from eurdf.viewing.scene import Scene
 from eurdf.viewing.session import Session
+from eurdf.viewing.surface import Surface
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -106,17 +102,12 @@ def live_robot(robot: Robot, q: Vector | None = None) -> dict[str, Any]:
         "joints": joints,
         "constraints": [_constraint(each, bodies, numbers, scales) for each in robot.constraints],
         "units": velocity_scale(robot, length).tolist(),
-        "lower": [_limit(value) for value in limits.lower.tolist()],
-        "upper": [_limit(value) for value in limits.upper.tolist()],
+        "lower": [value if math.isfinite(value) else None for value in limits.lower.tolist()],
+        "upper": [value if math.isfinite(value) else None for value in limits.upper.tolist()],
         "held": robot.actuation.idx_v.tolist(),
         "sliders": [
             {
-                "joint": slider.joint,
-                "label": slider.label,
-                "unit": slider.unit,
-                "lower": slider.lower,
-                "upper": slider.upper,
-                "velocity": slider.velocity,
+                **{name: getattr(slider, name) for name in ("joint", "label", "unit", "lower", "upper", "velocity")},
                 "follow": [each for name in slider.follow for each in velocities[name]],
                 "dependent": any(slider.joint in each for each in session.analysis.dependent_actuators),
             }
@@ -139,8 +130,7 @@ def live_robot(robot: Robot, q: Vector | None = None) -> dict[str, Any]:
 def _moving(robot: Robot) -> Iterable[str]:
     """Names of the joints that have velocities of their own."""
     root = [ROOT_JOINT] if robot.mechanism.root == "floating" else []
-    fixed = JointType.FIXED
-    return [*root, *(each.name for each in robot.mechanism.joints if each.mimic is None and each.type is not fixed)]
+    return [*root, *(each.name for each in robot.mechanism.joints if each.mimic is None and not each.type.is_fixed)]
 
 
 def _joints(
@@ -150,7 +140,7 @@ def _joints(
     joints = list(mechanism.joints)
     parents = [bodies[joint.parent] for joint in joints]
     if mechanism.root == "floating":
-        joints.insert(0, Joint(ROOT_JOINT, JointType.FLOATING, "", mechanism.bodies[0].name))
+        joints.insert(0, root_joint(mechanism.bodies[0].name))
         parents.insert(0, -1)
     numbers = {joint.name: index for index, joint in enumerate(joints)}
     found = []
@@ -188,10 +178,9 @@ def _constraint(
             found["offset"] = constraint.offset
         case Closure():
             found["a"], found["b"] = (_anchor(each, bodies) for each in constraint.anchors)
-            if isinstance(constraint, HingeClosure):
-                found["axes"] = [direction(axis) for axis in constraint.axes]
-            if isinstance(constraint, DistanceClosure):
-                found["length"] = constraint.length
+            found |= constraint.own
+            if "axes" in found:
+                found["axes"] = [direction(axis) for axis in found["axes"]]
     return found
 
 
@@ -215,7 +204,7 @@ def _shapes(mechanism: Mechanism, bodies: Mapping[str, int], scene: Scene) -> li
             "kind": shape.kind,
             "pose": _pose(shape.pose),
             "color": [min(max(value, 0.0), 1.0) for value in shape.color or _GRAY],
-            **(_size(shape) if shape.kind != "mesh" else _triangles(part.surface.vertices, part.surface.triangles)),
+            **(_triangles(part.surface) if shape.kind == "mesh" else {"size": list(shape.size)}),
         }
         for (body, shape), part in zip(
             ((body, shape) for body in mechanism.bodies for shape in body.visuals), parts, strict=True
@@ -223,20 +212,13 @@ def _shapes(mechanism: Mechanism, bodies: Mapping[str, int], scene: Scene) -> li
     ]
 
 
-def _size(shape: Shape) -> dict[str, Any]:
-    return {"size": list(shape.size)}
-
-
-def _triangles(vertices: Any, triangles: Any) -> dict[str, Any]:
+def _triangles(surface: Surface) -> dict[str, Any]:
     """Numbers to a part in 1e5 of the mesh, which no screen shows."""
-    extent = float(np.ptp(vertices, axis=0).max(initial=0.0)) or 1.0
+    extent = float(np.ptp(surface.vertices, axis=0).max(initial=0.0)) or 1.0
     digits = max(0, 5 - math.floor(math.log10(extent)))
-    return {"vertices": np.round(vertices, digits).ravel().tolist(), "triangles": triangles.ravel().tolist()}
+    vertices = np.round(surface.vertices, digits).ravel().tolist()
+    return {"vertices": vertices, "triangles": surface.triangles.ravel().tolist()}
 
 
 def _pose(pose: Pose) -> list[float]:
     return [0.0] * 3 + [0.0, 0.0, 0.0, 1.0] if pose is IDENTITY else [*pose.xyz, *pose.quaternion]
-
-
-def _limit(value: float) -> float | None:
-    return value if math.isfinite(value) else None

@@ -17,7 +17,6 @@ from eurdf.exceptions import MissingExtra
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.residual import openings_once
 from eurdf.pinocchio.robot import Robot
-from eurdf.viewing.palette import with_palette
 from eurdf.viewing.scene import Scene
 from eurdf.viewing.session import ASSEMBLED
 from eurdf.viewing.surface import Surface
@@ -37,6 +36,7 @@ _LINE = 2.5  # width of a line, pixels
 _DOT = 12  # diameter of a dot, pixels
 _TRANSLUCENT = 0.4  # opacity of shapes behind which closures are shown
 _DARK = 0.15  # luminance below which colours are lightened: a picture is also seen on a dark page
+_ROUNDS = 8  # of averaging the colours of a palette; later ones change no colour that is seen
 _GAMMA = 2.2  # of colours; near enough to that of sRGB
 _SKELETON: Color = (0.5, 0.5, 0.5)
 _CLOSURE: Color = (0.55, 0.2, 0.8)
@@ -141,6 +141,53 @@ def save_picture(image: Image, file: str | os.PathLike[str]) -> None:
     write_atomically(file, content.getvalue())
 
 
+def with_palette(image: Image, most: int = 256) -> tuple[Image, Image]:
+    """The palette of a picture, and the number of each pixel in it.
+
+    Pillow's fast octree gives the first palette; each colour then becomes the average of the pixels nearest to it
+    (Lloyd's algorithm). Distances are those of colours multiplied by alpha, so that transparent ones are alike.
+
+    Args:
+        image: Pixels (height, width, 4): red, green, blue, alpha.
+        most: How many colours the palette has at most, at most 256.
+
+    Returns:
+        The colours (n, 4), and the indices (height, width).
+    """
+    from PIL import Image as Pillow
+
+    picture = Pillow.fromarray(image)
+    first = picture.quantize(most, method=Pillow.Quantize.FASTOCTREE, dither=Pillow.Dither.NONE)
+    palette = _colors(np.unique(_premultiplied(first.convert("RGBA")))).astype(float)
+    found, where, counts = np.unique(_premultiplied(picture), return_inverse=True, return_counts=True)
+    colors = _colors(found)
+    nearest = _nearest(colors, palette)
+    for _ in range(_ROUNDS):
+        weight = np.bincount(nearest, counts)
+        sums = [np.bincount(nearest, counts * channel) for channel in colors.T]
+        palette = (np.array(sums) / np.maximum(weight, 1)).T[weight > 0]
+        nearest = _nearest(colors, palette)
+    rounded = np.rint(palette).astype(np.uint8)
+    straight = Pillow.frombuffer("RGBa", (len(rounded), 1), rounded).convert("RGBA")
+    return np.asarray(straight)[0], nearest[where].reshape(image.shape[:2]).astype(np.uint8)
+
+
+def _premultiplied(picture: Any) -> npt.NDArray[np.uint32]:
+    """The colours (n,) of the pixels times alpha, each as one number."""
+    return np.asarray(picture.convert("RGBa")).view(np.uint32).ravel()
+
+
+def _colors(numbers: npt.NDArray[np.uint32]) -> Image:
+    """The colours (n, 4) of such numbers."""
+    return numbers.view(np.uint8).reshape(-1, 4)
+
+
+def _nearest(colors: Image, palette: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
+    """For each colour the number of the nearest one of the palette."""
+    nearest: npt.NDArray[np.intp] = ((palette**2).sum(axis=1) - 2.0 * colors @ palette.T).argmin(axis=1)
+    return nearest
+
+
 def drawn(robot: Robot, q: Vector | None, loops: bool) -> Drawn:
     """What is shown of a robot; see `picture`.
 
@@ -158,8 +205,7 @@ def drawn(robot: Robot, q: Vector | None, loops: bool) -> Drawn:
     lines: list[tuple[Points, Color]] = []
     for part in scene.parts:
         if part.kind == "visual":
-            oMp = placed.pose(part.body) * part.pose
-            vertices = part.surface.vertices @ oMp.rotation.T + oMp.translation
+            vertices = part.vertices_at(placed)
             alpha = part.color[3] * (_TRANSLUCENT if loops else 1.0)
             solids.append((replace(part.surface, vertices=vertices), (*_lightened(part.color[:3]), alpha)))
     if visual_model is None or not solids:

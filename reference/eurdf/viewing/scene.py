@@ -21,7 +21,7 @@ from eurdf.kinematics.residual import all_openings
 from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import direction
 from eurdf.pinocchio.frames import body_frame_ids
 from eurdf.pinocchio.placement import placement_of
@@ -58,6 +58,11 @@ class Part:
     pose: Any
     surface: Surface
     color: Color
+
+    def vertices_at(self, placed: Placed) -> Matrix:
+        """The vertices (n, 3) in the world, m."""
+        oMp = placed.pose(self.body) * self.pose
+        return np.asarray(self.surface.vertices @ oMp.rotation.T + oMp.translation)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -121,6 +126,12 @@ class Placed:
         return pin.XYZQUATToSE3(self.poses[body])
 
 
+def wxyz(pose: Any) -> Vector:
+    """Orientation of a pose, `pin.SE3`: quaternion w, x, y, z."""
+    x, y, z, w = pin.SE3ToXYZQUAT(pose)[3:]
+    return np.array((w, x, y, z))
+
+
 class Scene:
     """What can be drawn of a robot.
 
@@ -149,11 +160,7 @@ class Scene:
         self.bodies = tuple(body.name for body in mechanism.bodies)
         index = {name: number for number, name in enumerate(self.bodies)}
         self.parents = (-1, *(index[joint.parent] for joint in mechanism.joints))
-        self.parts = (
-            *_shapes(robot, "visual"),
-            *_shapes(robot, "collision"),
-            *_ellipsoids(robot),
-        )
+        self.parts = (*_shapes(robot, "visual"), *_shapes(robot, "collision"), *_ellipsoids(robot))
         actuated = set(mechanism.actuators)
         self.axes = tuple(
             axis for joint in mechanism.joints for axis in _axes(joint, index[joint.child], joint.name in actuated)
@@ -215,8 +222,7 @@ class Scene:
         clouds = [placed.origins]
         for part in self.parts:
             if part.kind != "inertia" and len(part.surface.vertices):
-                oMp = placed.pose(part.body) * part.pose
-                clouds.append(part.surface.vertices @ oMp.rotation.T + oMp.translation)
+                clouds.append(part.vertices_at(placed))
         return np.concatenate(clouds)
 
 
@@ -274,7 +280,7 @@ def _ellipsoid(inertia: Inertia) -> tuple[Vector, Matrix]:
 
 def _axes(joint: Joint, body: int, actuated: bool) -> list[Axis]:
     """The axes of a joint, fixed to its child: three for a ball, those of the plane and its normal for a planar one."""
-    if joint.type in (JointType.FIXED, JointType.FLOATING):
+    if joint.type.is_fixed or joint.type is JointType.FLOATING:
         return []
     written = joint.axes or (_X, _Y, _Z)
     in_child = placement_of(joint.offset).inverse()

@@ -24,10 +24,9 @@ from eurdf.kinematics.residual import residual
 from eurdf.kinematics.scale import characteristic_length
 from eurdf.kinematics.sweep import sweep
 from eurdf.kinematics.tolerances import CLOSED, DEAD, START
-from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array
-from eurdf.viewing.joint_pose import LONGEST, NAMES, motions, values_at
+from eurdf.viewing.joint_pose import LONGEST, NAMES, ROTATION, motions, values_at
 from eurdf.viewing.spring_rest import SpringRest
 
 if TYPE_CHECKING:
@@ -90,15 +89,14 @@ class Stop:
     value: float
 
     def __str__(self) -> str:
-        if self.reason == "limit":
-            return f"'{self.joint}' is at its position limit {self.value:.6g}"
-        if self.reason == "half turn":
-            return f"'{self.joint}' is half a turn from its neutral configuration, at {self.value:.6g}"
-        if self.reason == "passive limit":
-            return f"passive joint '{self.joint}' is at its position limit {self.value:.6g}"
-        if self.reason == "dead point":
-            return f"dead point: at {self.value:.6g}, '{self.joint}' no longer determines the passive joints"
-        return f"the loops block '{self.joint}': it cannot move with the other actuators held"
+        sentences = {
+            "limit": f"'{self.joint}' is at its position limit {self.value:.6g}",
+            "half turn": f"'{self.joint}' is half a turn from its neutral configuration, at {self.value:.6g}",
+            "passive limit": f"passive joint '{self.joint}' is at its position limit {self.value:.6g}",
+            "dead point": f"dead point: at {self.value:.6g}, '{self.joint}' no longer determines the passive joints",
+            "blocked": f"the loops block '{self.joint}': it cannot move with the other actuators held",
+        }
+        return sentences[self.reason]
 
 
 class Session:
@@ -238,7 +236,7 @@ class Session:
 
     def carried_to(self, robot: Robot) -> Vector:
         """The configuration of another version of the robot in which its joints are where they are here."""
-        names = {joint.name: len(joint.coordinates.names) for joint in robot.mechanism.joints if joint.mimic is None}
+        names = {joint.name: len(joint.type.coordinates) for joint in robot.mechanism.joints if joint.mimic is None}
         here = self.robot.coordinates(self.q)
         kept = {name: values for name, values in here.items() if names.get(name) == len(values)}
         root = {name: here[name] for name in (ROOT_JOINT,) if name in here and robot.mechanism.root == "floating"}
@@ -269,12 +267,11 @@ class Session:
 
     def _longest(self, slider: Slider) -> float:
         """How far from zero a coordinate of a pose can be."""
-        rotation = NAMES[JointType.SPHERICAL]
         names = NAMES[self.robot.slots[slider.joint].joint.type]
-        if names[slider.number] not in rotation:
+        if names[slider.number] not in ROTATION:
             return math.inf
         pose = self._pose(slider, self.q)
-        others = [pose[number] for number, name in enumerate(names) if name in rotation and number != slider.number]
+        others = [pose[number] for number, name in enumerate(names) if name in ROTATION and number != slider.number]
         return math.sqrt(max(0.0, LONGEST**2 - sum(value**2 for value in others)))
 
     def _move_pose(self, slider: Slider, at: float, goal: float) -> Stop | None:
@@ -419,7 +416,7 @@ def _sliders(robot: Robot, q: Vector, analysis: Analysis) -> Iterator[Slider]:
     for name in moved:
         joint = joints[name]
         velocities = tree.velocities_of(name)
-        turns = joint.type is JointType.CONTINUOUS
+        turns = joint.type.is_axial and not joint.type.limited
         actuated = name in robot.actuation.joints
         if not len(velocities) or (joint.type in NAMES and robot.constraints and not actuated):
             continue  # the velocities of a joint that is not actuated are not held, so its pose is not either
@@ -435,7 +432,7 @@ def _sliders(robot: Robot, q: Vector, analysis: Analysis) -> Iterator[Slider]:
         if joint.type in NAMES:
             continue
         for number, velocity in enumerate(velocities):
-            word = joint.coordinates.names[number]
+            word = joint.type.coordinates[number]
             at = float(q[coordinates[velocity]]) if velocity in direct else 0.0
             around = length if word == "length" else math.pi
             lower, upper = float(limits.lower[velocity]), float(limits.upper[velocity])

@@ -8,8 +8,8 @@ from collections.abc import Iterable, Sequence
 
 from eurdf.diagnostics import Diagnostic
 from eurdf.diagnostics.registry import Severity
-from eurdf.diagnostics.visible import visible
-from eurdf.kinematics.analysis import Analysis
+from eurdf.diagnostics.wording import visible
+from eurdf.kinematics.analysis import FIGURES, Analysis
 from eurdf.kinematics.opening import Opening
 from eurdf.transmissions.passive_limits import PassiveLimit
 
@@ -47,22 +47,11 @@ def status(residual: float, openings: Sequence[Opening], messages: Iterable[str]
 
 def dimensions(analysis: Analysis) -> str:
     """The figures of `eurdf info`."""
-    rows: list[tuple[str, object, str]] = [
-        ("nq", analysis.nq, "coordinates"),
-        ("nv", analysis.nv, "velocities of the spanning tree"),
-        ("nc", analysis.nc, "constraint rows"),
-        ("rank", analysis.rank, "of the constraint Jacobian"),
-        ("redundant", analysis.redundant, "constraint rows, nc - rank"),
-        ("mobility", analysis.mobility, "degrees of freedom of the closed mechanism, nv - rank"),
-        ("actuated", analysis.actuated, "velocities"),
-        ("uncontrolled", analysis.uncontrolled, "degrees of freedom left with every actuator held"),
-        ("dependent", analysis.dependent, "actuated velocities that depend on the others"),
-    ]
     cells = "".join(
         f"<tr style='overflow-wrap: normal'><td>{name}</td>"
-        f"<td style='text-align: right; padding: 0 8px'><b>{'-' if value is None else value}</b></td>"
+        f"<td style='text-align: right; padding: 0 8px'><b>{_figure(analysis, name)}</b></td>"
         f"<td style='opacity: 0.7'>{meaning}</td></tr>"
-        for name, value, meaning in rows
+        for name, meaning in FIGURES.items()
     )
     dependent = [
         box(f"dependent actuators: {escaped(', '.join(joints))}", color=_ORANGE)
@@ -70,6 +59,11 @@ def dimensions(analysis: Analysis) -> str:
     ]
     left_out = [box(escaped(analysis.left_out), color=_ORANGE)] if analysis.left_out else []
     return f'<div style="{_BOX}"><table>{cells}</table></div>' + "".join([*dependent, *left_out])
+
+
+def _figure(analysis: Analysis, name: str) -> str:
+    value = getattr(analysis, name)
+    return "-" if value is None else str(value)
 
 
 def gauge(analysis: Analysis) -> str:

@@ -72,7 +72,7 @@ def _columns(header: list[str], robot: Robot) -> dict[str, list[int]]:
     for name in header:
         if header.count(name) > 1:
             raise ValueError(f"line 1: column '{name}' occurs {header.count(name)} times")
-    sizes = {joint.name: len(joint.coordinates.names) for joint in robot.mechanism.joints if joint.name in robot.slots}
+    sizes = {joint.name: len(joint.type.coordinates) for joint in robot.mechanism.joints if joint.name in robot.slots}
     expected = {
         joint: [joint] if size == 1 else [f"{joint}:{number + 1}" for number in range(size)]
         for joint, size in sizes.items()

@@ -1,29 +1,29 @@
-"""The viewer: robots on a page in the browser."""
+"""`eurdf.view`: robots on a page in the browser."""
 
 from __future__ import annotations
 
 import html
 import os
-from collections.abc import Iterable, Sequence
+import webbrowser
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
 from eurdf.exceptions import EurdfError
 from eurdf.kinematics.array import Vector
 from eurdf.pinocchio.arguments import checked_array
+from eurdf.pinocchio.robot import Robot
+from eurdf.reading.robot_source import RobotSource
 from eurdf.viewing.files import RobotOnDisk
 from eurdf.viewing.page import Page
 from eurdf.viewing.panel import Panel
-from eurdf.viewing.server import start_server, stop_server, url_of
+from eurdf.viewing.server import LOOPBACK, start_server, stop_server, url_of
 from eurdf.viewing.shown import ShownRobot
 from eurdf.viewing.trajectory import read_trajectory
 from eurdf.viewing.worker import Worker
 from eurdf.writing.atomic_file import write_atomically
-
-if TYPE_CHECKING:
-    from eurdf.pinocchio.robot import Robot
 
 
 class Viewer:
@@ -160,3 +160,48 @@ class Viewer:
             section_size=0.5 * size,
             position=(0.0, 0.0, scene.lowest),
         )
+
+
+def view(
+    robot: RobotSource | Robot,
+    q: Vector | None = None,
+    *,
+    host: str = LOOPBACK,
+    port: int | None = None,
+    browser: bool = False,
+    options: Mapping[str, Any] | None = None,
+) -> Viewer:
+    """Show a robot on a page in the browser, with a slider for each actuator.
+
+    The loops stay closed: the passive joints follow on the same branch. The page shows what the analysis says and the
+    diagnostics. If `robot` is a path, the page is updated when its files change, and can write configurations to them.
+
+    Args:
+        robot: A robot, or what `eurdf.load` takes.
+        q: Where to start (nq,); the loops are closed first if they are open. The default is the ``assembled``
+            configuration, or a closed one that is found.
+        host: The address to listen on. By default only programs on this machine can connect; with another one,
+            programs on other machines can move the robot, and write configurations if `robot` is a path. The page
+            opens under an IP address, ``localhost``, the host name of this machine, or this name.
+        port: The port to listen on, 0 for any; by default 8080 or the next free one.
+        browser: Whether to open the page.
+        options: Keyword arguments of `eurdf.load`, if `robot` is not loaded yet.
+
+    Returns:
+        The viewer. It ends with the program, or when it is closed.
+
+    Raises:
+        MissingExtra: The extra ``view`` is not installed.
+        InvalidRobot: The robot cannot be built without guessing.
+        RobotNotFound: There are no such files.
+        OSError: The address cannot be listened on.
+        ValueError: ``q`` is not a configuration.
+    """
+    files = None
+    if not isinstance(robot, Robot):
+        files = RobotOnDisk(robot, dict(options or {}))
+        robot = files.load()
+    viewer = Viewer(robot, files, host, port, q)
+    if browser:
+        webbrowser.open(viewer.url)
+    return viewer

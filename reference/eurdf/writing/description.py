@@ -8,26 +8,23 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, cast
+from typing import Any, Literal
 
 from lxml import etree
 
-from eurdf.closures.distance import DistanceClosure
-from eurdf.closures.hinge import HingeClosure
-from eurdf.diagnostics.visible import visible
+from eurdf.diagnostics.wording import visible
 from eurdf.format.own_key import is_own_key
-from eurdf.format.yaml_text import Entry, Value, item_of_mapping, lines_of, lines_of_item, modeline, section, text_of
+from eurdf.format.yaml_text import Value, entries_of, modeline, text_of
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint import Joint, JointProperties
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 from eurdf.mechanism.same_model import with_universal_joints
-from eurdf.writing.angles import rpy_of
 from eurdf.writing.urdf_elements import (
     UNLIMITED,
     Color,
@@ -40,19 +37,13 @@ from eurdf.writing.urdf_elements import (
     add_shape,
     state_version,
 )
-from eurdf.writing.xml_text import file_content, representable
+from eurdf.writing.xml_text import file_content, representable, rpy_of
 
 #: Between two hyphens, which an XML comment must not contain.
 _TWO_HYPHENS = re.compile("-(?=-)")
 
 _Z: Vector3 = (0.0, 0.0, 1.0)
 _LETTERS = {(1.0, 0.0, 0.0): "x", (0.0, 1.0, 0.0): "y", _Z: "z"}
-
-#: Types that URDF has, with an axis.
-_AXIAL = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
-
-#: Types whose limits and losses are not read from a URDF.
-_WITHOUT_URDF_PROPERTIES = (JointType.PLANAR, JointType.FLOATING)
 
 
 class NotWritable(ValueError):  # noqa: N818 - named as the other refusals are
@@ -137,7 +128,7 @@ def describe_mechanism(
     _place_own_data(content, mechanism)
     head = [modeline(schema)] if schema is not None else []
     head += [f"# {visible(line)}".rstrip() for line in comments]
-    text = "".join(f"{line}\n" for line in head) + text_of(_entries(content))
+    text = "".join(f"{line}\n" for line in head) + text_of(entries_of(content))
     return DescriptionFiles(urdf.content(comments), text, version)
 
 
@@ -175,7 +166,7 @@ class _Urdf:
         kind, axis = _in_urdf(joint)
         placement, child = joint.placement, joint.child
         if joint.offset != IDENTITY:
-            if joint.type is JointType.FIXED:
+            if joint.type.is_fixed:
                 placement = placement * joint.offset
             else:
                 child = _new(f"{joint.child}_joint", self.links)
@@ -183,7 +174,7 @@ class _Urdf:
         element = add_joint(self.robot, joint.name, kind, joint.parent, child, placement, axis)
         if joint.mimic is not None:
             add_mimic(element, joint.mimic)
-        if kind in _AXIAL:
+        if kind.is_axial:
             self._properties(joint, kind, element)
         if child != joint.child:
             etree.SubElement(self.robot, "link", name=child)
@@ -193,7 +184,7 @@ class _Urdf:
         properties = joint.properties
         index = _limited_in_urdf(joint)
         position = None
-        if kind is not JointType.CONTINUOUS:
+        if kind.limited:
             position = (-math.inf, math.inf)
             if index is not None and properties.lower:
                 position = properties.lower[index], properties.upper[index]
@@ -218,26 +209,20 @@ def _common(values: Sequence[float], default: float) -> float:
 
 def _in_urdf(joint: Joint) -> tuple[JointType, Vector3 | None]:
     """The type and axis that a joint has in the URDF."""
-    match joint.type:
-        case JointType.FIXED | JointType.FLOATING:
-            return joint.type, None
-        case JointType.PLANAR:
-            return joint.type, _Z
-        case JointType.SPHERICAL:
-            return JointType.CONTINUOUS, _Z
-    if joint.type in _AXIAL:
-        return joint.type, joint.axes[0]
+    axis = joint.axes[0] if joint.axes else _Z
+    if not joint.type.replaces:
+        return joint.type, axis if any(step.kind != "ball" for step in joint.type.steps[-1:]) else None
     index = _limited_in_urdf(joint)
     if index is None:
-        return JointType.CONTINUOUS, joint.axes[0]
-    return JointType.PRISMATIC if joint.coordinates.names[index] == "length" else JointType.REVOLUTE, joint.axes[0]
+        return JointType.CONTINUOUS, axis
+    return JointType.PRISMATIC if joint.type.coordinates[index] == "length" else JointType.REVOLUTE, axis
 
 
 def _limited_in_urdf(joint: Joint) -> int | None:
     """The one coordinate of a joint whose limits are in the URDF; those of several are in the YAML file."""
-    if joint.type in (JointType.REVOLUTE, JointType.PRISMATIC):
+    if joint.type.is_ranged:
         return 0
-    if joint.type not in (JointType.CYLINDRICAL, JointType.HELICAL):
+    if not joint.type.limited or len(joint.axes) != 1:
         return None
     limited = _limited(joint.properties)
     return limited[0] if len(limited) == 1 else None
@@ -286,18 +271,18 @@ def _joint(joint: Joint, mechanism: Mechanism) -> Value:
     """What the URDF does not say of a joint; empty where it says all."""
     kind, properties = joint.type, joint.properties
     entry: dict[str, Any] = {}
-    if kind not in (*_AXIAL, *_WITHOUT_URDF_PROPERTIES, JointType.FIXED):
+    if kind.replaces:
         entry["type"] = str(kind)
-    if kind is JointType.UNIVERSAL:
+    if len(joint.axes) == 2:
         letters = "".join(_LETTERS.get(axis, "") for axis in joint.axes)
         entry["axes"] = letters if len(letters) == 2 else [list(axis) for axis in joint.axes]
-    if kind is JointType.HELICAL:
+    if joint.pitch:
         entry["pitch"] = joint.pitch
-    if kind is JointType.FIXED:
+    if kind.is_fixed:
         return entry
-    in_urdf = kind not in _WITHOUT_URDF_PROPERTIES
+    in_urdf = bool(kind.replaces) or kind.is_axial
     limits: dict[str, Any] = {}
-    if kind not in _AXIAL and _limited(properties) and _limited_in_urdf(joint) is None:
+    if not kind.is_axial and _limited(properties) and _limited_in_urdf(joint) is None:
         limits = {"lower": _each(properties.lower), "upper": _each(properties.upper)}
     for key in ("velocity", "effort"):
         values = getattr(properties, key)
@@ -315,7 +300,7 @@ def _joint(joint: Joint, mechanism: Mechanism) -> Value:
         entry["stiffness"] = _each(properties.stiffness)
         if any(properties.rest):
             entry["rest"] = _each(properties.rest)
-    return str(kind) if list(entry) == ["type"] and kind is not JointType.HELICAL else entry
+    return str(kind) if list(entry) == ["type"] else entry
 
 
 def _armature_of_motor(joint: Joint, mechanism: Mechanism) -> tuple[float, ...]:
@@ -373,14 +358,7 @@ def _closure(closure: Closure, anchors: _Anchors) -> Value:
         "type": closure.type,
         "frames": [anchors.reference(closure.a), anchors.reference(closure.b)],
     }
-    if isinstance(closure, HingeClosure):
-        one, other = closure.axes
-        if one != other:
-            entry["axes"] = [list(one), list(other)]
-        elif one != _Z:
-            entry["axis"] = list(one)
-    if isinstance(closure, DistanceClosure):
-        entry["length"] = closure.length
+    entry |= closure.stated()
     compliance = _compliance(closure)
     if compliance:
         entry["compliance"] = compliance
@@ -393,7 +371,7 @@ class _Anchors:
     def __init__(self, mechanism: Mechanism) -> None:
         self.named = {frame.name: (frame.body, frame.pose) for frame in mechanism.frames}
         for joint in mechanism.joints:
-            if joint.offset == IDENTITY or joint.type is JointType.FIXED:
+            if joint.offset == IDENTITY or joint.type.is_fixed:
                 self.named[joint.name] = joint.child, IDENTITY
         bodies = {body.name for body in mechanism.bodies}
         for name in bodies:
@@ -448,15 +426,3 @@ def _inside(place: Any, key: str) -> Any:
             place[int(key)] = value = {"joint": value}
         return value
     return None
-
-
-def _entries(content: Mapping[str, Any]) -> Iterator[Entry]:
-    for key, value in content.items():
-        if key == "closures":
-            yield section(key, [Entry(item_of_mapping(item)) for item in value])
-        elif key in ("couplings", "frames"):
-            yield section(key, [Entry(lines_of_item(cast(Value, item))) for item in value])
-        elif key in ("joints", "configurations", "metadata"):
-            yield section(key, [Entry(lines_of(name, cast(Value, item))) for name, item in value.items()])
-        else:
-            yield Entry(lines_of(key, cast(Value, value)))

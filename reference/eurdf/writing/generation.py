@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.point import PointClosure
 from eurdf.diagnostics import Diagnostics, enumerated
 from eurdf.format.own_key import is_own_key
 from eurdf.format.urdf.data import Urdf
@@ -12,19 +14,22 @@ from eurdf.format.version import VERSION2_0, VERSION2_1
 from eurdf.linking.merging import find_chains
 from eurdf.linking.rereading import reread
 from eurdf.linking.urdf_tree import joint_of
+from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.mechanism import Mechanism, Root
+from eurdf.mechanism.spanning_tree import rigid_poses
 from eurdf.writing.closure_choice import choose_types
+from eurdf.writing.joined_closures import Apart, join_points
 from eurdf.writing.naming_conventions import (
     ClosureType,
     Conventions,
     Found,
     GeneratedVersion,
+    NamedClosure,
     find,
     version1_text,
     version2_text,
     with_type,
 )
-from eurdf.writing.revolute_mates import Mates, revolute_mates
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,3 +148,45 @@ def _merges(urdf: Urdf, found: Found, version: GeneratedVersion) -> dict[str, tu
     chains = [tuple(joint.name for joint in chain.joints) for chain in find_chains(urdf, joints, excluded, links)]
     # A key that begins with x- would be user data.
     return {third: (first, second, third) for first, second, third in chains if version == "1" or not is_own_key(third)}
+
+
+@dataclass(frozen=True, slots=True)
+class Mates:
+    """What the 3d closures of a URDF say by their points.
+
+    Attributes:
+        found: What the names say, with one hinge in the place of the closures that hold it.
+        hinges: For each hinge, the names of these closures; the first is its own.
+        apart: 3d closures of the same two parts that cannot both be closed.
+    """
+
+    found: Found
+    hinges: tuple[tuple[str, ...], ...]
+    apart: tuple[Apart, ...]
+
+
+def revolute_mates(found: Found, urdf: Urdf) -> Mates:
+    """Let one hinge take the place of the 3d closures of two parts whose points are on one axis.
+
+    The axis in each frame points from its first point to the one that is farthest from it.
+    """
+    points = [
+        PointClosure(closure.name, *(Anchor(_link(urdf, frame)) for frame in closure.frames))
+        for closure in found.closures
+        if closure.type == "3d"
+    ]
+    joined = join_points(points, rigid_poses(urdf.root, urdf.walk()))
+    closures = {closure.name: closure for closure in found.closures}
+    hinges = []
+    for each in joined.joined:
+        if isinstance(each.closure, HingeClosure):
+            hinges.append(each.points)
+            first = closures[each.closure.name]
+            closures[first.name] = NamedClosure(first.name, "hinge", first.frames, axes=each.closure.axes)
+            for name in each.points[1:]:
+                del closures[name]
+    return Mates(replace(found, closures=tuple(closures.values())), tuple(hinges), joined.apart)
+
+
+def _link(urdf: Urdf, frame: str) -> str:
+    return frame if frame in urdf.links else urdf.joints[frame].child

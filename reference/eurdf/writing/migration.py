@@ -8,9 +8,9 @@ from eurdf.diagnostics import Diagnostics
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.urdf.elements import UrdfReader
 from eurdf.format.urdf.mimics import check_mimics
-from eurdf.linking.description import Described
 from eurdf.linking.rereading import reread
-from eurdf.mechanism.joint_type import JointType
+from eurdf.linking.robot_files import ReadRobot
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.same_model import differences, with_universal_joints
 from eurdf.reading.reporter import XmlReporter
@@ -33,23 +33,23 @@ class Migration:
     mechanism: Mechanism
 
 
-def migrate(description: Described, urdf_path: str = "robot.urdf", schema: str | None = None) -> Migration:
+def migrate(read: ReadRobot, urdf_path: str = "robot.urdf", schema: str | None = None) -> Migration:
     """Write a robot's description of version 1 in version 2.
 
     What version 1 does by itself is said; user data and the comments are kept. The text is read once more,
     and only returned where it describes the same model.
 
     Args:
-        description: Of version 1.
+        read: Of version 1.
         urdf_path: Path of the URDF from the folder of the new file.
         schema: Path of the schema from the folder of the new file, for its first line; None for no such line.
 
     Raises:
         NotMigratable: Version 2 cannot say the same.
     """
-    extension, urdf, before = description.extension, description.urdf, description.mechanism
+    extension, urdf, before = read.description, read.urdf, read.mechanism
     _refuse_wrong_mimics(urdf)
-    result = migrated(extension, urdf, merged_by_rule(description), urdf_path, schema)
+    result = migrated(extension, urdf, merged_by_rule(read), urdf_path, schema)
     after, diagnostics = reread(result.text, urdf, extension.document.source.file)
     if after is None:
         raise NotMigratable(f"version 2 does not allow it: {diagnostics.errors[0].message}", ())
@@ -81,9 +81,9 @@ def _refuse_wrong_mimics(urdf: Urdf) -> None:
         )
 
 
-def merged_by_rule(description: Described) -> dict[str, tuple[str, str, str]]:
+def merged_by_rule(read: ReadRobot) -> dict[str, tuple[str, str, str]]:
     """For each spherical joint that version 1 made of three revolutes by itself, their names (EU-ONE-007)."""
-    extension, urdf, mechanism = description.extension, description.urdf, description.mechanism
+    extension, urdf, mechanism = read.description, read.urdf, read.mechanism
     listed = {entry.name for entry in extension.joints}
     carrying = {joint.child: joint.name for joint in urdf.joints.values()}
 

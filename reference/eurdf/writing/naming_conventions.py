@@ -11,9 +11,9 @@ from typing import Literal, cast
 from eurdf.format.own_key import is_own_key
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.version import VERSION2_0
-from eurdf.format.yaml_text import Entry, Value, item_of_mapping, lines_of, modeline, section, text_of
+from eurdf.format.yaml_text import Entry, Value, entries_of, lines_of, modeline, text_of
 from eurdf.linking.merging import MASSLESS
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import ROTARY
 from eurdf.mechanism.mechanism import Root
 from eurdf.mechanism.pose import Vector3
 
@@ -22,8 +22,6 @@ ClosureType = Literal["3d", "6d"]
 
 #: The versions of a description that is generated.
 GeneratedVersion = Literal["1", "2", "2.1"]
-
-_ROTARY = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS})
 
 
 def _atomic(pattern: str) -> str:
@@ -279,7 +277,7 @@ def _rigid(urdf: Urdf) -> dict[str, str]:
     """For each link, the one nearest to the root that it is rigidly fixed to."""
     rigid = {urdf.root: urdf.root}
     for joint in urdf.walk():
-        rigid[joint.child] = rigid[joint.parent] if joint.type is JointType.FIXED else joint.child
+        rigid[joint.child] = rigid[joint.parent] if joint.type.is_fixed else joint.child
     return rigid
 
 
@@ -296,7 +294,7 @@ def _motors(urdf: Urdf, patterns: Sequence[re.Pattern[str]], warnings: list[str]
     named = [joint for joint in urdf.walk() if any(pattern.search(joint.name) for pattern in patterns)]
     motors = []
     for joint in named:
-        if joint.type is JointType.FIXED:
+        if joint.type.is_fixed:
             warnings.append(f"joint '{joint.name}' is named as a motor, but is fixed: left out")
         elif joint.mimic is not None:
             warnings.append(f"joint '{joint.name}' is named as a motor, but mimics '{joint.mimic.joint}': left out")
@@ -310,7 +308,7 @@ def _sphericals(urdf: Urdf, patterns: Sequence[re.Pattern[str]], warnings: list[
     for joint in urdf.walk():
         if not any(pattern.search(joint.name) for pattern in patterns):
             continue
-        if joint.type not in _ROTARY:
+        if joint.type not in ROTARY:
             why = f"is {joint.type}, and only a revolute joint becomes spherical"
         elif joint.name in coupled:
             why = "mimics or is mimicked"
@@ -344,7 +342,7 @@ def hints(urdf: Urdf, found: Found, convention: Conventions) -> tuple[str, ...]:
             f"{EXAMPLE_CLOSURE}{may_be}"
         )
     if not found.motors:
-        moving = [joint.name for joint in urdf.walk() if joint.type is not JointType.FIXED and joint.mimic is None]
+        moving = [joint.name for joint in urdf.walk() if not joint.type.is_fixed and joint.mimic is None]
         why = "no joint is named as a motor"
         if convention.motors != conventions().motors:
             why = "no joint that can move matches a --motor pattern"
@@ -384,34 +382,21 @@ def version2_text(
         schema: Path of the schema from the folder of the description, for editors; no line names it where it is None.
         version: The version of the description; version 2.0 has no hinges.
     """
-    entries = [
-        Entry(lines_of("extended_urdf", version), _schema_line(schema)),
-        Entry(lines_of("urdf", urdf_path)),
-    ]
-    if root != "fixed":
-        entries.append(Entry(lines_of("root", root)))
-    if found.closures:
-        items = [
-            Entry(
-                item_of_mapping(
-                    {
-                        "name": closure.name,
-                        "type": closure.type or "6d",
-                        "frames": closure.frames,
-                        **closure.axis_keys,
-                    }
-                )
-            )
-            for closure in found.closures
-        ]
-        entries.append(section("closures", items))
     joints: dict[str, Value] = dict.fromkeys(found.sphericals, "spherical")
     joints |= {name: {"type": "spherical", "merges": list(three)} for name, three in merges.items()}
-    if joints:
-        entries.append(section("joints", [Entry(lines_of(name, value)) for name, value in joints.items()]))
-    if found.motors:
-        entries.append(Entry(lines_of("actuators", found.motors)))
-    return text_of(entries)
+    content: dict[str, Value] = {
+        "extended_urdf": version,
+        "urdf": urdf_path,
+        "root": "" if root == "fixed" else root,
+        "closures": [
+            {"name": closure.name, "type": closure.type or "6d", "frames": closure.frames, **closure.axis_keys}
+            for closure in found.closures
+        ],
+        "joints": joints,
+        "actuators": found.motors,
+    }
+    head, *rest = entries_of({key: value for key, value in content.items() if value})
+    return text_of([replace(head, above=_schema_line(schema)), *rest])
 
 
 def version1_text(found: Found, schema: str | None = None) -> str:

@@ -9,11 +9,10 @@ from types import MappingProxyType
 from lxml import etree
 
 from eurdf.mechanism.body import Inertia, Shape
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
-from eurdf.writing.angles import rpy_of
-from eurdf.writing.xml_text import numbers, representable
+from eurdf.writing.xml_text import numbers, representable, rpy_of
 
 Color = tuple[float, float, float, float]
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from eurdf.mechanism.body import Inertia, Shape
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import Pose, Vector3
 from eurdf.reading.reporter import Element
@@ -101,6 +101,11 @@ class Urdf:
         }
         children = {link: tuple(joints[joint.name] for joint in below) for link, below in self.children.items()}
         return replace(self, joints=joints, children=children)
+
+    @property
+    def shapes(self) -> Iterator[Shape]:
+        """The visual and collision shapes of all links."""
+        return (shape for link in self.links.values() for shape in (*link.visuals, *link.collisions))
 
     def walk(self) -> Iterator[UrdfJoint]:
         """The joints depth first from the root; the joints of one link in the byte order of their names."""

@@ -9,22 +9,12 @@ from functools import partial
 from eurdf.diagnostics import Hint, did_you_mean
 from eurdf.format.near import near
 from eurdf.format.numbers import HINT, LARGEST, too_large
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 from eurdf.reading.reporter import Element, XmlReporter
 
 #: The types a URDF may give a joint.
-URDF_JOINT_TYPES = {
-    kind.value: kind
-    for kind in (
-        JointType.REVOLUTE,
-        JointType.CONTINUOUS,
-        JointType.PRISMATIC,
-        JointType.PLANAR,
-        JointType.FLOATING,
-        JointType.FIXED,
-    )
-}
+URDF_JOINT_TYPES = {kind.value: kind for kind in JointType if not kind.replaces}
 
 #: The optional child elements of each element; `limit` is required for a joint that moves in a range.
 _OPTIONAL_CHILDREN: dict[str, tuple[str, ...]] = {
@@ -78,9 +68,6 @@ _KNOWN_ATTRIBUTES: dict[str, frozenset[str]] = {
 
 #: What `origin` may have from URDF 1.1 on.
 _OPTIONAL_IN_ORIGIN = ("xyz", "rpy", "quat_xyzw")
-
-#: The types of joints that move in a range, and so need a `limit`.
-RANGED = frozenset({JointType.REVOLUTE, JointType.PRISMATIC})
 
 #: Attributes of limits, which may be beyond `LARGEST` on the side where they do not limit: the sign of that side.
 _LIMITS = {
@@ -310,7 +297,8 @@ class UrdfReader:
         if not isinstance(tag, str):
             return
         optional = _OPTIONAL_CHILDREN[str(parent.tag)]
-        if parent.tag == "joint" and URDF_JOINT_TYPES.get(parent.get("type", "")) in RANGED:
+        kind = URDF_JOINT_TYPES.get(parent.get("type", "")) if parent.tag == "joint" else None
+        if kind is not None and kind.is_ranged:
             optional = tuple(other for other in optional if other != "limit")
         if hint := self.near_miss(tag, optional):
             self.report("urdf-unknown-element", f"<{parent.tag}> has an unknown element <{tag}>", child, hint=hint)

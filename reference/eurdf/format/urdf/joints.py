@@ -8,14 +8,13 @@ from collections.abc import Mapping
 from eurdf.diagnostics import did_you_mean
 from eurdf.format.numbers import is_too_small, lower_limit, too_small, upper_limit
 from eurdf.format.urdf.data import Limit, UrdfJoint
-from eurdf.format.urdf.elements import RANGED, RESERVED, URDF_JOINT_TYPES, UrdfReader, named
-from eurdf.mechanism.joint_type import JointType
+from eurdf.format.urdf.elements import RESERVED, URDF_JOINT_TYPES, UrdfReader, named
+from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Vector3
 from eurdf.reading.reporter import Element
 
 _X: Vector3 = (1.0, 0.0, 0.0)
-_AXLESS = frozenset({JointType.FIXED, JointType.FLOATING})
 
 # Attributes of one number each, and their defaults.
 _LIMIT = {"lower": "0", "upper": "0", "effort": None, "velocity": None}
@@ -79,8 +78,6 @@ def _axis(reader: UrdfReader, name: str | None, kind: JointType, element: Elemen
     if axis is None:
         return None
     x, y, z = axis
-    if kind in _AXLESS:
-        return _X
     if kind is JointType.PLANAR:
         if x != 0.0 or y != 0.0:
             reader.report(
@@ -90,6 +87,8 @@ def _axis(reader: UrdfReader, name: str | None, kind: JointType, element: Elemen
                 "xyz",
                 "rotate the joint's origin until its z axis is normal to the plane, and write the axis 0 0 1",
             )
+    elif not kind.is_axial:
+        return _X
     elif x == y == z == 0.0:
         reader.report("urdf-zero-axis", f"the axis of joint '{name}' is zero", element, "xyz")
         return None
@@ -107,7 +106,7 @@ def _limit(
         return None
     if min(limit[2:]) < 0.0:
         _report_negative(reader, element, **{key: getattr(limit, key) for key in _LIMIT_1_2})
-    if limit.lower > limit.upper and (kind in RANGED or reader.version >= "1.2"):
+    if limit.lower > limit.upper and (kind.is_ranged or reader.version >= "1.2"):
         _report_reversed(reader, name, limit.lower, limit.upper, element)
     return limit
 
@@ -125,7 +124,7 @@ def _limit_1_0(reader: UrdfReader, element: Element) -> Limit | None:
 
 def _limit_1_2(reader: UrdfReader, kind: JointType, element: Element) -> Limit | None:
     """A ``limit`` from URDF 1.2 on: what is left out does not limit; a joint with a range of motion states it."""
-    required, optional = (_RANGE_1_2, _LIMIT_1_2) if kind in RANGED else ((), (*_RANGE_1_2, *_LIMIT_1_2))
+    required, optional = (_RANGE_1_2, _LIMIT_1_2) if kind.is_ranged else ((), (*_RANGE_1_2, *_LIMIT_1_2))
     stated = dict.fromkeys((*required, *(attribute for attribute in optional if attribute in element.attrib)))
     values = reader.single_numbers(element, stated, optional)
     return None if values is None else _limits(dict(zip(stated, values, strict=True)))
@@ -139,7 +138,7 @@ def _limits(stated: dict[str, float]) -> Limit:
 
 def _check_needs_no_limit(reader: UrdfReader, name: str | None, kind: JointType, joint: Element) -> None:
     """EU-URD-004: a joint with a range of motion has a ``limit``."""
-    if kind in RANGED:
+    if kind.is_ranged:
         reader.report(
             "urdf-missing-element",
             f"{kind} joint '{name}' has no <limit>",
@@ -183,7 +182,7 @@ def _mimic(reader: UrdfReader, name: str | None, kind: JointType, element: Eleme
         return None
     if joint is None or values is None:
         return None
-    if kind is JointType.FIXED:
+    if kind.is_fixed:
         reader.mimic_reporter.report(
             "urdf-mimic-fixed",
             f"joint '{name}' is fixed: its <mimic> of '{joint}' has no effect",

@@ -9,7 +9,7 @@ from itertools import dropwhile
 from eurdf.diagnostics import did_you_mean
 from eurdf.format.urdf.data import UrdfJoint
 from eurdf.format.urdf.elements import UrdfReader, cycle_of
-from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic
+from eurdf.mechanism.mimic import Mimic
 from eurdf.reading.reporter import Element
 
 _Joints = Mapping[str, UrdfJoint]
@@ -53,7 +53,7 @@ def _near(name: str, unknown: str, joints: _Joints) -> str | None:
 def _can_mimic(reader: UrdfReader, joint: UrdfJoint, leader: UrdfJoint, element: Element) -> bool:
     """EU-URD-023: a mimic joint and its leader have one coordinate."""
     for role, each in (("mimics another joint", joint), ("is the leader of a mimic joint", leader)):
-        if each.type not in MIMIC_TYPES:
+        if not each.type.is_axial:
             reader.mimic_reporter.report(
                 "urdf-mimic-kind",
                 f"joint '{each.name}' {role}, but is {each.type}; it must be revolute, continuous or prismatic",

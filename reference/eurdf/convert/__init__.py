@@ -1,0 +1,1 @@
+"""Robots in the formats of others: each format states what it loses."""

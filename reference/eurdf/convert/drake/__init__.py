@@ -1,0 +1,1 @@
+"""URDF with the joint types and constraints of Drake."""

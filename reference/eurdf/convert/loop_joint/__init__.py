@@ -1,0 +1,1 @@
+"""URDF with the loop joints of Isaac Sim."""

@@ -1,0 +1,1 @@
+"""Plain URDF: a spanning tree."""

@@ -1,0 +1,1 @@
+"""URDF+, of generalized_rbda."""

@@ -1,0 +1,1 @@
+"""USD with the UsdPhysics schema."""

@@ -1,0 +1,94 @@
+"""The words of messages: names quoted, listed and corrected, and text made safe for a terminal, a log or JSON."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Sequence
+
+#: Number of similar names that are compared with the name of the element.
+_CLOSE = 20
+
+#: Names whose difflib ratios differ by at most this are about equally similar.
+_ABOUT = 0.1
+
+#: Maximum number of pairs of letters that the search for the intended name compares.
+COMPARED = 40_000
+
+
+def visible(text: str) -> str:
+    r"""The text with invisible and control characters replaced by escapes (``\x1b``)."""
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
+
+
+def no_command(line: str) -> str:
+    r"""A line that is not a command of a workflow: GitHub runs what begins with ``::``, here ``\x3a:``."""
+    text = line.lstrip()
+    return line[: len(line) - len(text)] + r"\x3a" + text[1:] if text.startswith("::") else line
+
+
+def encodable(text: str) -> str:
+    """The text with lone surrogates (as in an undecodable file name) replaced by escapes."""
+    return text.encode("utf-8", "backslashreplace").decode("utf-8")
+
+
+def quoted(names: Sequence[str], most: int = 3) -> str:
+    """Quoted names for a message: the first ones, and dots if there are more than ``most``."""
+    return ", ".join(f"'{name}'" for name in names[:most]) + (", ..." if len(names) > most else "")
+
+
+def enumerated(names: Sequence[str], most: int = 6) -> str:
+    """Quoted names for a sentence: the first ones, and how many more there are: "'a', 'b' and 2 more"."""
+    items = [f"'{name}'" for name in names[:most]]
+    if len(names) > most:
+        items.append(f"{len(names) - most} more")
+    return " and ".join(filter(None, (", ".join(items[:-1]), items[-1])))
+
+
+def did_you_mean(wrong: str, known: Iterable[str], beside: str = "") -> str | None:
+    """The hint for a misspelt name: the most similar known name, or None if none is similar.
+
+    If several names are about equally similar, it is the one most similar to ``beside``: if joint 'right_knee' mimics
+    'hip', the hint is 'right_hip', although 'left_hip' needs fewer added letters.
+
+    The time is bounded. If there are too many names, only those that share the first or second half of the wrong name
+    are compared; this includes every name that differs in one place.
+
+    Args:
+        wrong: The unknown name.
+        known: The known names.
+        beside: Name of the element that contains the wrong name.
+    """
+    if " - " in wrong:
+        known = list(known)
+        if wrong.partition(" - ")[0] in known:
+            return "an item that is indented more than the one before continues it; indent each '-' of a list equally"
+    size = len(wrong)
+    # By difflib's ratio, a name shorter than 3/7 of another cannot be similar to it.
+    candidates = [name for name in known if 3 * len(name) <= 7 * size and 3 * size <= 7 * len(name)]
+    folded = wrong.casefold()
+    nearest = next((name for name in candidates if name.casefold() == folded), None)
+    if nearest is None:
+        most = COMPARED // max(size * size, 1)
+        if len(candidates) > most:
+            half = size // 2
+            first, second = wrong[:half], wrong[size - half :]
+            candidates = [name for name in candidates if name.startswith(first) or name.endswith(second)][:most]
+        close = difflib.get_close_matches(wrong, candidates, n=_CLOSE)
+        nearest = _most_alike(beside, _about_as_near(wrong, close)) if beside else next(iter(close), None)
+    return None if nearest is None else f"did you mean '{nearest}'?"
+
+
+def _about_as_near(wrong: str, close: list[str]) -> list[str]:
+    """Of similar names, sorted by similarity, those about as similar as the first."""
+    ratios = [_ratio(wrong, name) for name in close]
+    return [name for name, ratio in zip(close, ratios, strict=True) if ratio >= ratios[0] - _ABOUT]
+
+
+def _most_alike(beside: str, names: list[str]) -> str | None:
+    return max(names, key=lambda name: _ratio(beside, name), default=None)
+
+
+def _ratio(one: str, other: str) -> float:
+    return difflib.SequenceMatcher(None, one, other).ratio()

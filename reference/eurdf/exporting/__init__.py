@@ -1,1 +1,0 @@
-"""A mechanism in the formats of others: each export says what it lost."""

@@ -1,1 +1,0 @@
-"""Robots in the formats of others as mechanisms: each import says what it lost."""

@@ -1,0 +1,392 @@
+"""From the files of a robot to its mechanism, with all diagnostics; no simulator is loaded."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import Any, Literal, TypeVar
+
+from eurdf.collection import find_robot
+from eurdf.diagnostics import Diagnostics, FileError, Place
+from eurdf.exceptions import CannotExpand, InvalidRobot
+from eurdf.format.extension import ClosureEntry, CouplingEntry, Extension
+from eurdf.format.read_extension import read_extension, version_of
+from eurdf.format.urdf.data import Urdf
+from eurdf.format.urdf.read import read_urdf
+from eurdf.linking.inertia import check_inertias, check_leaves
+from eurdf.linking.link import link
+from eurdf.linking.missing_urdf import report_missing_urdf
+from eurdf.mechanism.mechanism import Mechanism, Root
+from eurdf.mesh_files.folders import Folders
+from eurdf.reading.resource import FileFinder
+from eurdf.reading.robot_source import RobotSource, display_name, source_of
+from eurdf.reading.source import Source, read_bytes, read_source
+from eurdf.reading.xacro import expand, is_xacro
+from eurdf.reading.xml_reader import read_xml
+from eurdf.reading.yaml_reader import YamlDocument, read_yaml
+
+_Part = TypeVar("_Part")
+
+_NO_XACRO = "only a .xacro file accepts arguments; give one as the robot or as its URDF, or name one under 'urdf'"
+
+#: What to do about errors of mimic joints: report them and refuse the URDF, report them only, or ignore them.
+_MimicErrors = Literal["refused", "kept", "ignored"]
+
+
+@dataclass(frozen=True, slots=True)
+class ReadRobot:
+    """The files of a robot as read, and what they describe.
+
+    Attributes:
+        path: As the caller gave it.
+        diagnostics: Found by all phases but the last, that of closures.
+        tree: The URDF; None if it has an error itself, or was not read.
+        linked: What the files describe; None if an error leaves nothing to build.
+        yaml: The content of the description; None for a bare URDF, and if an error leaves nothing to build.
+    """
+
+    path: str
+    diagnostics: Diagnostics
+    tree: Urdf | None = None
+    linked: Mechanism | None = None
+    yaml: Extension | None = None
+
+    @property
+    def urdf(self) -> Urdf:
+        """The URDF of a robot that can be built."""
+        return self._of_valid(self.tree)
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """What the files of a robot that can be built describe."""
+        return self._of_valid(self.linked)
+
+    @property
+    def description(self) -> Extension:
+        """The content of the description of a robot that has one."""
+        return self._of_valid(self.yaml)
+
+    def _of_valid(self, part: _Part | None) -> _Part:
+        if part is None:
+            raise InvalidRobot(self.path, tuple(self.diagnostics))
+        return part
+
+    def place_of_constraint(self, name: str) -> Place:
+        """Where a closure or a coupling is stated."""
+        entries: tuple[ClosureEntry | CouplingEntry, ...] = (*self.description.closures, *self.description.couplings)
+        return self.description.document.place(next(entry for entry in entries if entry.name == name).pointer)
+
+    def place_of_configuration(self, name: str) -> Place:
+        """Where a configuration is stated."""
+        return self.description.document.place(("configurations", name), True)
+
+
+def read_valid(path: RobotSource, **options: Any) -> ReadRobot:
+    """Read and link the files of a robot, as `read_robot` does.
+
+    Raises:
+        InvalidRobot: It cannot be built without guessing.
+    """
+    read = read_robot(path, **options)
+    if read.linked is None or read.diagnostics.refused:
+        raise InvalidRobot(read.path, tuple(read.diagnostics))
+    return read
+
+
+def read_robot(
+    path: RobotSource,
+    urdf: RobotSource | None = None,
+    root: Root | None = None,
+    *,
+    geometry: bool = True,
+    mimic: bool = True,
+    package_dirs: Sequence[str | os.PathLike[str]] = (),
+    xacro_args: Mapping[str, str] | None = None,
+    confined: bool = False,
+    allow_outside: bool = False,
+    inertias: bool = True,
+) -> ReadRobot:
+    """Read and link the files of a robot, and check its inertias.
+
+    EU-DIA-002: what needs a file that has an error is not checked, so that no consequence of that error is reported.
+
+    Args:
+        path: What `find_robot` takes.
+        urdf: A URDF in place of the one that the description names.
+        root: In place of the root that the description states.
+        geometry: Whether to read the geometry; else bodies have none, and it is not checked.
+        mimic: Whether mimic joints depend on their leaders; if not, each is free, and an error in its leader is
+            reported but leaves a mechanism. With a description of version 1 they are free in any case, and not checked.
+        package_dirs: Folders to look for packages in, which a xacro finds files in.
+        xacro_args: Values of the arguments of a xacro.
+        confined: Whether a URDF that the description names must be in the folder of the description.
+        allow_outside: Whether meshes may be anywhere, for `find_meshes`: no mesh is looked for here.
+        inertias: Whether to check the inertias of a robot that can be linked. If not, `inertia_diagnostics` does.
+
+    Raises:
+        RobotNotFound: Where there are no such files.
+        CannotExpand: A xacro has an error, or arguments are given for what is no xacro.
+        MissingExtra: A xacro is given, and the extra ``xacro`` is not installed.
+        ValueError: Files are confined to their folder, and allowed outside it.
+    """
+    if confined and allow_outside:
+        raise ValueError("confined and allow_outside exclude each other; choose one of them")
+    diagnostics = Diagnostics()
+    name = display_name(path)
+    try:
+        files = find_robot(path, urdf)
+        given = files.urdf and _expanded(files.urdf, name, diagnostics, package_dirs, xacro_args)
+    except FileError as error:
+        diagnostics.add(error.diagnostic)
+        return ReadRobot(name, diagnostics)
+    if files.description is None:
+        assert given is not None
+        read, extension = partial(_own_source, given, confined), None
+        mimic_errors: _MimicErrors = "refused" if mimic else "kept"
+    else:
+        document = _read_description(files.description, diagnostics, confined)
+        extension = None if document is None else read_extension(document, diagnostics)
+        if given is not None:
+            read = partial(_own_source, given)
+        else:
+            folder = _folder(files.description)
+            named = _named_urdf(folder, extension, document)
+            is_inside = _is_inside(named, folder)
+            if not _may_read(named, is_inside, files.description, extension, diagnostics, confined):
+                return ReadRobot(name, diagnostics)
+            # Another file that the description names may be anyone's: no line of it is shown.
+            read = partial(read_source, named, is_quoted=is_inside)
+            if is_xacro(named):
+                if extension is None:
+                    return ReadRobot(name, diagnostics)
+                real = Path(os.path.realpath(named)).parent
+                finder = FileFinder(named.parent, package_dirs, real_folder=real, allow_outside=allow_outside)
+                folders = None if confined else finder.folders
+                read = partial(_named_xacro, named, extension, diagnostics, package_dirs, xacro_args, folders)
+            elif extension is not None and xacro_args:
+                raise CannotExpand(name, _NO_XACRO)
+        # Without a version, whether a mimic has an effect is not known.
+        version = extension.version if extension is not None else document and version_of(document)
+        mimic_errors = "ignored" if version in (None, "1") else "refused" if mimic else "kept"
+    tree = _read_urdf(read, diagnostics, geometry, mimic_errors)
+    if tree is None:
+        return ReadRobot(name, diagnostics)
+    mechanism = None
+    if extension is not None or files.description is None:
+        mechanism = link(tree, extension, diagnostics, root, mimic=mimic)
+    if mechanism is None:
+        check_inertias(tree, diagnostics)
+        return ReadRobot(name, diagnostics, tree)
+    if inertias:
+        _check_inertias_and_leaves(tree, mechanism, diagnostics)
+    return ReadRobot(name, diagnostics, tree, mechanism, extension)
+
+
+def inertia_diagnostics(read: ReadRobot) -> Diagnostics:
+    """What is wrong with the inertias of a robot that `read_robot` did not check."""
+    diagnostics = Diagnostics()
+    _check_inertias_and_leaves(read.urdf, read.mechanism, diagnostics)
+    return diagnostics
+
+
+def _check_inertias_and_leaves(urdf: Urdf, mechanism: Mechanism, diagnostics: Diagnostics) -> None:
+    check_leaves(mechanism, urdf, diagnostics, check_inertias(urdf, diagnostics))
+
+
+def read_urdf_alone(
+    path: RobotSource,
+    diagnostics: Diagnostics,
+    package_dirs: Sequence[str | os.PathLike[str]] = (),
+    xacro_args: Mapping[str, str] | None = None,
+) -> Urdf:
+    """Read what is given as a URDF, without looking for a description.
+
+    Args:
+        path: A file, a xacro, ``-`` for standard input, a pipe, or a text.
+        diagnostics: Where findings are added.
+        package_dirs: Folders to look for packages in, which a xacro finds files in.
+        xacro_args: Values of the arguments of a xacro.
+
+    Raises:
+        InvalidRobot: It has an error.
+        CannotExpand: A xacro has an error, or arguments are given for what is no xacro.
+        MissingExtra: A xacro is given, and the extra ``xacro`` is not installed.
+    """
+    try:
+        text = source_of(path)
+        file = Path(display_name(path)) if text is None else text
+        given = _expanded(file, display_name(path), diagnostics, package_dirs, xacro_args)
+    except FileError as error:
+        diagnostics.add(error.diagnostic)
+        urdf = None
+    else:
+        urdf = _read_urdf(partial(_own_source, given), diagnostics, geometry=True, mimic_errors="refused")
+    if urdf is None:
+        raise InvalidRobot(display_name(path), tuple(diagnostics))
+    return urdf
+
+
+def _expanded(
+    urdf: Path | Source,
+    name: str,
+    diagnostics: Diagnostics,
+    package_dirs: Sequence[str | os.PathLike[str]],
+    xacro_args: Mapping[str, str] | None,
+) -> Path | Source:
+    """A URDF that the caller gave, or that a xacro is expanded to."""
+    if isinstance(urdf, Path) and is_xacro(urdf) and os.path.lexists(urdf):
+        source, warnings = expand(urdf, xacro_args, package_dirs)
+        _add_warnings(urdf, warnings, diagnostics)
+        return source
+    if xacro_args:
+        raise CannotExpand(name, _NO_XACRO)
+    return urdf
+
+
+def _named_xacro(
+    urdf: Path,
+    extension: Extension,
+    diagnostics: Diagnostics,
+    package_dirs: Sequence[str | os.PathLike[str]],
+    xacro_args: Mapping[str, str] | None,
+    folders: Folders | None,
+) -> Source:
+    """The URDF that a xacro is expanded to which the description names.
+
+    Args:
+        urdf: The xacro.
+        extension: The description.
+        diagnostics: Gets the warnings of xacro.
+        package_dirs: Folders to look for packages in.
+        xacro_args: Values of its arguments.
+        folders: Where the files that it reads may be; None if files are confined.
+
+    Raises:
+        CannotExpand: It has an error, and arguments are given, which may be the reason.
+        FileError: ``file-unreadable``: it is no regular file, has an error, or files are confined; or
+            ``file-too-large``.
+        MissingExtra: The extra ``xacro`` is not installed.
+    """
+    place = extension.document.place(("urdf",))
+    if folders is None:
+        message = f"the URDF '{urdf}' is a xacro, which is a program, and files are confined to their folder"
+        raise FileError("file-unreadable", message, place, "expand it, and name the result")
+    read_bytes(os.fspath(urdf))  # refuses what is no regular file, as of every file that a description names
+    try:
+        source, warnings = expand(urdf, xacro_args, package_dirs, folders)
+    except CannotExpand as error:
+        if xacro_args:
+            raise
+        raise FileError("file-unreadable", str(error), place) from None
+    _add_warnings(urdf, warnings, diagnostics)
+    return replace(source, is_quoted=_is_inside(urdf, extension.document.source.folder))
+
+
+def _add_warnings(xacro: Path, warnings: str, diagnostics: Diagnostics) -> None:
+    if warnings:
+        diagnostics.report("x-xacro-warning", f"xacro warns: {' '.join(warnings.split())}", Place(os.fspath(xacro)))
+
+
+def _read_urdf(
+    read: Callable[[], Source], diagnostics: Diagnostics, geometry: bool, mimic_errors: _MimicErrors
+) -> Urdf | None:
+    try:
+        document = read_xml(read())
+    except FileError as error:
+        diagnostics.add(error.diagnostic)
+        return None
+    mimic_diagnostics = diagnostics if mimic_errors == "refused" else Diagnostics()
+    urdf = read_urdf(document, diagnostics, geometry=geometry, mimic_diagnostics=mimic_diagnostics)
+    if mimic_errors == "kept":
+        for found in mimic_diagnostics:
+            diagnostics.add(found)
+    return urdf
+
+
+def _named_urdf(folder: Path, extension: Extension | None, document: YamlDocument | None) -> Path:
+    name = "robot.urdf"
+    if extension is not None:
+        name = extension.urdf
+    elif document is not None and isinstance(document.data, dict) and isinstance(document.data.get("urdf"), str):
+        name = document.data["urdf"]
+    try:
+        return folder / name
+    except ValueError:
+        return folder / "robot.urdf"
+
+
+def _folder(description: Path | Source) -> Path:
+    return description.folder if isinstance(description, Source) else description.parent
+
+
+def _read_description(path: Path | Source, diagnostics: Diagnostics, confined: bool) -> YamlDocument | None:
+    try:
+        return read_yaml(_own_source(path, confined))
+    except FileError as error:
+        diagnostics.add(error.diagnostic)
+        return None
+
+
+def _own_source(path: Path | Source, confined: bool = False) -> Source:
+    """The text of a file of the robot that the caller named, or found in a folder.
+
+    Raises:
+        FileError: It cannot be read; or files are confined to their folder, and it is a link to one elsewhere.
+    """
+    if isinstance(path, Source):
+        return path
+    is_inside = _is_inside(path, path.parent)
+    if confined and not is_inside:
+        message = f"'{path}' is a link to a file in another folder, and files are confined to their folder"
+        raise FileError("file-unreadable", message, Place(os.fspath(path)))
+    return read_source(path, is_quoted=is_inside)
+
+
+def _is_inside(path: Path, folder: Path) -> bool:
+    """Whether a file is in a folder, with every symbolic link followed."""
+    if path.parent == folder and path.name not in ("", "..") and not os.path.islink(path):
+        return True  # whatever the folder is a link to
+    try:
+        return path.resolve().is_relative_to(folder.resolve())
+    except (OSError, ValueError, RuntimeError):  # a path that cannot be one, or a circle of links
+        return True  # which is an error where it is read
+
+
+def _may_read(
+    path: Path,
+    is_inside: bool,
+    description: Path | Source,
+    extension: Extension | None,
+    diagnostics: Diagnostics,
+    confined: bool,
+) -> bool:
+    """Whether the URDF that the description names exists, and is in its folder if files are confined to it.
+
+    If the description could not be read, its URDF is a guess, so a second error would be wrong.
+    """
+    if confined and not is_inside:
+        if extension is not None:
+            message = f"the URDF '{path}' is outside the folder of the description, and files are confined to it"
+            hint = "move the URDF into the folder, or give it with --urdf (urdf= in Python)"
+            diagnostics.report("file-unreadable", message, extension.document.place(("urdf",)), hint)
+        return False
+    if not os.path.lexists(path):
+        if extension is not None:
+            report_missing_urdf(path, extension, diagnostics)
+        return False
+    # Some installers fill a folder with links into one other folder.
+    if not (is_inside or extension is None or (isinstance(description, Path) and _is_beside(path, description))):
+        diagnostics.report(
+            "x-urdf-outside-folder",
+            f"the URDF '{path}' is outside the folder of the description",
+            extension.document.place(("urdf",)),
+            "keep the URDF in this folder, or below it; --confined refuses others",
+        )
+    return True
+
+
+def _is_beside(path: Path, description: Path) -> bool:
+    return _is_inside(path, description.resolve().parent)

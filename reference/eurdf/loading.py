@@ -1,0 +1,262 @@
+"""`eurdf.load` and `eurdf.check`: from files to a robot ready for Pinocchio, or to everything that is wrong with them.
+
+The module is not named after one of them: importing it would put it in the place of the function.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from typing import TYPE_CHECKING
+
+from eurdf.advice.angles import advise_on_angles
+from eurdf.advice.lengths import advise_on_lengths
+from eurdf.advice.loops import closure_diagnostics
+from eurdf.advice.mimics import advise_on_mimics
+from eurdf.advice.quaternions import advise_on_quaternions
+from eurdf.diagnostics import Diagnostic, Diagnostics, Severity, quoted
+from eurdf.diagnostics.report import Report
+from eurdf.exceptions import InvalidRobot
+from eurdf.format.urdf.data import Urdf
+from eurdf.linking.mesh_files import FoundFiles, find_meshes, place_of_file
+from eurdf.linking.robot_files import ReadRobot, inertia_diagnostics, read_robot
+from eurdf.mechanism.mechanism import Root
+from eurdf.mesh_files.kinds import KINDS, suffix_of
+from eurdf.pinocchio.meshes import Mesh, read_meshes
+from eurdf.reading.robot_source import RobotSource
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
+
+
+def load(
+    path: RobotSource,
+    urdf: RobotSource | None = None,
+    root: Root | None = None,
+    geometry: bool = True,
+    *,
+    mimic: bool = True,
+    check_loops: bool = False,
+    strict: bool = False,
+    package_dirs: Sequence[str | os.PathLike[str]] = (),
+    xacro_args: Mapping[str, str] | None = None,
+    confined: bool = False,
+    allow_outside: bool = False,
+) -> Robot:
+    """Load a robot.
+
+    Errors that leave something to guess are refused (EU-CNF-001). Unphysical inertias and loops that cannot close are
+    not: real files have them, and their kinematics are still of use. They are in ``robot.diagnostics`` (EU-CNF-003),
+    for which they are looked for when it is first used; whether loops can close, only if `check_loops` says so.
+
+    Args:
+        path: A folder, a YAML file, a bare URDF or xacro, the name of a robot of the collection, ``-`` for standard
+            input, a pipe, or a text: one that begins with ``<`` is a URDF, any other a description.
+        urdf: A URDF in place of the one that the description names (``robot.urdf`` beside it by default): a file,
+            ``-``, a pipe or a text.
+        root: ``fixed`` or ``floating``, in place of what the description says (fixed by default).
+        geometry: Whether to load the visual and collision geometry, meshes too. Without it, bodies have no shapes, and
+            nothing wrong with shapes is looked for. Where a mesh is missing or not read, the robot is loaded and
+            ``robot.diagnostics`` says so (EU-URD-028); asking it for its geometry raises `InvalidRobot`.
+        mimic: Whether the mimic joints of the URDF follow the joints that drive them, as in
+            ``pin.buildModelFromUrdf(path, mimic=True)``. If not, each is free, as in
+            ``pin.buildModelFromUrdf(path)``, and an error in which joint it mimics is kept in ``robot.diagnostics``.
+            With a description of version 1 they are free in any case (EU-ONE-009).
+        check_loops: Whether to find out if the loops can close at all, which takes a solver, and to report in
+            ``robot.diagnostics`` if they cannot, as `eurdf.check` does. Whether a configuration ``assembled`` closes
+            them is reported in any case.
+        strict: Whether to refuse every error, those of the inertia and closure phases too; this also checks the loops.
+        package_dirs: Folders to look for the packages of meshes in, before ``ROS_PACKAGE_PATH`` and
+            ``AMENT_PREFIX_PATH``.
+        xacro_args: Values of the arguments of a xacro: the one that is given, or that the description names. The latter
+            may only read files of the robot and of packages.
+        confined: Whether it is an error if the description names a URDF outside its own folder or a xacro, or the URDF
+            a mesh outside the robot's folder and the packages, symbolic links followed. The file is then not opened.
+        allow_outside: Whether meshes, and files that they name, are read that are neither in the robot's folder nor in
+            a package. If not, they are left out, with a warning. The robot's folder is the nearest one, from that of
+            the URDF upwards, with a ``package.xml``; without one, that of the URDF.
+
+    Returns:
+        The robot: its Pinocchio model, its constraint models in file order, its actuation, its geometry.
+
+    Raises:
+        RobotNotFound: There are no such files.
+        InvalidRobot: The robot cannot be built without guessing, or `geometry` is asked for and a mesh is
+            unreadable.
+        CannotExpand: A xacro has an error, or `xacro_args` are given for what is no xacro.
+        MissingExtra: A xacro is given, and the extra ``xacro`` is not installed.
+    """
+    from eurdf.pinocchio.robot import build_robot  # only now: a simulator, which `check` does without if it can
+
+    if root not in (None, "fixed", "floating"):
+        raise ValueError(f"root is {root!r}; it must be 'fixed' or 'floating'")
+    read = read_robot(
+        path,
+        urdf,
+        root,
+        geometry=geometry,
+        mimic=mimic,
+        package_dirs=package_dirs,
+        xacro_args=xacro_args,
+        confined=confined,
+        allow_outside=allow_outside,
+        inertias=False,
+    )
+    if read.linked is None:
+        raise InvalidRobot(read.path, tuple(read.diagnostics))
+    paths: dict[str, str] = {}
+    meshes: dict[str, Mesh] = {}
+    of_meshes: tuple[Diagnostic, ...] = ()
+    without_geometry: Callable[[], Exception] | None = None
+    if geometry:
+        files = find_meshes(read.urdf, package_dirs, confined=confined, allow_outside=allow_outside)
+        paths = files.paths
+        meshes, unreadable = _read_mesh_files(read.urdf, files)
+        of_meshes = (*files.diagnostics, *unreadable)
+        no_geometry = f"the geometry of {read.path} cannot be built; load it with geometry=False"
+        if any(found.severity is Severity.ERROR for found in of_meshes):
+            found = (*read.diagnostics, *inertia_diagnostics(read), *of_meshes)
+            raise InvalidRobot(read.path, found, no_geometry)
+        if any(shape.kind == "mesh" and paths.get(shape.filename) not in meshes for shape in read.urdf.shapes):
+            # The kinematics need no mesh, so that what `check` passes is loaded; but shapes are not left out in
+            # silence.
+            without_geometry = partial(InvalidRobot, read.path, of_meshes, no_geometry)
+    loops = strict or check_loops or "assembled" in read.mechanism.configurations
+    robot = build_robot(
+        read.mechanism,
+        geometry=geometry and without_geometry is None,
+        resolve=paths.get,
+        meshes=meshes,
+        no_geometry=without_geometry,
+        diagnose=partial(_diagnostics, read, of_meshes, loops),
+    )
+    if strict or check_loops:  # a solver runs now, not when the diagnostics are first used
+        errors = [found for found in robot.diagnostics if found.severity is Severity.ERROR]
+        if strict and errors:
+            raise InvalidRobot(read.path, robot.diagnostics)
+    return robot
+
+
+def _diagnostics(read: ReadRobot, of_meshes: Sequence[Diagnostic], loops: bool, robot: Robot) -> tuple[Diagnostic, ...]:
+    """All diagnostics of a robot that was loaded, in the order of `eurdf.check`."""
+    of_loops = closure_diagnostics(read, robot) if loops else ()
+    return (*read.diagnostics, *inertia_diagnostics(read), *of_meshes, *of_loops)
+
+
+def check(
+    path: RobotSource,
+    urdf: RobotSource | None = None,
+    *,
+    package_dirs: Sequence[str | os.PathLike[str]] = (),
+    xacro_args: Mapping[str, str] | None = None,
+    confined: bool = False,
+    allow_outside: bool = False,
+) -> Report:
+    """Check a robot: EU-DIA-001, EU-DIA-003: every error that no other error hides is reported.
+
+    It also gives advice (EU-DIA-006): warnings without a clause, whose codes begin with ``x-``.
+
+    Args:
+        path: A folder, a YAML file, a bare URDF or xacro, the name of a robot of the collection, ``-`` for standard
+            input, a pipe, or a text: one that begins with ``<`` is a URDF, any other a description.
+        urdf: A URDF in place of the one that the description names: a file, ``-``, a pipe or a text.
+        package_dirs: Folders to look for the packages of meshes in, before ``ROS_PACKAGE_PATH`` and
+            ``AMENT_PREFIX_PATH``.
+        xacro_args: Values of the arguments of a xacro: the one that is given, or that the description names. The latter
+            may only read files of the robot and of packages.
+        confined: Whether it is an error if the description names a URDF outside its own folder or a xacro, or the URDF
+            a mesh outside the robot's folder and the packages, symbolic links followed. The file is then not opened.
+        allow_outside: Whether meshes, and files that they name, are read that are neither in the robot's folder nor in
+            a package. If not, they are left out, with a warning. The robot's folder is the nearest one, from that of
+            the URDF upwards, with a ``package.xml``; without one, that of the URDF.
+
+    Returns:
+        The findings of all phases, in the order of the phases.
+
+    Raises:
+        RobotNotFound: Where there are no such files.
+        CannotExpand: A xacro has an error, or `xacro_args` are given for what is no xacro.
+        MissingExtra: A xacro is given, and the extra ``xacro`` is not installed.
+        ValueError: `confined` and `allow_outside` are both True.
+    """
+    read = read_robot(
+        path,
+        urdf,
+        package_dirs=package_dirs,
+        xacro_args=xacro_args,
+        confined=confined,
+        allow_outside=allow_outside,
+    )
+    diagnostics = read.diagnostics
+    refused = diagnostics.refused  # without meshes, which the kinematics does not need
+    meshes: dict[str, Mesh] = {}
+    if read.tree is not None:
+        files = find_meshes(read.urdf, package_dirs, confined=confined, allow_outside=allow_outside)
+        by_path, unreadable = _read_mesh_files(read.urdf, files)
+        meshes = {uri: by_path[path] for uri, path in files.paths.items() if path in by_path}
+        for found in (*files.diagnostics, *unreadable):
+            diagnostics.add(found)
+    if read.linked is not None and not refused:
+        if read.yaml is not None:
+            if read.mechanism.constraints:
+                _check_loops(read)
+            else:
+                advise_on_quaternions(read, None, diagnostics)
+        advise_on_mimics(read, diagnostics)
+        advise_on_angles(read, diagnostics)
+        advise_on_lengths(read, meshes, diagnostics)
+    return Report(read.path, tuple(diagnostics))
+
+
+def _check_loops(read: ReadRobot) -> None:
+    """Report what needs a simulator: whether the loops close and, where there is no error, advice on how they move."""
+    # Only now: a description without closures is checked without a simulator.
+    from eurdf.advice.actuation import advise_on_actuation
+    from eurdf.advice.limits import advise_on_limits
+    from eurdf.advice.massless import advise_on_massless_links
+    from eurdf.kinematics.assembly import assemble
+    from eurdf.pinocchio.robot import build_robot
+
+    diagnostics = read.diagnostics
+    robot = build_robot(read.mechanism, geometry=False)
+    assembly = None if "assembled" in robot.configurations else assemble(robot)
+    for found in closure_diagnostics(read, robot, assembly):
+        diagnostics.add(found)
+    given_up = assembly is not None and assembly.reason == "not decided"
+    if not given_up and not diagnostics.error_count:
+        q = robot.configurations["assembled"] if assembly is None else assembly.q
+        advise_on_quaternions(read, robot, diagnostics)
+        advise_on_massless_links(read, robot, q, diagnostics)
+        advise_on_actuation(read, robot, q, diagnostics)
+        advise_on_limits(read, robot, q, diagnostics)
+
+
+def _read_mesh_files(urdf: Urdf, files: FoundFiles) -> tuple[dict[str, Mesh], Diagnostics]:
+    """EU-URD-034: every mesh file that was found can be read as a mesh.
+
+    Args:
+        urdf: The URDF.
+        files: What `find_meshes` found; other files than meshes are ignored.
+
+    Returns:
+        The meshes, by path; one diagnostic for each mesh that cannot be read, and one for all of other formats.
+    """
+    paths = files.paths
+    scaled = [(shape.filename, shape.size) for shape in urdf.shapes if shape.kind == "mesh" and shape.filename in paths]
+    loaded = {suffix: kind.name for suffix, kind in KINDS.items() if kind.is_loaded}
+    others = [uri for uri in dict.fromkeys(uri for uri, _ in scaled) if suffix_of(paths[uri]) not in loaded]
+    meshes, reasons = read_meshes((each for each in scaled if each[0] not in others), paths, files.folders)
+    diagnostics = Diagnostics()
+    if others:
+        count = "1 mesh file has" if len(others) == 1 else f"{len(others)} mesh files have"
+        diagnostics.report(
+            "x-mesh-format",
+            f"{count} a format that is not read: {quoted(others)}",
+            partial(place_of_file, urdf, "mesh", others[0]),
+            f"convert them to one of {', '.join(loaded.values())}",
+        )
+    for uri, reason in reasons.items():
+        place = partial(place_of_file, urdf, "mesh", uri)
+        diagnostics.report("urdf-mesh-unreadable", f"mesh '{uri}' cannot be read: {reason}", place)
+    return meshes, diagnostics
