@@ -215,7 +215,7 @@ def test_folded_start_is_not_the_reason() -> None:
 
 
 def test_exhausted_steps_are_reported(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("eurdf.kinematics.inverse.MOST_STEPS", 1)
+    monkeypatch.setattr("eurdf.kinematics.inverse_search.MOST_STEPS", 1)
     answer = inverse_kinematics(arm(1.0, 0.7), {"end": [0.0, 1.2, 0.0]}, np.array([0.3, 0.8]), restarts=0)
     assert (answer.converged, answer.reason) == (False, "steps")
 

@@ -6,13 +6,13 @@ in `eurdf` does for one. The solvers are the same: they are written for B elemen
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from pinocchio import LOCAL, SE3
+from pinocchio import LOCAL
 
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import close
@@ -20,18 +20,18 @@ from eurdf.kinematics.blocks import Progress, blocks, checked_configurations, ch
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.evaluate import frames
 from eurdf.kinematics.exceptions import NumericalOverflow
-from eurdf.kinematics.forward import Driving, in_equilibrium
+from eurdf.kinematics.forward import driving_many, goals, in_equilibrium, moved_many
 from eurdf.kinematics.frame_jacobian import checked_reference
-from eurdf.kinematics.inverse import InverseKinematicsReason, InverseTask, Target, search
+from eurdf.kinematics.inverse import checked_targets
+from eurdf.kinematics.inverse_search import InverseKinematicsReason, InverseTask, Target, search
 from eurdf.kinematics.metric import metric
 from eurdf.kinematics.position_limit import chosen_limits
 from eurdf.kinematics.problem import Problem, for_many
 from eurdf.kinematics.project import ProjectionTask, nearest_closed
 from eurdf.kinematics.residual import residual as residual_of_one
 from eurdf.kinematics.sensitivity import JacobianTask, actuated_jacobians
-from eurdf.kinematics.spring_equilibrium import joints_at_rest
 from eurdf.kinematics.tolerances import RESTARTS, SOLVED
-from eurdf.pinocchio.arguments import checked_array, checked_count, checked_tolerance
+from eurdf.pinocchio.arguments import checked_count, checked_tolerance
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -103,15 +103,15 @@ def forward_kinematics(
     actuation = robot.actuation
     values = checked_rows("values", values, len(actuation.idx_q))
     q, common = starts(robot, q0, len(values))
-    driving = _driving(robot, checked_tolerance(tolerance))
-    goal = _goal(driving, q, values)
-    work = blocks(_numbers(driving), block, threads, executor, progress)
+    driving = driving_many(robot, checked_tolerance(tolerance))
+    goal = goals(driving, q, values)
+    work = blocks(driving.free.numbers + driving.driven.numbers, block, threads, executor, progress)
     closed = None
     if common and len(q):
         first = close(driving.free, q[:1], driving.tolerance, RESTARTS)
         q, closed = np.broadcast_to(first.q, q.shape), np.broadcast_to(first.closes, len(q))
-        goal = _goal(driving, q, values)
-    found, residual, code, rests = work.map(_moved, driving, (q, goal) if closed is None else (q, goal, closed))
+        goal = goals(driving, q, values)
+    found, residual, code, rests = work.map(moved_many, driving, (q, goal) if closed is None else (q, goal, closed))
     if len(robot.tree.springs):
         with borrowed(robot, Problem, tuple(actuation.idx_v.tolist())) as driven:
             alone = driving._replace(driven=driven)
@@ -119,58 +119,6 @@ def forward_kinematics(
                 found[each] = in_equilibrium(robot, found[each], alone)
                 residual[each] = np.linalg.norm(residual_of_one(robot, found[each]))
     return ForwardKinematics(found, code == 0, residual, tuple(_FORWARD_REASONS[each] for each in code.tolist()))
-
-
-def _driving(robot: Robot, tolerance: float) -> Driving:
-    """A robot whose actuators are given, for many elements."""
-    actuation, resting, at_rest = robot.actuation, joints_at_rest(robot, robot.actuation.idx_v), None
-    if resting is not None:
-        at_rest = Problem(robot, (*actuation.idx_v.tolist(), *resting.velocities.tolist()), few=False)
-    driven = Problem(robot, actuation.idx_v.tolist(), few=False)
-    return Driving(for_many(robot), driven, actuation.idx_q, resting, at_rest, tolerance)
-
-
-def _numbers(driving: Driving) -> int:
-    return driving.free.numbers + driving.driven.numbers
-
-
-def _goal(driving: Driving, q: Matrix, values: Matrix) -> Matrix:
-    """The configurations (B, nq) with the given values.
-
-    Raises:
-        ValueError: They contain a quaternion, or a cosine and a sine, of length zero.
-    """
-    goal = np.array(q)
-    goal[:, driving.coordinates] = values
-    with np.errstate(all="ignore"):
-        goal = driving.driven.tree.normalized(goal)
-    wrong = np.flatnonzero(~np.isfinite(goal[:, driving.coordinates]).all(axis=1))
-    if len(wrong):
-        raise ValueError(
-            f"values[{wrong[0]}] has a quaternion, or a (cos, sin) pair, whose length is zero or overflows"
-        )
-    return goal
-
-
-def _moved(
-    driving: Driving, q: Matrix, goal: Matrix, closed: Mask | None = None
-) -> tuple[Matrix, Vector, Indices, Mask]:
-    """Where the given joints get (B, nq), the norms (B,) of the residual, the reasons, and if springs are at rest."""
-    if closed is None:
-        first = close(driving.free, q, driving.tolerance, RESTARTS)
-        values, q, closed = goal[:, driving.coordinates], first.q, first.closes
-        goal = _goal(driving, q, values)
-    found, code, rests = np.array(q), np.where(closed, 0, 1), np.zeros(len(q), dtype=bool)
-    on = np.flatnonzero(closed)
-    there, part, rests[on], _ = driving.moved(q[on], goal[on])
-    stopped = part < 1.0
-    if stopped.any():
-        beyond = there[stopped]
-        beyond[:, driving.coordinates] = goal[on[stopped]][:, driving.coordinates]
-        anywhere = close(driving.driven, beyond, driving.tolerance)
-        there[stopped], code[on[stopped]] = anywhere.q, np.where(anywhere.closes, 3, 2)
-    found[on] = there
-    return found, np.linalg.norm(driving.free.residual(found), axis=1), code, rests
 
 
 def residual(
@@ -462,7 +410,7 @@ def inverse_kinematics(
     """
     model, names = for_many(robot), list(targets)
     places = frames(robot, names, few=False)
-    goals = [_checked_target(name, target) for name, target in targets.items()]
+    goals = [checked_targets(name, target) for name, target in targets.items()]
     count = len(goals[0].position) if goals else len(q0) if q0 is not None and len(shape_of(q0)) == 2 else 1
     for name, goal in zip(names, goals, strict=True):
         if len(goal.position) != count:
@@ -486,27 +434,3 @@ def _searched(task: InverseTask, q: Matrix, *arrays: Matrix) -> tuple[Matrix, Ma
     code = np.array([_INVERSE_REASONS.index(reason) for reason in found.reason], dtype=np.intp)
     residual = np.linalg.norm(task.problem.residual(found.q), axis=1)
     return found.q, found.position, found.angle, residual, code
-
-
-def _checked_target(name: str, target: Any) -> Target:
-    """Targets, checked.
-
-    Raises:
-        ValueError: They are neither positions nor poses, or are not finite.
-    """
-    argument = f"targets['{name}']"
-    if isinstance(target, Sequence) and len(target) and all(isinstance(each, SE3) for each in target):
-        target = np.array([each.homogeneous for each in target])
-    shape = shape_of(target)
-    if len(shape) != 3 or shape[1:] != (4, 4):
-        try:
-            return Target(checked_rows(argument, target, 3))
-        except ValueError as error:
-            raise ValueError(f"{error}, or poses: (B, 4, 4), or a list of pin.SE3") from None
-    poses = checked_array(argument, target, shape)
-    R = poses[:, :3, :3]
-    wrong = np.abs(np.swapaxes(R, 1, 2) @ R - np.eye(3)).max(axis=(1, 2), initial=0.0) > 1e-6
-    wrong |= (np.linalg.det(R) < 0.0) | (np.abs(poses[:, 3] - (0.0, 0.0, 0.0, 1.0)).max(axis=1, initial=0.0) > 1e-9)
-    if wrong.any():
-        raise ValueError(f"{argument}[{int(np.argmax(wrong))}] is not a pose: its rotation is not orthonormal")
-    return Target(poses[:, :3, 3], R)

@@ -15,7 +15,7 @@ import numpy as np
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.position_limit import PositionLimits
 from eurdf.kinematics.problem import Group, Problem
-from eurdf.kinematics.rank import diagonals, squares
+from eurdf.kinematics.rank import diagonals, solutions, squares
 from eurdf.kinematics.tolerances import (
     FIRST_DAMPING,
     GOOD_SHARE,
@@ -23,13 +23,11 @@ from eurdf.kinematics.tolerances import (
     LEAST_DAMPING,
     LEAST_GAIN,
     LEAST_SHARE,
+    MORE_DAMPING,
     MOST_IDLE_STEPS,
     MOST_STEPS,
     POOR_SHARE,
 )
-
-# Factor of the damping after a rejected step; it doubles with each that follows.
-_MORE = 8.0
 
 
 class Descended(NamedTuple):
@@ -102,8 +100,10 @@ def descend(
     at = [group.evaluator.at(q) for group in groups]
     r = [group.evaluator.residual(each) for group, each in zip(groups, at, strict=True)]
     error, square = before, expected = _measured(groups, r)
+    if not np.count_nonzero(error > enough):
+        return Descended(q, r, error, square, np.zeros(B, dtype=np.intp), np.zeros(B, dtype=bool))
     A: list[Matrix] = []
-    damping, more, idle = np.full(B, FIRST_DAMPING), np.full(B, _MORE), np.zeros(B, dtype=np.intp)
+    damping, more, idle = np.full(B, FIRST_DAMPING), np.full(B, MORE_DAMPING), np.zeros(B, dtype=np.intp)
     stale: Mask | None = None  # whose A is not that at q; None for all of them, with the states `at`
     for step in range(MOST_STEPS + 1):
         going, cut = error > enough, None
@@ -145,7 +145,7 @@ def descend(
         accepted = (expected > 0.0) & (progress > LEAST_SHARE * expected)
         if np.count_nonzero(accepted) == len(on):
             q, r, error, square, stale = trial, r_there, error_there, reached, None
-            damping, more[:] = next_damping(damping, progress / expected), _MORE
+            damping, more[:] = next_damping(damping, progress / expected), MORE_DAMPING
             continue
         rows = accepted[:, None]
         q = np.where(rows, trial, q)
@@ -153,7 +153,7 @@ def descend(
         r = [np.where(rows, there, here) for there, here in zip(r_there, r, strict=True)]
         gain = np.divide(progress, expected, out=np.zeros(len(on)), where=accepted)
         damping = np.where(accepted, next_damping(damping, gain), damping * more)
-        more = np.where(accepted, _MORE, 2.0 * more)
+        more = np.where(accepted, MORE_DAMPING, 2.0 * more)  # doubles with each step that follows
         stale = accepted
     assert ended is not None
     return ended
@@ -212,7 +212,7 @@ def _damped(A: Sequence[Matrix], b: Sequence[Matrix], damping: Vector) -> list[M
     for back, gram, rows, is_wide in zip(transposed, grams, b, wide, strict=True):
         diagonals(gram)[:] += damping
         column = rows[:, :, None]
-        step = back @ np.linalg.solve(gram, -column) if is_wide else np.linalg.solve(gram, back @ -column)
+        step = back @ solutions(gram, -column) if is_wide else solutions(gram, back @ -column)
         steps.append(np.asarray(step[:, :, 0]))
     return steps
 

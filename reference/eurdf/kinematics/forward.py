@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
-from eurdf.kinematics.assembly import assembled, closed_start, is_closed, start
+from eurdf.kinematics.assembly import assembled, close, closed_start, is_closed, start
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.exceptions import NotClosable, NumericalOverflow, TooFar
 from eurdf.kinematics.path import follow_given
-from eurdf.kinematics.problem import Problem
+from eurdf.kinematics.problem import Problem, for_many
 from eurdf.kinematics.residual import all_openings
 from eurdf.kinematics.spring_equilibrium import Resting, joints_at_rest, spring_equilibrium
-from eurdf.kinematics.tolerances import SHORTEST_STEP, SOLVED
+from eurdf.kinematics.tolerances import RESTARTS, SHORTEST_STEP, SOLVED
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array, checked_tolerance
 
@@ -145,23 +145,23 @@ class Driving(NamedTuple):
             Where the joints get (B, nq), what part (B,) of their paths that is, whether the springs are at rest there
             (B,), and where numbers overflow (B,).
         """
-        q, part, B = np.array(first), np.zeros(len(first)), len(first)
-        rests, overflows = np.zeros(B, dtype=bool), np.zeros(B, dtype=bool)
-        if self.resting is not None and self.at_rest is not None:
-            at_rest = np.array(goal)
-            at_rest[:, self.resting.coordinates] = self.resting.values
-            coordinates = np.concatenate((self.coordinates, self.resting.coordinates))
-            there, reached, _ = follow_given(
-                self.at_rest, first, at_rest, coordinates, self.tolerance, _SHORTEST_STEP_AT_REST
-            )
-            rests = reached == 1.0
-            q[rests], part[rests] = there[rests], 1.0
+        none = np.zeros(len(first), dtype=bool)
+        if self.resting is None or self.at_rest is None:
+            q, part, overflows = self._freely(first, goal, shortest)
+            return q, part, none, overflows
+        at_rest = np.array(goal)
+        at_rest[:, self.resting.coordinates] = self.resting.values
+        coordinates = np.concatenate((self.coordinates, self.resting.coordinates))
+        q, part, _ = follow_given(self.at_rest, first, at_rest, coordinates, self.tolerance, _SHORTEST_STEP_AT_REST)
+        rests, overflows = part == 1.0, none
         on = np.flatnonzero(~rests)
         if len(on):
-            q[on], part[on], overflows[on] = follow_given(
-                self.driven, first[on], goal[on], self.coordinates, self.tolerance, shortest, free=self.free
-            )
+            q[on], part[on], overflows[on] = self._freely(first[on], goal[on], shortest)
         return q, part, rests, overflows
+
+    def _freely(self, first: Matrix, goal: Matrix, shortest: float) -> tuple[Matrix, Vector, Mask]:
+        """As `moved`, whatever the springs do."""
+        return follow_given(self.driven, first, goal, self.coordinates, self.tolerance, shortest, free=self.free)
 
 
 @contextmanager
@@ -196,6 +196,54 @@ def in_equilibrium(robot: Robot, q: Vector, driving: Driving) -> Vector:
     if not len(robot.tree.springs):
         return q
     return spring_equilibrium(robot, q, driving.coordinates, driving.driven, driving.tolerance)
+
+
+def driving_many(robot: Robot, tolerance: float) -> Driving:
+    """A robot whose actuators are given, for many elements."""
+    actuation, resting, at_rest = robot.actuation, joints_at_rest(robot, robot.actuation.idx_v), None
+    if resting is not None:
+        at_rest = Problem(robot, (*actuation.idx_v.tolist(), *resting.velocities.tolist()), few=False)
+    driven = Problem(robot, actuation.idx_v.tolist(), few=False)
+    return Driving(for_many(robot), driven, actuation.idx_q, resting, at_rest, tolerance)
+
+
+def goals(driving: Driving, q: Matrix, values: Matrix) -> Matrix:
+    """The configurations (B, nq) with the given values.
+
+    Raises:
+        ValueError: They contain a quaternion, or a cosine and a sine, of length zero.
+    """
+    goal = np.array(q)
+    goal[:, driving.coordinates] = values
+    with np.errstate(all="ignore"):
+        goal = driving.driven.tree.normalized(goal)
+    wrong = np.flatnonzero(~np.isfinite(goal[:, driving.coordinates]).all(axis=1))
+    if len(wrong):
+        raise ValueError(
+            f"values[{wrong[0]}] has a quaternion, or a (cos, sin) pair, whose length is zero or overflows"
+        )
+    return goal
+
+
+def moved_many(
+    driving: Driving, q: Matrix, goal: Matrix, closed: Mask | None = None
+) -> tuple[Matrix, Vector, Indices, Mask]:
+    """Where the given joints get (B, nq), the norms (B,) of the residual, the reasons, and if springs are at rest."""
+    if closed is None:
+        first = close(driving.free, q, driving.tolerance, RESTARTS)
+        values, q, closed = goal[:, driving.coordinates], first.q, first.closes
+        goal = goals(driving, q, values)
+    found, code, rests = np.array(q), np.where(closed, 0, 1), np.zeros(len(q), dtype=bool)
+    on = np.flatnonzero(closed)
+    there, part, rests[on], _ = driving.moved(q[on], goal[on])
+    stopped = part < 1.0
+    if stopped.any():
+        beyond = there[stopped]
+        beyond[:, driving.coordinates] = goal[on[stopped]][:, driving.coordinates]
+        anywhere = close(driving.driven, beyond, driving.tolerance)
+        there[stopped], code[on[stopped]] = anywhere.q, np.where(anywhere.closes, 3, 2)
+    found[on] = there
+    return found, np.linalg.norm(driving.free.residual(found), axis=1), code, rests
 
 
 @dataclass(frozen=True, slots=True, eq=False)

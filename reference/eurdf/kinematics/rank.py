@@ -10,6 +10,7 @@ Arrays have elements first; those without are of one element.
 from __future__ import annotations
 
 import numpy as np
+from numpy.linalg import _umath_linalg
 
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.tolerances import CERTAIN, FLOOR, MISSED, NOTHING, ZERO
@@ -26,6 +27,21 @@ def squares(rows: Matrix) -> Vector:
 def norms(rows: Matrix) -> Vector:
     """The Euclidean norms (B,) of (B, …)."""
     return np.asarray(np.sqrt(squares(rows)))
+
+
+def solutions(A: Matrix, b: Matrix) -> Matrix:
+    """The x (B, n, k) with A x = b, of (B, n, n) and (B, n, k); NaN where A is singular to the last digit.
+
+    `numpy.linalg.solve` raises if one of many matrices is singular. What it calls does not, and takes a sixth of its
+    time for a small one.
+    """
+    return np.asarray(_umath_linalg.solve(A, b), dtype=np.float64)
+
+
+def inverses(A: Matrix) -> Matrix:
+    """The inverses (B, n, n) of (B, n, n); NaN where A is singular to the last digit, as for `solutions`."""
+    with np.errstate(invalid="ignore"):
+        return np.asarray(_umath_linalg.inv(A), dtype=np.float64)
 
 
 def are_finite(matrices: Matrix) -> Mask:
@@ -73,13 +89,7 @@ def certain_inverse(gram: Matrix, norm: Vector) -> tuple[Matrix, Mask]:
         gram: A Aᵀ.
         norm: A norm (B,) that the singular values of A are compared with, at least its Frobenius norm.
     """
-    try:
-        inverse: Matrix = np.asarray(np.linalg.inv(gram), dtype=np.float64)
-    except np.linalg.LinAlgError:  # one is singular to the last digit
-        if len(gram) == 1:
-            return np.zeros_like(gram), np.zeros(1, dtype=bool)
-        each = [certain_inverse(gram[i : i + 1], norm[i : i + 1]) for i in range(len(gram))]
-        return np.concatenate([one for one, _ in each]), np.concatenate([sure for _, sure in each])
+    inverse = inverses(gram)
     trace = diagonals(inverse).sum(axis=1)
     return inverse, (trace > 0.0) & (CERTAIN * CERTAIN * norm * norm * trace < 1.0)
 

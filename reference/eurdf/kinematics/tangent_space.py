@@ -12,7 +12,7 @@ import numpy as np
 from eurdf.kinematics.array import Indices, Matrix, Vector
 from eurdf.kinematics.finite import finite
 from eurdf.kinematics.loop import LoopGroup, independent_groups
-from eurdf.kinematics.rank import are_finite, least_solution, numerical_ranks
+from eurdf.kinematics.rank import are_finite, inverses, least_solution, numerical_ranks
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
 from eurdf.kinematics.tolerances import CERTAIN
 
@@ -192,10 +192,7 @@ def _decomposed(A: Matrix) -> _Decomposed:
     # The smallest singular value is at most the norm of a row.
     if m <= n and (squares.min(axis=1, initial=np.inf) > CERTAIN * CERTAIN * total).all():
         Q, R = np.linalg.qr(np.swapaxes(A, 1, 2), mode="complete")
-        try:
-            inverse = np.linalg.inv(R[:, :m])
-        except np.linalg.LinAlgError:  # one is singular to the last digit
-            inverse = np.full((len(A), m, m), np.inf)
+        inverse = inverses(R[:, :m])
         # 1/|R⁻¹| bounds the smallest singular value of A from below.
         if (CERTAIN * np.sqrt(total * np.einsum("bij,bij->b", inverse, inverse)) < 1.0).all():
             return _Decomposed(Q, Q[:, :, :m] @ np.swapaxes(inverse, 1, 2), np.full(len(A), m))

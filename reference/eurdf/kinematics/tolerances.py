@@ -40,6 +40,8 @@ LEAST_GAIN = 1e-12
 #: Damping at the start and at least, relative to the square.
 FIRST_DAMPING = 1e-3
 LEAST_DAMPING = 1e-8
+#: A step that is not accepted makes the damping this many times as large.
+MORE_DAMPING = 8.0
 #: A step is accepted if it reduces the square by more than this fraction of what was expected; ...
 LEAST_SHARE = 0.01
 #: ... the damping becomes a tenth above the first and four times as large below the second fraction.
