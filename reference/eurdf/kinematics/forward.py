@@ -276,7 +276,7 @@ def _given_by_name(robot: Robot, by_name: Mapping[str, float | Sequence[float]])
     # For each joint: index of its first coordinate, their number, index of its first velocity, their number, and the
     # number of its coordinates in files.
     at = {
-        name: (slot.idx_q, slot.nq, slot.idx_v, slot.nv, len(slot.joint.coordinates.names))
+        name: (slot.idx_q, slot.nq, slot.idx_v, slot.nv, len(slot.joint.type.coordinates))
         for name, slot in robot.slots.items()
     }
     if mechanism.root == "floating":
