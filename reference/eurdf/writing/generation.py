@@ -6,9 +6,8 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from eurdf.diagnostics import Diagnostics, enumerated
-from eurdf.format.own_key import is_own_key
+from eurdf.format.conventions import VERSION2_0, VERSION2_1, is_own_key
 from eurdf.format.urdf.data import Urdf
-from eurdf.format.version import VERSION2_0, VERSION2_1
 from eurdf.format.yaml_text import Entry, Value, entries_of, lines_of, modeline, text_of
 from eurdf.linking.merging import find_chains
 from eurdf.linking.rereading import reread

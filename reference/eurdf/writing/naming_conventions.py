@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal, cast
 
-from eurdf.format.own_key import is_own_key
+from eurdf.format.conventions import is_own_key
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.yaml_text import Value
 from eurdf.linking.merging import MASSLESS
