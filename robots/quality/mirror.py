@@ -15,11 +15,13 @@ import numpy as np
 import pinocchio as pin
 
 import eurdf
+from eurdf.closures.distance import DistanceClosure
+from eurdf.closures.hinge import HingeClosure
 from eurdf.kinematics.array import Vector
-from eurdf.mechanism.constraint import Closure, Coupling, DistanceClosure, HingeClosure
+from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.pinocchio.coordinates import Slot, slots
+from eurdf.pinocchio.configuration import Slot, slots
 from eurdf.pinocchio.frames import body_frame_ids
 from eurdf.pinocchio.robot import Robot
 from robots.quality.candidate import Candidate

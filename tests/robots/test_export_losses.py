@@ -17,18 +17,17 @@ import numpy as np
 import pytest
 
 import eurdf
+from eurdf.closures.kind import REGISTRY
 from eurdf.convert.common_losses import UNKNOWN
 from eurdf.convert.export_format import ExportInput, export_format
 from eurdf.convert.formats import EXPORTS
 from eurdf.convert.hinges import with_hinges
 from eurdf.convert.losses import Losses
-from eurdf.mechanism.body import Inertia, Shape
-from eurdf.mechanism.constraint import CLOSURES, Closure, Compliance, Coupling
-from eurdf.mechanism.frame import Frame
+from eurdf.mechanism.body import Frame, Inertia, Shape
+from eurdf.mechanism.constraint import Closure, Compliance, Coupling
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.motor import Motor
+from eurdf.mechanism.mechanism import Mechanism, Motor
 from eurdf.mechanism.pose import IDENTITY, Vector3
 from eurdf.pinocchio.meshes import read_meshes
 from eurdf.pinocchio.robot import Robot, build_robot
@@ -188,7 +187,23 @@ def test_every_kind_of_loss_occurs() -> None:
 def test_every_type_of_joint_and_closure_is_stated_or_lost(name: str) -> None:
     format_ = export_format(name)
     known = {*format_.exact, *(kind.concept for kind in format_.rows)}
-    assert {f"{kind} joint" for kind in JointType} | {f"{kind} closure" for kind in CLOSURES} <= known
+    assert {f"{kind} joint" for kind in JointType} | {f"{kind} closure" for kind in REGISTRY} <= known
+
+
+@pytest.mark.parametrize(
+    ("name", "kinds"),
+    [
+        ("urdf", {"3d", "6d", "hinge", "distance", "coupling"}),
+        ("loop-joint", {"distance", "coupling"}),
+        ("sdf", {"distance"}),
+        ("drake", {"distance"}),
+    ],
+)
+def test_constraint_that_is_left_out_is_a_loss(name: str, kinds: set[str]) -> None:
+    robot, _ = random_robot(3)
+    lost = {loss.name for loss in eurdf.export(robot, name).losses if loss.effect == "dropped"}
+    constraints = robot.mechanism.constraints
+    assert lost & {each.name for each in constraints} == {each.name for each in constraints if each.type in kinds}
 
 
 class InPlane(Closure):

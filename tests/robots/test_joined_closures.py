@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from lxml import etree
 
 import eurdf
-from eurdf.mechanism.constraint import PointClosure
-from eurdf.mechanism.frame import Anchor
+from eurdf.closures.point import PointClosure
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.pose import IDENTITY, Pose
 from eurdf.pinocchio.robot import build_robot
 from eurdf.writing.joined_closures import JoinedClosures, join_points

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
 
+from eurdf.closures.kind import REGISTRY
 from eurdf.format.closure_model import AnyClosure, Hinge, HingeAboutTwo
 from eurdf.linking.frame_names import FrameNames
-from eurdf.mechanism.constraint import CLOSURES, RIGID, Closure, Compliance
-from eurdf.mechanism.frame import Anchor
+from eurdf.mechanism.body import Anchor
+from eurdf.mechanism.constraint import RIGID, Closure, Compliance
 from eurdf.mechanism.pose import Pose
 from eurdf.reading.reporter import YamlReporter
 
@@ -58,7 +59,7 @@ def link_closures(
             )
             continue
         joined[pair] = entry.name
-        kind = CLOSURES.get(entry.type)
+        kind = REGISTRY.get(entry.type)
         if kind is None:
             reporter.report(
                 "closure-type-unknown",

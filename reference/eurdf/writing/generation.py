@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.point import PointClosure
 from eurdf.diagnostics import Diagnostics, enumerated
 from eurdf.format.conventions import VERSION2_0, VERSION2_1, is_own_key
 from eurdf.format.urdf.data import Urdf
@@ -12,8 +14,7 @@ from eurdf.format.yaml_text import Entry, Value, entries_of, lines_of, modeline,
 from eurdf.linking.merging import find_chains
 from eurdf.linking.rereading import reread
 from eurdf.linking.urdf_tree import joint_of
-from eurdf.mechanism.constraint import HingeClosure, PointClosure
-from eurdf.mechanism.frame import Anchor
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.mechanism import Mechanism, Root
 from eurdf.mechanism.spanning_tree import rigid_poses
 from eurdf.writing.closure_choice import choose_types

@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from eurdf.closures.distance import DistanceClosure
+from eurdf.closures.frame import FrameClosure
+from eurdf.closures.point import PointClosure
 from eurdf.convert.mjcf.compiled import Element
 from eurdf.convert.mjcf.read_state import MjcfReading, pose_from, vector
-from eurdf.mechanism.constraint import Closure, Coupling, DistanceClosure, FrameClosure, PointClosure
-from eurdf.mechanism.frame import Anchor
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.body import Anchor
+from eurdf.mechanism.constraint import Closure, Coupling
+from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import Pose
 from eurdf.mechanism.spanning_tree import rigid_roots
 

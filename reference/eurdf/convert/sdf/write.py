@@ -15,6 +15,8 @@ from dataclasses import replace
 
 from lxml import etree
 
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.point import PointClosure
 from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.exceptions import CannotExport
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format, coordinates_at
@@ -22,16 +24,14 @@ from eurdf.convert.inertia import accepted_inertia
 from eurdf.convert.losses import Losses
 from eurdf.convert.meshes import MeshFiles
 from eurdf.convert.names import UniqueNames
-from eurdf.convert.parts import Part
+from eurdf.convert.parts import Part, part_of
 from eurdf.convert.sdf.facts import CLOSURES, EXACT, LEAST, ROWS, VERSION
 from eurdf.convert.steps import AXES, in_series, turn_type
-from eurdf.mechanism.body import Body, Inertia, Shape
-from eurdf.mechanism.constraint import Closure, Coupling, HingeClosure, PointClosure
-from eurdf.mechanism.frame import Anchor
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.body import Anchor, Body, Inertia, Shape
+from eurdf.mechanism.constraint import Closure, Coupling
+from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.joint_types import ROTARY, JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
-from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.writing.xml_text import file_content, representable, rpy_of
 
@@ -210,7 +210,7 @@ class _SdfWriter:
             mimic = replace(mimic, offset=mimic.offset - at[0])
         zero = () if at == joint.type.neutral else at
         ratios = ((index, 1.0, -value) for index, value in enumerate(at))
-        self.parts.append(Part.of(joint, names, ratios, mimic, zero=zero))
+        self.parts.append(part_of(joint, names, ratios, mimic, zero=zero))
 
     # -- relations --------------------------------------------------------------------------------------------------
 

@@ -14,6 +14,8 @@ from itertools import combinations, permutations
 
 import numpy as np
 
+from eurdf.closures.distance import DistanceClosure
+from eurdf.closures.hinge import HingeClosure
 from eurdf.convert.conventions import neighbours, position_gain
 from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format, coordinates_at
@@ -21,18 +23,17 @@ from eurdf.convert.inertia import about_centre, accepted_inertia, has_inertia
 from eurdf.convert.losses import Losses
 from eurdf.convert.meshes import MeshFiles
 from eurdf.convert.names import UniqueNames
-from eurdf.convert.parts import UPRIGHT, Part
+from eurdf.convert.parts import UPRIGHT, Part, part_of
 from eurdf.convert.steps import in_series
 from eurdf.convert.usd.facts import CLOSURES, DAMPING_TIME, EXACT, LEAST, LEAST_MOMENT, ROWS
 from eurdf.convert.usd.joints import KINDS, WHOLE, Freedom, axis_and_frame, freedoms
 from eurdf.diagnostics.extras import install_command
 from eurdf.exceptions import MissingExtra
 from eurdf.mechanism.body import Body, Shape
-from eurdf.mechanism.constraint import Closure, Coupling, DistanceClosure, HingeClosure
-from eurdf.mechanism.joint import Joint, JointProperties
+from eurdf.mechanism.constraint import Closure, Coupling
+from eurdf.mechanism.joint import Joint, JointProperties, Mimic
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
-from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, turn_from_x
 from eurdf.mechanism.spanning_tree import rigid_roots
 
@@ -173,7 +174,7 @@ class _UsdWriter:
             ratios += [(step.velocities[each.index], each.lead or 1.0, 0.0) for each in free]
             host, at, placement = child, IDENTITY, IDENTITY
         if not joint.type.is_fixed:
-            self.parts.append(Part.of(joint, names, ratios, self.mimics.get(joint.name)))
+            self.parts.append(part_of(joint, names, ratios, self.mimics.get(joint.name)))
 
     def _axes(
         self, name: str, joint: Joint, kind: str, path: str, own: Sequence[float], freedoms: Sequence[Freedom]
