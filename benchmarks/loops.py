@@ -15,8 +15,8 @@ import pinocchio as pin
 
 import eurdf
 from benchmarks.interleaved import peak_memory, timed
+from eurdf.closures.point import PointClosure
 from eurdf.mechanism.body import Body
-from eurdf.mechanism.constraint import PointClosure
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType

@@ -12,7 +12,6 @@ import pinocchio as pin
 
 import eurdf
 from eurdf.mechanism.body import Body
-from eurdf.mechanism.constraint import FrameClosure, PointClosure
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
@@ -58,7 +57,7 @@ def mujoco_model(robot: eurdf.Robot, step: float) -> tuple[mujoco.MjModel, mujoc
     for closure in mechanism.closures:
         for end, anchor in (("a", closure.a), ("b", closure.b)):
             ET.SubElement(bodies[anchor.body], "site", {"name": f"{closure.name}/{end}", **_at(anchor.pose)})
-        kind = {PointClosure: "connect", FrameClosure: "weld"}[type(closure)]
+        kind = {"3d": "connect", "6d": "weld"}[closure.type]
         ET.SubElement(equality, kind, site1=f"{closure.name}/a", site2=f"{closure.name}/b")
     model = mujoco.MjModel.from_xml_string(ET.tostring(top, "unicode"))
     return model, mujoco.MjData(model)

@@ -23,10 +23,6 @@ from eurdf.kinematics.analysis import Motion as Motion
 from eurdf.kinematics.analysis import analyze as analyze
 from eurdf.kinematics.assembly import Assembly as Assembly
 from eurdf.kinematics.assembly import assemble as assemble
-from eurdf.kinematics.differential_inverse_kinematics import FrameVelocity as FrameVelocity
-from eurdf.kinematics.differential_inverse_kinematics import (
-    differential_inverse_kinematics as differential_inverse_kinematics,
-)
 from eurdf.kinematics.dynamics import ForwardDynamics as ForwardDynamics
 from eurdf.kinematics.dynamics import InverseDynamics as InverseDynamics
 from eurdf.kinematics.dynamics import achievable_acceleration as achievable_acceleration
@@ -43,22 +39,26 @@ from eurdf.kinematics.exceptions import StepTooLongWarning as StepTooLongWarning
 from eurdf.kinematics.exceptions import TooFar as TooFar
 from eurdf.kinematics.exceptions import UnderactuatedMotion as UnderactuatedMotion
 from eurdf.kinematics.exceptions import UndeterminedMotion as UndeterminedMotion
-from eurdf.kinematics.forward_kinematics import forward_kinematics as forward_kinematics
-from eurdf.kinematics.inverse_kinematics import FrameError as FrameError
-from eurdf.kinematics.inverse_kinematics import InverseKinematics as InverseKinematics
-from eurdf.kinematics.inverse_kinematics import inverse_kinematics as inverse_kinematics
+from eurdf.kinematics.forward import forward_kinematics as forward_kinematics
+from eurdf.kinematics.inverse import FrameError as FrameError
+from eurdf.kinematics.inverse import InverseKinematics as InverseKinematics
+from eurdf.kinematics.inverse import inverse_kinematics as inverse_kinematics
 from eurdf.kinematics.locking import LockedRobot as LockedRobot
 from eurdf.kinematics.locking import lock as lock
 from eurdf.kinematics.mass_matrix import mass_matrix as mass_matrix
 from eurdf.kinematics.opening import Opening as Opening
 from eurdf.kinematics.position_limit import JointAtLimit as JointAtLimit
-from eurdf.kinematics.projection import project_acceleration as project_acceleration
-from eurdf.kinematics.projection import project_configuration as project_configuration
-from eurdf.kinematics.projection import project_velocity as project_velocity
+from eurdf.kinematics.project import project_acceleration as project_acceleration
+from eurdf.kinematics.project import project_configuration as project_configuration
+from eurdf.kinematics.project import project_velocity as project_velocity
 from eurdf.kinematics.residual import closure_openings as closure_openings
 from eurdf.kinematics.residual import residual as residual
 from eurdf.kinematics.residual import residual_and_jacobian as residual_and_jacobian
+from eurdf.kinematics.sensitivity import FrameVelocity as FrameVelocity
 from eurdf.kinematics.sensitivity import actuated_jacobian as actuated_jacobian
+from eurdf.kinematics.sensitivity import (
+    differential_inverse_kinematics as differential_inverse_kinematics,
+)
 from eurdf.kinematics.sensitivity import dq_dq_actuated as dq_dq_actuated
 from eurdf.kinematics.simulation import Simulation as Simulation
 from eurdf.kinematics.simulation import simulate as simulate

@@ -5,14 +5,14 @@ Each function takes and returns arrays whose first axis has B elements, and equa
 bounded, since elements are worked on in blocks; blocks can go to threads, or to any `concurrent.futures.Executor`.
 """
 
-from eurdf.kinematics.batch.forward_kinematics import ForwardKinematics as ForwardKinematics
-from eurdf.kinematics.batch.forward_kinematics import ForwardKinematicsReason as ForwardKinematicsReason
-from eurdf.kinematics.batch.forward_kinematics import forward_kinematics as forward_kinematics
-from eurdf.kinematics.batch.inverse_kinematics import InverseKinematics as InverseKinematics
-from eurdf.kinematics.batch.inverse_kinematics import inverse_kinematics as inverse_kinematics
-from eurdf.kinematics.batch.projection import Projection as Projection
-from eurdf.kinematics.batch.projection import project_configuration as project_configuration
-from eurdf.kinematics.batch.residual import residual as residual
-from eurdf.kinematics.batch.residual import residual_and_jacobian as residual_and_jacobian
-from eurdf.kinematics.batch.sensitivity import ActuatedJacobian as ActuatedJacobian
-from eurdf.kinematics.batch.sensitivity import actuated_jacobian as actuated_jacobian
+from eurdf.kinematics.batch import ActuatedJacobian as ActuatedJacobian
+from eurdf.kinematics.batch import ForwardKinematics as ForwardKinematics
+from eurdf.kinematics.batch import ForwardKinematicsReason as ForwardKinematicsReason
+from eurdf.kinematics.batch import InverseKinematics as InverseKinematics
+from eurdf.kinematics.batch import Projection as Projection
+from eurdf.kinematics.batch import actuated_jacobian as actuated_jacobian
+from eurdf.kinematics.batch import forward_kinematics as forward_kinematics
+from eurdf.kinematics.batch import inverse_kinematics as inverse_kinematics
+from eurdf.kinematics.batch import project_configuration as project_configuration
+from eurdf.kinematics.batch import residual as residual
+from eurdf.kinematics.batch import residual_and_jacobian as residual_and_jacobian

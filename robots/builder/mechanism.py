@@ -8,15 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from eurdf.closures.distance import DistanceClosure
+from eurdf.closures.frame import FrameClosure
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.point import PointClosure
 from eurdf.mechanism.body import Body, Inertia, Shape
-from eurdf.mechanism.constraint import (
-    Closure,
-    Coupling,
-    DistanceClosure,
-    FrameClosure,
-    HingeClosure,
-    PointClosure,
-)
+from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType

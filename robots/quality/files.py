@@ -11,8 +11,10 @@ from dataclasses import replace
 from pathlib import Path
 
 import eurdf
+from eurdf.closures.frame import FrameClosure
+from eurdf.closures.point import PointClosure
 from eurdf.linking.robot_files import read_robot
-from eurdf.mechanism.constraint import RIGID, Closure, FrameClosure, PointClosure
+from eurdf.mechanism.constraint import RIGID, Closure
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 from eurdf.mechanism.same_model import differences, with_universal_joints

@@ -15,8 +15,10 @@ import numpy as np
 import pinocchio as pin
 
 import eurdf
+from eurdf.closures.distance import DistanceClosure
+from eurdf.closures.hinge import HingeClosure
 from eurdf.kinematics.array import Vector
-from eurdf.mechanism.constraint import Closure, Coupling, DistanceClosure, HingeClosure
+from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.coordinates import Slot, slots

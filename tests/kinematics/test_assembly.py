@@ -17,9 +17,7 @@ from hypothesis import strategies as st
 
 import eurdf
 from eurdf.kinematics.assembly import assemble
-from eurdf.kinematics.evaluation import evaluations
-from eurdf.kinematics.loop import independent_groups
-from eurdf.kinematics.residual import closure_openings, residual, residual_and_jacobian
+from eurdf.kinematics.residual import residual
 from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.pose import Pose
 from support.linkage import (
@@ -34,7 +32,6 @@ from support.linkage import (
     sarrus,
     slider_crank,
     spherical_four_bar,
-    stewart,
     translation,
 )
 from support.wild import FACTS, WILD, needs_wild
@@ -326,41 +323,6 @@ def test_large_robot_closes_without_pinocchio_data(monkeypatch: pytest.MonkeyPat
     assembly = assemble(linkage)
     assert assembly.converged
     assert assembly.iterations < 15
-
-
-@pytest.mark.parametrize("hold", [False, True])
-@pytest.mark.parametrize(
-    "build",
-    [
-        lambda: eurdf.load("digit_leg", root="floating", geometry=False),
-        lambda: eurdf.load("four_bar", geometry=False),
-        lambda: n_bar(5, "3d"),
-        stewart,
-        scissors,
-    ],
-)
-def test_evaluations_agree_with_residual_and_jacobian(build: Callable[[], Any], hold: bool) -> None:
-    robot = build()
-    model = robot.model
-    random = np.random.default_rng(3)
-    held = range(model.nvs[1] if hold else 0)
-    groups = independent_groups(robot, held)
-    r, K = residual_and_jacobian(robot, pin.neutral(model))
-    row_scale, velocity_scale = random.uniform(0.5, 2.0, len(r)), random.uniform(0.5, 2.0, model.nv)
-    for _ in range(3):
-        made = evaluations(robot, groups, row_scale, velocity_scale)
-        q = pin.integrate(model, pin.neutral(model), random.uniform(-2.0, 2.0, model.nv))
-        r, K = residual_and_jacobian(robot, q)
-        openings = closure_openings(robot, q)
-        for group, evaluation in zip(groups, made, strict=True):
-            assert not set(held) & set(group.velocities.tolist())
-            np.testing.assert_allclose(evaluation.residual(q), r[group.rows], atol=1e-12)
-            block = row_scale[group.rows, None] * K[np.ix_(group.rows, group.velocities)]
-            np.testing.assert_allclose(
-                evaluation.jacobian(), block * velocity_scale[group.velocities], atol=1e-12, rtol=1e-12
-            )
-            expected = [(openings[index].position, openings[index].angle) for index in group.closures]
-            np.testing.assert_allclose(evaluation.openings(), expected, atol=1e-12)
 
 
 def test_robot_with_other_closures_is_assembled_anew() -> None:

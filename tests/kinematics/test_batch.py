@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 
 import eurdf
 from eurdf.collection import collection_names
+from eurdf.kinematics.evaluate import many_tree
 from eurdf.pinocchio.robot import Robot, build_robot
 from support.actuated import robot_called
 from support.described import body, load, revolute
@@ -25,6 +26,7 @@ from support.mechanisms import closed_tree
 from support.plain_urdf import robot as urdf
 
 EQUAL = 1e-9
+seeds = st.integers(0, 2**32 - 1)
 
 #: How many elements: one, few as Pinocchio answers them, and many as NumPy does.
 COUNTS = (1, 3, 40)
@@ -396,6 +398,23 @@ def test_error_in_a_block_is_raised() -> None:
 
     with pytest.raises(RuntimeError, match="enough"):
         eurdf.batch.forward_kinematics(robot, values, block=2, threads=2, progress=interrupt)
+
+
+# --- the tree --------------------------------------------------------------------------------------------------------
+
+
+@settings(max_examples=25, deadline=None)
+@given(seed=seeds, size=st.sampled_from([1e-9, 1e-4, 0.02, 0.5, 2.0]))
+def test_configurations_of_every_joint_move_as_in_pinocchio(seed: int, size: float) -> None:
+    random = np.random.default_rng(seed)
+    robot, q = closed_tree(random, (), "floating")
+    tree, model = many_tree(robot), robot.model
+    v = random.uniform(-size, size, model.nv)
+    other = pin.integrate(model, q, v)
+    np.testing.assert_allclose(tree.integrate(q[None], v[None])[0], pin.normalize(model, other), atol=EQUAL)
+    np.testing.assert_allclose(tree.difference(q[None], other[None])[0], pin.difference(model, q, other), atol=EQUAL)
+    by_pinocchio = pin.dDifference(model, q, other, pin.ARG1)
+    np.testing.assert_allclose(tree.difference_derivative(q[None], other[None])[0], by_pinocchio, atol=1e-8)
 
 
 # --- errors ----------------------------------------------------------------------------------------------------------

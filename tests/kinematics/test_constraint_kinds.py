@@ -17,32 +17,26 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import eurdf
+from eurdf.closures.distance import DistanceClosure
+from eurdf.closures.frame import FrameClosure
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.kind import REGISTRY
+from eurdf.closures.point import PointClosure
+from eurdf.closures.se3 import plane_across
 from eurdf.commands.robot_info import robot_info
-from eurdf.kinematics.constraints import KINDS
-from eurdf.kinematics.constraints.vector import plane_across
 from eurdf.kinematics.residual import acceleration_drift
-from eurdf.mechanism.constraint import (
-    Closure,
-    Constraint,
-    Coupling,
-    DistanceClosure,
-    FrameClosure,
-    HingeClosure,
-    PointClosure,
-)
+from eurdf.mechanism.constraint import Closure, Constraint, Coupling
 from eurdf.mechanism.frame import Anchor
-from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import Robot, build_robot
-from support import by_hand
 from support.described import LIMITED, body, load, revolute
+from support.every_kind import KIND_NAMES, some_robot
 from support.linkage import Linkage, X, loop, pose_of
 from support.plain_urdf import joint_element
 from support.plain_urdf import robot as urdf
 
 seeds = st.integers(0, 2**32 - 1)
 NEW = ("hinge", "distance", "coupling")
-KIND_NAMES = ("3d", "6d", "hinge", "distance", "coupling")
 
 
 def at(body: str, *xyz: float) -> Anchor:
@@ -163,33 +157,6 @@ SHARED = {"hinge": ("j0", "j1", "j2"), "distance": ("j0", "j2"), "coupling": ("j
 # --- derivatives -----------------------------------------------------------------------------------------------------
 
 
-def some_constraint(
-    kind: str, index: int, random: np.random.Generator, names: Sequence[str], joints: Sequence[str]
-) -> Any:
-    name = f"{kind}{index}"
-    if kind == "coupling":
-        chosen = random.choice(list(joints), 3, replace=False).tolist()
-        return Coupling(name, tuple((each, float(random.uniform(0.5, 3.0))) for each in chosen), 0.3)
-    a, b = (Anchor(each, by_hand.some_pose(random)) for each in random.choice(list(names), 2, replace=False).tolist())
-    if kind == "hinge":
-        axes = random.uniform(-2.0, 2.0, (2, 3)).tolist()
-        return HingeClosure(name, a, b, (tuple(axes[0]), tuple(axes[1])))
-    if kind == "distance":
-        return DistanceClosure(name, a, b, 0.7)
-    return {"3d": PointClosure, "6d": FrameClosure}[kind](name, a, b)
-
-
-def some_robot(random: np.random.Generator, kinds: Sequence[str]) -> Robot:
-    mechanism = by_hand.tree_of_all_types(random)
-    single = {JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC, JointType.HELICAL}
-    joints = [joint.name for joint in mechanism.joints if joint.type in single]
-    names = [each.name for each in mechanism.bodies]
-    found = [some_constraint(kind, index, random, names, joints) for index, kind in enumerate(kinds)]
-    closures = tuple(each for each in found if isinstance(each, Closure))
-    couplings = tuple(each for each in found if isinstance(each, Coupling))
-    return build_robot(replace(mechanism, closures=closures, couplings=couplings), geometry=False)
-
-
 def far_from_half_a_turn(robot: Robot, q: Any) -> bool:
     """Where two frames, or two axes, are half a turn apart, the rotation between them has no derivative."""
     closures = {closure.name for closure in robot.mechanism.closures}
@@ -224,10 +191,11 @@ def test_jacobian_and_drift_are_derivatives_of_the_residual(kinds: Sequence[str]
     np.testing.assert_allclose(drift, differences, rtol=0.0, atol=1e-6 * np.abs(differences).max(initial=1.0))
 
 
-@pytest.mark.parametrize("data", KINDS, ids=lambda data: data.type)
-def test_rows_of_each_kind_have_units(data: type[Constraint]) -> None:
-    assert KINDS[data].data is data
-    assert len(data.units) == {"3d": 3, "6d": 6, "hinge": 5, "distance": 1, "coupling": 1}[data.type]
+@pytest.mark.parametrize("type_", REGISTRY)
+def test_rows_of_each_kind_have_units(type_: str) -> None:
+    kind = REGISTRY[type_]
+    assert kind.type == type_
+    assert len(kind.units) == {"3d": 3, "6d": 6, "hinge": 5, "distance": 1}[type_]
 
 
 def hinged(turn: Any) -> Linkage:
@@ -276,47 +244,20 @@ def test_distance_at_one_point_has_a_direction() -> None:
 REFERENCE = Path(eurdf.__file__).parent
 
 
-#: What states, suggests, reads or writes a constraint by its kind; and the batch, which evaluates each kind at many
-#: configurations.
-STATING = (
-    "advice/",
-    "loading.py",
-    "convert/",
-    "format/",
-    "importing/",
-    "linking/",
-    "kinematics/batch/",
-    "transmissions/c_source.py",
-    "viewing/live_robot.py",
-    "writing/",
-)
-
-
-def files_with(pattern: str, folder: str = "") -> set[str]:
-    """The modules below a folder of the package in whose code a pattern occurs."""
+def files_with(pattern: str) -> set[str]:
+    """The modules of the package in whose code a pattern occurs."""
     return {
         path.relative_to(REFERENCE).as_posix()
-        for path in (REFERENCE / folder).rglob("*.py")
+        for path in REFERENCE.rglob("*.py")
         if re.search(pattern, path.read_text(encoding="utf-8"))
     }
 
 
-@pytest.mark.parametrize("data", [HingeClosure, DistanceClosure, Coupling], ids=lambda data: data.type)
-def test_new_kind_is_one_data_class_and_one_file(data: type[Constraint]) -> None:
-    known = {path for path in files_with(rf"\b{data.__name__}\b") if not path.startswith(STATING)}
-    # The mechanism has a field for couplings, which join no frames; Pinocchio can make a hinge of its own constraints.
-    assert known - {"mechanism/mechanism.py", "pinocchio/constraint.py"} == {
-        "mechanism/constraint.py",
-        f"kinematics/constraints/{data.type}.py",
-    }
-
-
 def test_no_function_of_kinematics_asks_for_a_kind() -> None:
-    kinds = "|".join(data.__name__ for data in KINDS)
-    asking = files_with(rf"""\b({kinds})\b|["'][36]d["']|residualSize|CONTACT_""", "kinematics")
-    asking = {path for path in asking if not path.startswith(STATING)}
-    assert asking == {f"kinematics/constraints/{name}.py" for name in ("point", "frame", *NEW)}
-    by_pinocchio = {f"pinocchio/{name}.py" for name in ("constraint", "constrained_dynamics", "frame_pairs")}
+    kinds = "|".join(kind.__name__ for kind in REGISTRY.values())
+    asking = files_with(rf"""\b({kinds})\b|["'][36]d["']|residualSize|CONTACT_""")
+    assert {path for path in asking if path.startswith("kinematics/")} <= {"kinematics/batch/constraints.py"}
+    by_pinocchio = {f"pinocchio/{name}.py" for name in ("constraint", "constrained_dynamics", "tree_few")}
     assert files_with("CONTACT_[36]D") == by_pinocchio
 
 

@@ -14,12 +14,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
+from eurdf.closures.hinge import HingeClosure
 from eurdf.commands.main import main
 from eurdf.commands.robot_info import robot_info
 from eurdf.kinematics.analysis import Analysis, analyze
 from eurdf.kinematics.quadratic_forms import common_roots
 from eurdf.kinematics.residual import acceleration_drift, residual_and_jacobian
-from eurdf.mechanism.constraint import HingeClosure
 from support.described import load
 from support.hostile import four_bars
 from support.linkage import (

@@ -15,7 +15,7 @@ import eurdf
 from eurdf.exceptions import EurdfError
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.exceptions import DependentActuators, NotClosable, TooFar
-from eurdf.kinematics.forward_kinematics import forward_kinematics
+from eurdf.kinematics.forward import forward_kinematics
 from eurdf.kinematics.residual import residual, residual_and_jacobian
 from eurdf.kinematics.sensitivity import actuated_jacobian, dq_dq_actuated
 from eurdf.kinematics.split import split_configuration

@@ -12,11 +12,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
+from eurdf.closures.hinge import HingeClosure
 from eurdf.kinematics import forward_solver
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.equation_of_motion import EquationOfMotion
 from eurdf.kinematics.independence import INDEPENDENT, Independence
-from eurdf.mechanism.constraint import HingeClosure
 from support.linkage import Y, Z, loop, weighted
 
 seeds = st.integers(0, 2**32 - 1)

@@ -13,8 +13,8 @@ from scipy.optimize import nnls
 
 from eurdf.kinematics.assembly import assemble, start
 from eurdf.kinematics.bounded_step import bounded_step
-from eurdf.kinematics.forward_kinematics import forward_kinematics
-from eurdf.kinematics.inverse_kinematics import inverse_kinematics
+from eurdf.kinematics.forward import forward_kinematics
+from eurdf.kinematics.inverse import inverse_kinematics
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.residual import residual
 from eurdf.kinematics.sensitivity import actuated_jacobian
@@ -215,7 +215,7 @@ def test_folded_start_is_not_the_reason() -> None:
 
 
 def test_exhausted_steps_are_reported(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("eurdf.kinematics.inverse_kinematics._MOST_STEPS", 1)
+    monkeypatch.setattr("eurdf.kinematics.inverse_search.MOST_STEPS", 1)
     answer = inverse_kinematics(arm(1.0, 0.7), {"end": [0.0, 1.2, 0.0]}, np.array([0.3, 0.8]), restarts=0)
     assert (answer.converged, answer.reason) == (False, "steps")
 

@@ -13,8 +13,9 @@ import pytest
 import eurdf
 from eurdf.commands.robot_info import robot_info
 from eurdf.format.urdf.read import JOINT_LIMIT
-from eurdf.kinematics.assembly import Assembler
+from eurdf.kinematics.evaluate import frames
 from eurdf.kinematics.loop import Loop, find_loops, independent_groups, joints_of_loops
+from eurdf.kinematics.problem import Problem
 from eurdf.linking.link import ROW_LIMIT, VELOCITY_LIMIT
 from eurdf.pinocchio.ancestry import Ancestry
 from support.hostile import VERSION2, chain, four_bars, joint, numbered, robot, shared, star
@@ -78,7 +79,7 @@ def test_kinematics_of_hundred_four_bars_needs_small_data_only(tmp_path: Path, m
     there = eurdf.forward_kinematics(loaded, q[loaded.actuation.idx_q] + 0.01, q)
     np.testing.assert_allclose(eurdf.residual(loaded, there), 0.0, atol=1e-10)
     frame = loaded.mechanism.bodies[-1].name
-    target = loaded.tree.frames([frame]).memory().placements(there)[0].translation
+    target = frames(loaded, [frame], few=True).at(there[None]).position[0, 0]
     assert eurdf.inverse_kinematics(loaded, {frame: np.array(target)}, q).converged
     eurdf.actuated_jacobian(loaded, there, frame)
     assert max(made) <= 60
@@ -141,7 +142,7 @@ def test_loops_sharing_too_many_joints_are_skipped(tmp_path: Path, monkeypatch: 
 
 
 def test_skipped_check_is_no_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("eurdf.kinematics.assembly._MOST_WORK", 100.0)
+    monkeypatch.setattr("eurdf.kinematics.assembly.MOST_WORK", 100.0)
     path = write(tmp_path, *four_bars(2, in_series=True))
     assert [found.code for found in eurdf.check(path).diagnostics] == ["x-loops-not-checked"]
     loaded = eurdf.load(path, geometry=False)
@@ -150,14 +151,16 @@ def test_skipped_check_is_no_error(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 
 def test_large_group_does_not_keep_others_open(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("eurdf.kinematics.assembly._MOST_VELOCITIES_AT_ONCE", 0)
+    monkeypatch.setattr("eurdf.kinematics.problem.MOST_VELOCITIES_AT_ONCE", 0)
     # The first three loops share their joints with one around them.
     description, urdf = four_bars(5, in_series=True)
     around = (
         "- {name: around, type: 3d, frames: [{link: ground, xyz: [0.5, 0, 0]}, {link: rocker2, xyz: [0.2, 0, 0]}]}\n"
     )
     loaded = eurdf.load(write(tmp_path, description + around, urdf), geometry=False)
-    monkeypatch.setattr("eurdf.kinematics.assembly._feasible", lambda evaluation: len(evaluation.group.rows) < 6)
+    # A step of the large group exceeds the bound, and all steps of the small ones do not.
+    monkeypatch.setattr("eurdf.kinematics.problem._WORK_OF_A_CLOSURE", 1.0)
+    monkeypatch.setattr("eurdf.kinematics.assembly.MOST_WORK", 900.0)
     assembly = eurdf.assemble(loaded)
     assert assembly.reason == "not decided"
     assert [opening.name for opening in assembly.open if not opening.is_open] == ["loop3", "loop4"]
@@ -237,8 +240,8 @@ def test_search_that_is_cut_short_decides_nothing(tmp_path: Path, monkeypatch: p
     whole = eurdf.assemble(loaded)
     assert whole.reason == "not closed"
     # Enough for the first descents, but not for all restarts.
-    work = sum(each.work for each in Assembler(loaded).evaluations)
-    monkeypatch.setattr("eurdf.kinematics.assembly._MOST_WORK", 65 * work)
+    work = Problem(loaded).work
+    monkeypatch.setattr("eurdf.kinematics.assembly.MOST_WORK", 65 * work)
     cut = eurdf.assemble(loaded)
     assert 10 < cut.iterations < whole.iterations
     assert cut.reason == "not decided"

@@ -12,7 +12,7 @@ import pytest
 from eurdf.exceptions import EurdfError
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.exceptions import NotClosable
-from eurdf.kinematics.projection import project_acceleration, project_configuration, project_velocity
+from eurdf.kinematics.project import project_acceleration, project_configuration, project_velocity
 from eurdf.kinematics.residual import acceleration_drift, residual, residual_and_jacobian
 from support.actuated import ROBOTS, closed_near, robot_called
 from support.linkage import (

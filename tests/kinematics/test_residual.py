@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 
 import eurdf
 from eurdf.kinematics.analysis import analyze
+from eurdf.kinematics.evaluate import evaluator, few_tree, many_tree
 from eurdf.kinematics.residual import closure_openings, openings_once, residual, residual_and_jacobian
-from eurdf.pinocchio.frame_pairs import FramePairs, PathMemory
+from support.every_kind import KIND_NAMES, some_robot
 from support.linkage import (
     JOINTS,
     Linkage,
@@ -55,37 +56,54 @@ def test_jacobian_is_derivative_in_any_tree(seed: int, kinds: list[str]) -> None
 
 @given(seed=seeds, kinds=st.lists(st.sampled_from(sorted(JOINTS)), min_size=3, max_size=9))
 @settings(max_examples=50, deadline=None)
-def test_models_of_parts_equal_joint_by_joint(seed: int, kinds: list[str]) -> None:
+def test_few_equal_many_in_any_tree(seed: int, kinds: list[str]) -> None:
     random = np.random.default_rng(seed)
-    check_parts(branching([JOINTS[kind]() for kind in kinds], random), random)
+    check_few_equal_many(branching([JOINTS[kind]() for kind in kinds], random), random)
+
+
+@given(seed=seeds)
+@settings(max_examples=20, deadline=None)
+def test_few_equal_many_for_every_kind_of_joint_and_constraint(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    check_few_equal_many(some_robot(random, KIND_NAMES * 2), random)
 
 
 @pytest.mark.parametrize("name", ["digit_2legs", "kangaroo_2legs", "stewart_platform", "bennett"])
-def test_several_models_equal_joint_by_joint(name: str) -> None:
+def test_loops_without_common_joints_have_small_models(name: str) -> None:
     robot = eurdf.load(name, geometry=False)
-    random = np.random.default_rng(0)
-    pairs = check_parts(robot, random)
-    assert sum(len(part.which) for part in pairs.parts) == len(robot.constraints)
-    assert all(part.coordinates is not None and part.pairs.model.nv <= 60 for part in pairs.parts)
-    assert (len(pairs.parts) > 1) == name.endswith("_2legs")
+    check_few_equal_many(robot, np.random.default_rng(0))
+    bundles = evaluator(robot, few=True)._pairs._bundles
+    assert sum(len(bundle.which) for bundle in bundles) == len(robot.constraints)
+    assert all(bundle._model.nv <= 60 for bundle in bundles)
+    assert (len(bundles) > 1) == name.endswith("_2legs")
 
 
-def check_parts(linkage: Any, random: np.random.Generator) -> FramePairs:
-    q, v = somewhere(linkage.model, random), random.uniform(-1.0, 1.0, linkage.model.nv)
-    wanted = np.flatnonzero(random.random(linkage.model.nv) < 0.8)
-    pairs: FramePairs = linkage.tree.pairs([found.anchors for found in linkage.constraints], wanted)
-    parts, joints = pairs.memory(), PathMemory(pairs)
-    for one, other in zip(parts.placements(q), joints.placements(q), strict=True):
-        np.testing.assert_allclose(one.homogeneous, other.homogeneous, rtol=0.0, atol=1e-12)
-    which = random.permutation(len(linkage.constraints))[: random.integers(1, len(linkage.constraints) + 1)].tolist()
-    rows = random.uniform(-1.0, 1.0, (len(which), 4, 6))
-    expected = joints.jacobian(rows, which)
-    assert expected.shape == (4 * len(which), len(wanted))
-    np.testing.assert_allclose(parts.jacobian(rows, which), expected, rtol=0.0, atol=1e-11)
-    for found, other in zip(parts.motions(q, v)[1:], joints.motions(q, v)[1:], strict=True):
-        for one, two in zip(found, other, strict=True):
-            np.testing.assert_allclose(one.vector, two.vector, rtol=0.0, atol=1e-10)
-    return pairs
+def check_few_equal_many(robot: Any, random: np.random.Generator) -> None:
+    """Residual, K, drift and openings of some constraints, and the tree, at three configurations."""
+    tree, few, many = robot.tree, few_tree(robot), many_tree(robot)
+    start = np.tile(tree.neutral(), (3, 1))
+    q = few.integrate(start, random.uniform(-1.0, 1.0, (3, tree.nv)))
+    v, w = random.uniform(-1.0, 1.0, (2, 3, tree.nv))
+    some = np.flatnonzero(random.random(tree.nv) < 0.8)
+    chosen = random.permutation(len(robot.constraints))[: random.integers(1, len(robot.constraints) + 1)].tolist()
+    one, other = (evaluator(robot, chosen, some, few=is_few) for is_few in (True, False))
+    at, at_other = one.at(q), one.at(q[:1])  # the one after the other
+    near(one.residual(at), other.residual(other.at(q)))
+    near(one.residual(at_other), other.residual(other.at(q[:1])))
+    near(one.jacobian(at), other.jacobian(other.at(q)))
+    near(one.drift(q, v), other.drift(q, v))
+    for found, expected in zip(one.openings(at), other.openings(other.at(q)), strict=True):
+        near(found, expected)
+    moved = few.integrate(q, w)
+    near(many.integrate(q, w), moved)
+    for function in ("difference", "difference_derivative"):
+        near(getattr(many, function)(q, moved), getattr(few, function)(q, moved))
+    near(many.integrate_derivative(q, w), few.integrate_derivative(q, w))
+    near(many.normalized(2.0 * q), few.normalized(2.0 * q))
+
+
+def near(found: Any, expected: Any) -> None:
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-10 * np.abs(expected).max(initial=1.0))
 
 
 @pytest.mark.parametrize("name", ["digit_leg", "four_bar"])

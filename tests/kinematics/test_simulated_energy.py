@@ -11,7 +11,7 @@ import pytest
 
 import eurdf
 from eurdf.kinematics.exceptions import StepTooLongWarning
-from eurdf.kinematics.projection import project_velocity
+from eurdf.kinematics.project import project_velocity
 from eurdf.kinematics.simulation import simulate
 
 

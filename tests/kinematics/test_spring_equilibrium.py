@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import eurdf
-from eurdf.kinematics.assembly import Assembler
+from eurdf.kinematics.assembly import close
 from eurdf.kinematics.split import split_configuration
 from eurdf.kinematics.spring_equilibrium import spring_equilibrium
 from support.described import load
@@ -126,8 +126,7 @@ def test_springs_that_loops_let_rest_are_kept_at_rest(name: str, monkeypatch: py
     def refuse(*_: Any) -> None:
         raise AssertionError("springs were brought into equilibrium afterwards, which takes long")
 
-    for module in ("eurdf.kinematics.forward_kinematics", "eurdf.kinematics.batch.forward_kinematics"):
-        monkeypatch.setattr(f"{module}.spring_equilibrium", refuse)
+    monkeypatch.setattr("eurdf.kinematics.forward.spring_equilibrium", refuse)
     found = eurdf.batch.forward_kinematics(robot, values, q0)
     assert found.converged.all()
     for value, q in zip(values, found.q, strict=True):
@@ -147,7 +146,7 @@ def test_batch_agrees_where_loops_let_only_some_springs_rest(monkeypatch: pytest
         afterwards.append(given)
         return spring_equilibrium(*given)
 
-    monkeypatch.setattr("eurdf.kinematics.batch.forward_kinematics.spring_equilibrium", counted)
+    monkeypatch.setattr("eurdf.kinematics.forward.spring_equilibrium", counted)
     found = eurdf.batch.forward_kinematics(robot, values, q0)
     assert found.converged.all()
     assert 0 < len(afterwards) < len(values)
@@ -170,13 +169,13 @@ def test_spring_of_a_mimic_joint_that_stands_still_acts_on_nothing() -> None:
 
 def test_rod_that_spins_does_not_delay_the_springs(monkeypatch: pytest.MonkeyPatch) -> None:
     robot, steps = eurdf.load("cassie_leg", geometry=False), []
-    closed = Assembler.closed
 
-    def counted(assembler: Assembler, q: Any) -> Any:
+    def counted(problem: Any, q: Any, tolerance: float) -> Any:
         steps.append(q)
-        return closed(assembler, q)
+        return close(problem, q, tolerance)
 
-    monkeypatch.setattr(Assembler, "closed", counted)
+    for module in ("path", "spring_equilibrium"):
+        monkeypatch.setattr(f"eurdf.kinematics.{module}.close", counted)
     q = eurdf.forward_kinematics(robot, [0.05] * 5)
     assert eurdf.spring_energy(robot, q) == pytest.approx(0.0, abs=1e-12)
     assert len(steps) < 20

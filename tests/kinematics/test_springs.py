@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import eurdf
-from eurdf.kinematics.projection import project_velocity
+from eurdf.kinematics.project import project_velocity
 from eurdf.mechanism.joint import JointProperties
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.configuration import configuration_vector

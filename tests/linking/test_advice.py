@@ -17,11 +17,13 @@ from lxml import etree
 
 import eurdf
 from eurdf.advice.actuation import advise_on_actuation
+from eurdf.closures.frame import FrameClosure
+from eurdf.closures.hinge import HingeClosure
 from eurdf.collection import collection_names
 from eurdf.diagnostics import Diagnostic, Diagnostics
-from eurdf.kinematics.constraint_stack import all_constraints
+from eurdf.kinematics.evaluate import evaluator
 from eurdf.linking.robot_files import read_robot
-from eurdf.mechanism.constraint import Closure, FrameClosure, HingeClosure
+from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.pose import Vector3
 from eurdf.pinocchio.robot import build_robot
 
@@ -155,8 +157,8 @@ def _axis_of_b_along_z_of_a(robot: eurdf.Robot, closure: Closure) -> Vector3:
     """The direction in B of the z axis of A, where the loops are closed."""
     end = replace(robot.mechanism, closures=(FrameClosure(closure.name, closure.a, closure.b),))
     trial = build_robot(end, geometry=False)
-    ((placement,),) = [all_constraints(trial).at(eurdf.assemble(robot).q, all_constraints(trial).memory()).placements]
-    return tuple(placement.rotation.T[:, 2].tolist())
+    (turn,) = evaluator(trial, few=True).at(eurdf.assemble(robot).q[None]).poses.rotation[0]
+    return tuple(turn.T[:, 2].tolist())
 
 
 def test_dependent_actuators_are_named_if_no_closure_locks(advice) -> None:

@@ -17,13 +17,14 @@ import numpy as np
 import pytest
 
 import eurdf
+from eurdf.closures.kind import REGISTRY
 from eurdf.convert.common_losses import UNKNOWN
 from eurdf.convert.export_format import ExportInput, export_format
 from eurdf.convert.formats import EXPORTS
 from eurdf.convert.hinges import with_hinges
 from eurdf.convert.losses import Losses
 from eurdf.mechanism.body import Inertia, Shape
-from eurdf.mechanism.constraint import CLOSURES, Closure, Compliance, Coupling
+from eurdf.mechanism.constraint import Closure, Compliance, Coupling
 from eurdf.mechanism.frame import Frame
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
@@ -188,7 +189,7 @@ def test_every_kind_of_loss_occurs() -> None:
 def test_every_type_of_joint_and_closure_is_stated_or_lost(name: str) -> None:
     format_ = export_format(name)
     known = {*format_.exact, *(kind.concept for kind in format_.rows)}
-    assert {f"{kind} joint" for kind in JointType} | {f"{kind} closure" for kind in CLOSURES} <= known
+    assert {f"{kind} joint" for kind in JointType} | {f"{kind} closure" for kind in REGISTRY} <= known
 
 
 @pytest.mark.parametrize(

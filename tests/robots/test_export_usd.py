@@ -14,8 +14,9 @@ import pinocchio as pin
 import pytest
 
 import eurdf
+from eurdf.closures.hinge import HingeClosure
 from eurdf.commands.main import main
-from eurdf.mechanism.constraint import Coupling, HingeClosure
+from eurdf.mechanism.constraint import Coupling
 from eurdf.mechanism.joint_types import JointType
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand

@@ -12,7 +12,9 @@ import numpy as np
 import pytest
 
 import eurdf
-from eurdf.mechanism.constraint import Coupling, DistanceClosure, PointClosure
+from eurdf.closures.distance import DistanceClosure
+from eurdf.closures.point import PointClosure
+from eurdf.mechanism.constraint import Coupling
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.motor import Motor

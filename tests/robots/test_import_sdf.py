@@ -11,7 +11,9 @@ import pinocchio as pin
 import pytest
 
 import eurdf
-from eurdf.mechanism.constraint import FrameClosure, HingeClosure, PointClosure
+from eurdf.closures.frame import FrameClosure
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.point import PointClosure
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.mimic import Mimic

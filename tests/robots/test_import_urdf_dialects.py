@@ -10,8 +10,11 @@ import pytest
 from lxml import etree
 
 import eurdf
+from eurdf.closures.frame import FrameClosure
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.point import PointClosure
 from eurdf.convert.losses import Effect
-from eurdf.mechanism.constraint import Coupling, FrameClosure, HingeClosure, PointClosure
+from eurdf.mechanism.constraint import Coupling
 from eurdf.mechanism.joint_types import JointType
 from eurdf.pinocchio.robot import build_robot
 from support.plain_urdf import inertial, joint_element, link_element

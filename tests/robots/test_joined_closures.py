@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from lxml import etree
 
 import eurdf
-from eurdf.mechanism.constraint import PointClosure
+from eurdf.closures.point import PointClosure
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.pose import IDENTITY, Pose
 from eurdf.pinocchio.robot import build_robot

@@ -13,10 +13,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import eurdf
+from eurdf.closures.hinge import HingeClosure
 from eurdf.convert.losses import Effect
 from eurdf.convert.parts import Part
 from eurdf.convert.verification.read_model import without_armature
-from eurdf.mechanism.constraint import HingeClosure
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
+from eurdf.closures.kind import REGISTRY
 from eurdf.kinematics.residual import closure_openings
-from eurdf.mechanism.constraint import CLOSURES, Closure, Constraint
+from eurdf.mechanism.constraint import Closure, Constraint
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.actuation import Actuation
@@ -79,7 +80,7 @@ def anchor(model: Any, joint: int, jMc: Any) -> Anchor:
 
 def closure(model: Any, a: int, aMc: Any, b: int, bMc: Any, kind: str = "6d", name: str = "closure") -> Closure:
     """Frame A at aMc in joint a, frame B at bMc in joint b."""
-    return CLOSURES[kind](name, anchor(model, a, aMc), anchor(model, b, bMc))
+    return REGISTRY[kind](name, anchor(model, a, aMc), anchor(model, b, bMc))
 
 
 def pulled_apart(linkage: Linkage, jMa: Any) -> Linkage:

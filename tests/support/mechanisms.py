@@ -10,16 +10,13 @@ import numpy as np
 import pinocchio as pin
 
 import eurdf
+from eurdf.closures.distance import DistanceClosure
+from eurdf.closures.frame import FrameClosure
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.kind import REGISTRY
+from eurdf.closures.point import PointClosure
 from eurdf.mechanism.body import Body
-from eurdf.mechanism.constraint import (
-    CLOSURES,
-    Closure,
-    Coupling,
-    DistanceClosure,
-    FrameClosure,
-    HingeClosure,
-    PointClosure,
-)
+from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
@@ -149,7 +146,7 @@ def one_loop(
 
 
 def _closure(type_: str, a: Pose, b: Pose, body: str, random: np.random.Generator) -> Closure:
-    kind = CLOSURES[type_]
+    kind = REGISTRY[type_]
     if type_ == "distance":
         away = Pose(tuple(a.act(_vector(random))))
         length = float(np.linalg.norm(np.subtract(away.xyz, a.xyz)))

@@ -6,8 +6,10 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from eurdf.closures.distance import DistanceClosure
+from eurdf.closures.hinge import HingeClosure
 from eurdf.mechanism.body import Shape
-from eurdf.mechanism.constraint import RIGID, Compliance, DistanceClosure, HingeClosure
+from eurdf.mechanism.constraint import RIGID, Compliance
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism

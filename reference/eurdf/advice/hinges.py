@@ -9,8 +9,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import pinocchio as pin
 
+from eurdf.closures.frame import FrameClosure
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.point import PointClosure
 from eurdf.kinematics.analysis import LoopAnalysis, analyze
-from eurdf.mechanism.constraint import Closure, FrameClosure, HingeClosure, PointClosure
+from eurdf.mechanism.constraint import Closure
 from eurdf.pinocchio.robot import build_robot
 
 if TYPE_CHECKING:

@@ -142,7 +142,7 @@ def _info(
 def _configuration(robot: Robot, given: str | None) -> Vector:
     """A closed configuration (nq,)."""
     from eurdf.kinematics.assembly import assemble
-    from eurdf.kinematics.forward_kinematics import forward_kinematics
+    from eurdf.kinematics.forward import forward_kinematics
 
     if given is None or (given in robot.configurations and not os.path.exists(given)):
         assembly = assemble(robot, None if given is None else robot.configurations[given])

@@ -9,13 +9,15 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.point import PointClosure
 from eurdf.convert.common_losses import COMMON
 from eurdf.convert.losses import Loss, Losses
 from eurdf.kinematics.analysis import analyze
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.residual import residual_and_jacobian
-from eurdf.mechanism.constraint import Closure, HingeClosure, PointClosure
+from eurdf.mechanism.constraint import Closure
 from eurdf.pinocchio.robot import Robot, build_robot
 
 #: Singular values of an angular velocity, relative to those of the whole motion, that count as none.

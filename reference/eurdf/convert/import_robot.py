@@ -25,9 +25,10 @@ from eurdf.diagnostics.wording import visible
 from eurdf.exceptions import RobotNotFound
 from eurdf.format.schema import FILES, SchemaVersion, json_schema, schema_text
 from eurdf.kinematics.assembly import assemble
-from eurdf.kinematics.opening import CLOSED, Opening
+from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.residual import closure_openings, residual
+from eurdf.kinematics.tolerances import CLOSED
 from eurdf.linking.configurations import beyond_limits
 from eurdf.linking.robot_files import read_robot
 from eurdf.loading import check

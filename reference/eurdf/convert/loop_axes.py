@@ -6,9 +6,9 @@ from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Literal
 
+from eurdf.closures.hinge import HingeClosure
 from eurdf.convert.hinges import with_hinges
 from eurdf.kinematics.assembly import assemble
-from eurdf.mechanism.constraint import HingeClosure
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Vector3
 from eurdf.pinocchio.robot import build_robot

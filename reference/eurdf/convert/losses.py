@@ -13,7 +13,7 @@ from enum import Enum
 from functools import partial
 from typing import Any, NamedTuple
 
-from eurdf.mechanism.constraint import CLOSURES
+from eurdf.closures.kind import REGISTRY
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
@@ -110,7 +110,7 @@ ELEMENTS: dict[str, Elements] = {
     "armature": _nonzero("armature"),
     "gear ratio": partial(_motors, _is_geared),
     "spring": _nonzero("stiffness"),
-    **{f"{kind} closure": _of_closure_type(kind) for kind in CLOSURES},
+    **{f"{kind} closure": _of_closure_type(kind) for kind in REGISTRY},
     "coupling": lambda mechanism: mechanism.couplings,
     "compliance": lambda mechanism: (
         closure for closure in mechanism.closures if closure.compliance.linear or closure.compliance.angular

@@ -11,13 +11,14 @@ import numpy as np
 
 from eurdf.json_schema import HIDDEN, Count, NullIfInfinite
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
-from eurdf.kinematics.assembly import Assembler, Assembly, start
+from eurdf.kinematics.assembly import Assembly, assembled, close, start
 from eurdf.kinematics.derived import borrowed
-from eurdf.kinematics.evaluation import Evaluation
 from eurdf.kinematics.finite_mobility import Evidence, FiniteMobility, MobilityTest
 from eurdf.kinematics.loop import LoopGroup
-from eurdf.kinematics.rank import numerical_rank
+from eurdf.kinematics.problem import Group, Problem
+from eurdf.kinematics.rank import norms, numerical_rank
 from eurdf.kinematics.sparse_basis import sparse_basis
+from eurdf.kinematics.tolerances import SOLVED
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -207,35 +208,34 @@ def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
         ValueError: ``q`` is not a configuration.
     """
     at = start(robot, q, "q")
-    with borrowed(robot, Assembler) as assembler:
-        assembler.tolerance, assembler.limits = 1e-10, None
-        return _analysis(robot, assembler, assembler.assemble(at))
+    with borrowed(robot, Problem) as problem:
+        return _analysis(robot, problem, assembled(problem, at, SOLVED))
 
 
-def _analysis(robot: Robot, assembler: Assembler, assembly: Assembly) -> Analysis:
-    """The dimensions where the assembler has closed the loops, or where they are the least open."""
+def _analysis(robot: Robot, problem: Problem, assembly: Assembly) -> Analysis:
+    """The dimensions where the loops are closed, or where they are the least open."""
     tree = robot.tree
     actuated: Mask = np.zeros(tree.nv, dtype=bool)
     actuated[robot.actuation.idx_v] = True
-    nv, nc = tree.nv, sum(len(evaluation.group.rows) for evaluation in assembler.evaluations)
+    nv, nc = tree.nv, sum(len(group.loops.rows) for group in problem.groups)
     names = tree.velocity_names
     loops: tuple[LoopAnalysis, ...] = ()
     motions: list[Motion] = []
-    left_out = _left_out(assembler, assembly)
+    left_out = _left_out(problem, assembly)
     ranked = assembly.closes and not left_out
     outside: Mask = np.ones(nv, dtype=bool)
-    for evaluation in assembler.evaluations:
-        outside[evaluation.group.velocities] = False
+    for group in problem.groups:
+        outside[group.loops.velocities] = False
     others = int(outside.sum())
-    rounded = None if assembly.closes or left_out else MobilityTest(assembler).rounded(assembly.q)
+    rounded = None if assembly.closes or left_out else MobilityTest(problem).rounded(assembly.q)
     if ranked:
         closures = [constraint.name for constraint in robot.constraints]
         loops = tuple(
-            _analyze(evaluation, at, finite, actuated[evaluation.group.velocities], names, closures)
-            for evaluation, at, finite in zip(
-                assembler.evaluations,
-                _generic_jacobians(assembler, assembly.q),
-                MobilityTest(assembler).finite(assembly.q),
+            _analyze(group, at, finite, actuated[group.loops.velocities], names, closures)
+            for group, at, finite in zip(
+                problem.groups,
+                _generic_jacobians(problem, assembly.q),
+                MobilityTest(problem).finite(assembly.q),
                 strict=True,
             )
         )
@@ -282,9 +282,9 @@ def _sum_of_finite(others: int, loops: Sequence[LoopAnalysis]) -> int | Literal[
     return total
 
 
-def _left_out(assembler: Assembler, assembly: Assembly) -> str:
+def _left_out(problem: Problem, assembly: Assembly) -> str:
     """Why no ranks are computed, if that would take too long; else empty."""
-    given_up, groups = assembly.reason == "not decided", [each.group for each in assembler.evaluations]
+    given_up, groups = assembly.reason == "not decided", [each.loops for each in problem.groups]
     if not given_up and not (assembly.closes and sum(map(_work, groups)) > _MOST_WORK):
         return ""
     group = max(groups, key=_work)
@@ -300,23 +300,23 @@ def _work(group: LoopGroup) -> float:
     return float(n) * n * max(m, n)
 
 
-def _generic_jacobians(assembler: Assembler, q: Vector) -> list[list[tuple[Vector, Matrix]]]:
+def _generic_jacobians(problem: Problem, q: Vector) -> list[list[tuple[Vector, Matrix]]]:
     """For each group a closed configuration (nq,) and some around it, each with the dimensionless block of K (m, n)."""
-    evaluations = assembler.evaluations
-    open_by = [_size(evaluation.residual(q)) for evaluation in evaluations]
-    found = [[(q, evaluation.jacobian())] for evaluation in evaluations]
+    groups = problem.groups
+    open_by = [norms(group.residual(q[None]))[0] for group in groups]
+    found = [[(q, group.jacobian_at(q[None])[0])] for group in groups]
     bases = [_null_space(blocks[0][1]) for blocks in found]
     for number, length in enumerate(_MOVES):
-        steps = [_free_step(basis, number, length) for basis in bases]
-        near, _ = assembler.close(assembler.moved(q, evaluations, steps), restarts=0)
-        for evaluation, blocks, error in zip(evaluations, found, open_by, strict=True):
-            if _size(evaluation.residual(near)) <= max(10.0 * error, 1e-8):
-                blocks.append((near, evaluation.jacobian()))
+        steps = [_free_step(basis, number, length)[None] for basis in bases]
+        near = close(problem, problem.moved(q[None], groups, steps)).q
+        for group, blocks, error in zip(groups, found, open_by, strict=True):
+            if norms(group.residual(near))[0] <= max(10.0 * error, 1e-8):
+                blocks.append((near[0], group.jacobian_at(near)[0]))
     return found
 
 
 def _analyze(
-    evaluation: Evaluation,
+    group: Group,
     at: Sequence[tuple[Vector, Matrix]],
     finite: FiniteMobility,
     actuated: Mask,
@@ -326,23 +326,23 @@ def _analyze(
     """Analyse one group of loops.
 
     Args:
-        evaluation: The group.
+        group: The group.
         at: Closed configurations, each with its dimensionless block of K; the first is the one to analyse.
         finite: What was found of its finite mobility.
         actuated: Which of its velocities (n,) are actuated.
         names: For each velocity of the robot, the name of its joint.
         closures: Names of the robot's closures.
     """
-    group = evaluation.group
+    loops = group.loops
     ranks = [_ranks(A, actuated) for _, A in at]
     rank, held = max(rank for rank, _ in ranks), max(held for _, held in ranks)
     q, A = next(place for place, found in zip(at, ranks, strict=True) if found[1] == held)
     looked_at = at[0][1]
-    nv, nc = len(group.velocities), len(group.rows)
-    members = [names[velocity] for velocity in group.velocities.tolist()]
+    nv, nc = len(loops.velocities), len(loops.rows)
+    members = [names[velocity] for velocity in loops.velocities.tolist()]
     stacked = np.vstack([looked_at, np.eye(nv)[actuated]])
     return LoopAnalysis(
-        closures=tuple(closures[index] for index in group.closures),
+        closures=tuple(closures[index] for index in loops.closures),
         joints=_distinct(members),
         nv=nv,
         nc=nc,
@@ -355,7 +355,7 @@ def _analyze(
         singularity=_nth(_singular_values(looked_at), rank),
         actuation_singularity=_nth(_singular_values(stacked), held),
         dependent_actuators=_dependent_actuators(A, rank, held - rank, actuated, members),
-        motions=_motions(A, held, actuated, evaluation, members, q),
+        motions=_motions(A, held, actuated, group, members, q),
         infinitesimal_mobility=finite.infinitesimal,
         finite_mobility="unknown" if finite.finite is None else finite.finite,
         evidence=finite.evidence,
@@ -397,7 +397,7 @@ def _dependent_actuators(
 
 
 def _motions(
-    A: Matrix, held: int, actuated: Mask, evaluation: Evaluation, members: Sequence[str], q: Vector
+    A: Matrix, held: int, actuated: Mask, group: Group, members: Sequence[str], q: Vector
 ) -> tuple[Motion, ...]:
     """The motions of a group at q (nq,) with its actuators held; A is its block of K."""
     free = np.flatnonzero(~actuated)
@@ -405,9 +405,9 @@ def _motions(
     motions = []
     for row in sparse_basis(basis):
         moving = free[np.flatnonzero(row)]
-        values = row[np.flatnonzero(row)] * evaluation.unit[moving]
+        values = row[np.flatnonzero(row)] * group.unit[moving]
         joints = _distinct(members[index] for index in moving.tolist())
-        motions.append(Motion(joints, evaluation.group.velocities[moving], values, q))
+        motions.append(Motion(joints, group.loops.velocities[moving], values, q))
     return tuple(motions)
 
 
@@ -417,10 +417,6 @@ def _unit_motion(names: Sequence[str], velocity: int, q: Vector) -> Motion:
 
 def _distinct(names: Iterable[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names))
-
-
-def _size(r: Vector) -> float:
-    return math.hypot(*r.tolist())
 
 
 def _nth(values: Vector, number: int) -> float:

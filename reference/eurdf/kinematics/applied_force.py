@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from eurdf.kinematics.array import Matrix, Vector
-from eurdf.kinematics.tree_kinematics import FramePairs
+from eurdf.kinematics.evaluate import Frames, frames
 from eurdf.pinocchio.arguments import checked_array
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ class AppliedForce:
         self._tree = robot.tree
         self._dissipation = dissipation
         self._has_springs = len(robot.tree.springs) > 0
-        self._external: tuple[FramePairs, Matrix] | None = None
+        self._external: tuple[Frames, Matrix] | None = None
         if external is not None and not isinstance(external, Mapping):
             raise ValueError(f"external must map names of frames to forces (6,), not {type(external).__name__}")
         if external:
@@ -46,7 +46,7 @@ class AppliedForce:
                 checked_array(f"external['{name}']", getattr(given, "vector", given), (6,))
                 for name, given in external.items()
             ]
-            self._external = robot.tree.frames(list(external)), np.array(forces)
+            self._external = frames(robot, list(external), few=True), np.array(forces)
 
     def at(self, q: Vector, v: Vector, u: Vector | None = None, tau: Vector | None = None) -> Vector:
         """Generalized force (nv,) of all but the springs.
@@ -85,10 +85,7 @@ class AppliedForce:
         springs = self._tree.springs
         return force + springs.force(q, len(force)) if len(springs) else force
 
-    def _at_frames(self, frames: FramePairs, forces: Matrix, q: Vector) -> Vector:
+    def _at_frames(self, at_frames: Frames, forces: Matrix, q: Vector) -> Vector:
         """Sum of the generalized forces: their power is that of the forces."""
-        memory = frames.memory()
-        origins = np.array([oMf.translation for oMf in memory.placements(q)])
-        moments = forces[:, 3:] + np.cross(origins, forces[:, :3])  # about the origin of the world
-        rows = np.concatenate((forces[:, :3], moments), axis=1)
-        return np.asarray(memory.jacobian(rows[:, None, :], range(len(rows))).sum(axis=0))
+        (jacobians,) = at_frames.jacobians(at_frames.at(q[None]))
+        return np.asarray(np.einsum("fi,fiv->v", forces, jacobians))

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
-Indices = NDArray[np.intp]
-Mask = NDArray[np.bool_]
+from eurdf.array import Indices as Indices
+from eurdf.array import Mask as Mask
+from eurdf.array import Matrix as Matrix
+from eurdf.array import Vector as Vector

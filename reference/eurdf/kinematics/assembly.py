@@ -11,41 +11,24 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
-from eurdf.kinematics.array import Vector
+from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.derived import borrowed
-from eurdf.kinematics.descent import Descent
-from eurdf.kinematics.evaluation import Evaluation, evaluations
-from eurdf.kinematics.loop import find_loops, independent_groups, merged
-from eurdf.kinematics.opening import CLOSED, Opening
+from eurdf.kinematics.descend import Descended, descend
+from eurdf.kinematics.exceptions import NotClosable
+from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits, chosen_limits
-from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
+from eurdf.kinematics.problem import Group, Problem
+from eurdf.kinematics.rank import norms
 from eurdf.kinematics.several import several
-from eurdf.kinematics.tree_kinematics import TreeKinematics
+from eurdf.kinematics.tolerances import CLOSED, MOST_STEPS, MOST_WORK, RESTARTS, SOLVED, WELL_CLOSED
 from eurdf.pinocchio.arguments import checked_array, checked_count, checked_tolerance
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
-
-# Above this many velocities, closing all loops at once takes longer than one by one.
-_MOST_VELOCITIES_AT_ONCE = 60
-
-#: Bound of the steps of one descent.
-MOST_STEPS = 60
-
-#: Restarts of a group of loops that stays open, unless a caller gives their number.
-RESTARTS = 20
-
-# Bound of the multiplications in the steps of one assembly, about five seconds. Groups with hundreds of shared joints
-# end before all restarts; a group with a single step above this bound is not tried.
-_MOST_WORK = 1e10
-
-# A residual below this, in m and rad and in shares of the characteristic length, is of closed loops for
-# certain: how far a closure is open differs from its rows by a factor below 10.
-_WELL_CLOSED = 0.1 * CLOSED
 
 # A quaternion whose length differs from 1 by no more is normalized.
 _ROUNDING = 1e-15
@@ -104,7 +87,7 @@ def assemble(
     q0: Vector | None = None,
     hold: str | Iterable[str] = (),
     *,
-    tolerance: float = 1e-10,
+    tolerance: float = SOLVED,
     limits: bool = False,
     restarts: int = RESTARTS,
 ) -> Assembly:
@@ -136,11 +119,11 @@ def assemble(
             ``tolerance`` or ``restarts`` is negative.
     """
     q = start(robot, q0)
-    held = several(hold)
-    with borrowed(robot, Assembler, *([held] if held else [])) as assembler:  # others borrow one that holds none, too
-        assembler.tolerance = checked_tolerance(tolerance)
-        assembler.limits = chosen_limits(robot, limits)
-        return assembler.assemble(q, checked_count("restarts", restarts, 0))
+    held = tuple(velocity for name in several(hold) for velocity in robot.tree.velocities_of(name))
+    tolerance, chosen = checked_tolerance(tolerance), chosen_limits(robot, limits)
+    restarts = checked_count("restarts", restarts, 0)
+    with borrowed(robot, Problem, *([held] if held else [])) as problem:  # others borrow one that holds none, too
+        return assembled(problem, q, tolerance, restarts, chosen)
 
 
 def start(robot: Robot, q0: Vector | None = None, name: str = "q0") -> Vector:
@@ -165,180 +148,224 @@ def start(robot: Robot, q0: Vector | None = None, name: str = "q0") -> Vector:
     return q
 
 
-class Assembler:
-    """Closes the loops of one robot repeatedly; its structure is analysed once.
+class Closed(NamedTuple):
+    """Configurations whose loops were closed, as far as that is possible; B elements.
 
     Attributes:
-        evaluations: One for each group of loops that share no joint with the others.
-        iterations: Evaluations of the residual and its Jacobian so far. Groups that descend together count once.
-        tolerance: Bound of each row of the residual for closed loops, m or rad.
-        limits: The position limits to respect, or None.
+        q: (B, nq).
+        closes: Whether each closure is open by at most `CLOSED`, or the tolerance if that is larger (B,).
+        iterations: Numbers (B,) of evaluations of the residual. Groups that descend together count once.
+        decided: Whether (B,) the loops close, or all descents ended.
     """
 
-    def __init__(
-        self, robot: Robot, hold: str | Iterable[str] = (), *, tolerance: float = 1e-10, limits: bool = False
-    ) -> None:
-        """The arguments are those of `assemble`."""
-        # No reference to the robot: the cache would keep it alive.
-        tree = self._tree = robot.tree
-        self._names = [constraint.name for constraint in robot.constraints]
-        loops = find_loops(robot)
-        self._nc = loops[-1].rows.stop if loops else 0
-        groups = list(independent_groups(robot, _held_velocities(tree, hold)))
-        small = tree.nv <= _MOST_VELOCITIES_AT_ONCE
-        whole = [merged(groups)] if small and len(groups) > 1 else []
-        length = self._length = characteristic_length(robot)
-        made = evaluations(
-            robot,
-            groups + whole,
-            row_scale(robot, length),
-            velocity_scale(robot, length),
-        )
-        self.evaluations = made[: len(groups)]
-        self._whole = made[len(groups) :] if whole else self.evaluations
-        self.iterations = 0
-        self._work = 0.0  # of the current assembly, in multiplications
-        self._is_decided = True  # whether the last assembly closed the loops or ended all descents
-        self.tolerance = checked_tolerance(tolerance)
-        self.limits = chosen_limits(robot, limits)
+    q: Matrix
+    closes: Mask
+    iterations: Indices
+    decided: Mask
 
-    def assemble(self, q: Vector, restarts: int = RESTARTS) -> Assembly:
-        """Close the loops from q (nq,), then at most ``restarts`` times from configurations around it."""
-        before = self.iterations
-        with np.errstate(over="ignore", invalid="ignore"):  # lengths such as 1e200 m overflow and never close
-            q, _ = self.close(q, restarts)
-            r, open_by = np.zeros(self._nc), [(0.0, 0.0)] * len(self._names)
-            for evaluation in self._whole:
-                r[evaluation.group.rows] = evaluation.residual(q)
-                for index, opening in zip(evaluation.group.closures, evaluation.openings(), strict=True):
-                    open_by[index] = opening
-        largest = float(np.abs(r).max(initial=0.0))
-        enough = max(CLOSED, self.tolerance)
-        converged = largest <= self.tolerance
-        closes = all(part <= enough for opening in open_by for part in opening)  # NaN is not closed
-        at_limits = () if closes or self.limits is None else self._pressed(q, self.limits)
-        return Assembly(
-            q=q,
-            residual=math.hypot(*r),
-            converged=converged,
-            closes=closes,
-            iterations=self.iterations - before,
-            open=tuple(Opening(name, *opening) for name, opening in zip(self._names, open_by, strict=True)),
-            reason=None if converged else "rounding" if closes else self._why_open(at_limits),
-            at_limits=at_limits,
-        )
 
-    @np.errstate(over="ignore", invalid="ignore")
-    def closed(self, q: Vector) -> Vector | None:
-        """The configuration that one descent from q (nq,) leads to; None if that leaves a loop open, or close to it."""
-        self._work = 0.0
-        end, descents, _ = self._descend(self._within_limits(q, self.evaluations), self._whole)
-        errors = [size for each in descents for size in (each.error, self._length * each.scaled_error)]
-        return end if all(error <= _WELL_CLOSED for error in errors) else None
+def close(
+    problem: Problem,
+    q: Matrix,
+    tolerance: float = SOLVED,
+    restarts: int = 0,
+    limits: PositionLimits | None = None,
+) -> Closed:
+    """Bring the residual to zero, first of all loops together, then of each group that is still open by itself.
 
-    def _why_open(self, at_limits: Sequence[JointAtLimit]) -> AssemblyReason:
-        if not self._is_decided:
-            return "not decided"
-        return "joint limits" if at_limits else "not closed"
+    Args:
+        problem: The robot.
+        q: Where to start (B, nq).
+        tolerance: Bound of the norm of the residual, m and rad.
+        restarts: Maximum number of restarts while a group is open by more than `CLOSED`.
+        limits: The position limits to respect, or None.
+    """
+    with np.errstate(all="ignore"):  # lengths such as 1e200 m overflow and never close
+        if limits is not None and problem.groups:
+            q = limits.clip(q, np.concatenate([group.loops.velocities for group in problem.groups]))
+        little = (restarts + 2) * MOST_STEPS * problem.work <= MOST_WORK
+        if not little or not (problem.at_once or len(problem.groups) == 1):
+            return _Closing(problem, q, tolerance, limits).closed(restarts)
+        found = descend(problem, problem.together, q, tolerance, limits)
+        sure = _well_closed(problem, found)
+        if np.count_nonzero(sure) == len(q):
+            return Closed(found.q, sure, 1 + found.steps, sure)
+        closing = _Closing(problem, q, tolerance, limits)
+        closing.keep_all(found, sure)
+        return closing.closed(restarts)
 
-    @np.errstate(over="ignore", invalid="ignore")  # lengths such as 1e200 m overflow and never close
-    def close(self, q: Vector, restarts: int = RESTARTS) -> tuple[Vector, list[float]]:
-        """The final configuration (nq,), and the norm of the residual of each group there, m and rad.
 
-        Args:
-            q: Where to start (nq,).
-            restarts: Maximum number of restarts while a group is open by more than `CLOSED`.
-        """
-        self._work = 0.0
-        q = self._within_limits(q, self.evaluations)
-        best, errors = np.array(q), [math.inf] * len(self.evaluations)
-        tried = [False] * len(self.evaluations)  # whether a descent finished
-        if self._whole is not self.evaluations:
-            best, (descent,), (ended,) = self._descend(q, self._whole)
-            errors = [math.hypot(*descent.r[evaluation.group.rows]) for evaluation in self.evaluations]
-            tried = [ended] * len(self.evaluations)
-        random: np.random.Generator | None = None
-        for attempt in range(restarts + 1):
-            still_open = [index for index, error in enumerate(errors) if not error <= CLOSED]
-            if attempt > 0:
-                still_open = [index for index in still_open if _feasible(self.evaluations[index])]
-            if not still_open or (attempt > 0 and self._work > _MOST_WORK):
+class _Closing:
+    """The descents from the configurations q (B, nq), within the limits."""
+
+    def __init__(self, problem: Problem, q: Matrix, tolerance: float, limits: PositionLimits | None) -> None:
+        self._problem, self._tolerance, self._limits = problem, tolerance, limits
+        self._q = self._best = q
+        by_group = len(q), len(problem.groups)
+        self._errors = np.full(by_group, np.inf)
+        self._sure = np.zeros(by_group, dtype=bool)  # whether a group is closed beyond doubt
+        self._ended = np.zeros(by_group, dtype=bool)  # whether a descent was not cut
+        self._spent = np.zeros(len(q))  # multiplications
+        self._iterations = np.zeros(len(q), dtype=np.intp)
+        self._first = 0  # attempt
+
+    def keep_all(self, found: Descended, sure: Mask) -> None:
+        """Start from where descents of all groups together ended."""
+        self._best, self._iterations = found.q, 1 + found.steps
+        self._sure[:], self._ended[:] = sure[:, None], ~found.cut[:, None]
+        self._errors = np.stack([norms(r) for r in self._by_group(found.residuals)], axis=1)
+        self._first = 0 if self._problem.at_once else 1  # of one group, they were the first attempt
+
+    def closed(self, restarts: int) -> Closed:
+        """Where the last descents lead."""
+        problem, generators = self._problem, _Generators()
+        if problem.at_once and not self._iterations.any():
+            found = self._descended(problem.together, np.arange(len(self._q)), self._q)
+            self.keep_all(found, _well_closed(problem, found))
+        for attempt in range(self._first, restarts + 1):
+            is_open = ~(self._errors <= CLOSED)
+            if attempt:
+                is_open &= np.array([group.work <= MOST_WORK for group in problem.groups], dtype=bool)
+                is_open &= (self._spent <= MOST_WORK)[:, None]
+            if not is_open.any():
                 break
-            going, place = [self.evaluations[index] for index in still_open], q
-            if attempt > 0:
-                random = random or np.random.default_rng(0)
-                spread = SPREADS[min(attempt, len(SPREADS)) - 1]
-                away = [random.uniform(-spread, spread, len(evaluation.unit)) for evaluation in going]
-                place = self._within_limits(self.moved(q, going, away), going)
-            end, descents, ended_by_group = self._descend(place, going)
-            for index, descent, ended in zip(still_open, descents, ended_by_group, strict=True):
-                tried[index] |= ended
-                if descent.error < errors[index]:
-                    errors[index] = descent.error
-                    coordinates = self.evaluations[index].group.coordinates
-                    best[coordinates] = end[coordinates]
-        still_open = [index for index, error in enumerate(errors) if not error <= CLOSED]
-        stopped = self._work > _MOST_WORK or not any(tried[index] for index in still_open)
-        self._is_decided = not (still_open and stopped)
-        return best, errors
+            longest = np.zeros_like(self._iterations)
+            for index, group in enumerate(problem.groups):
+                which = np.flatnonzero(is_open[:, index])
+                if len(which):
+                    place = self._around(group, which, attempt, generators) if attempt else self._q[which]
+                    found = self._descended([group], which, place)
+                    longest[which] = np.maximum(longest[which], 1 + found.steps)
+                    self._keep(index, group, which, found)
+            self._iterations += longest
+        is_open = ~(self._errors <= CLOSED)
+        stopped = (self._spent > MOST_WORK) | ~(self._ended & is_open).any(axis=1)
+        closes, decided = np.array(self._sure.all(axis=1)), ~(is_open.any(axis=1) & stopped)
+        doubtful = np.flatnonzero(~closes)
+        if len(doubtful):
+            closes[doubtful] = problem.closes(self._best[doubtful], max(CLOSED, self._tolerance))
+        return Closed(self._best, closes, self._iterations, decided)
 
-    def moved(self, q: Vector, going: Sequence[Evaluation], steps: Sequence[Vector]) -> Vector:
-        """Configuration (nq,) after a step of each group; lengths are in characteristic lengths."""
-        v = np.zeros(self._tree.nv)
-        for evaluation, step in zip(going, steps, strict=True):
-            v[evaluation.group.velocities] = evaluation.unit * step
-        # Pinocchio normalizes quaternions to first order only.
-        return self._tree.normalized(self._tree.integrate(q, v))
+    def _around(self, group: Group, which: Indices, attempt: int, generators: _Generators) -> Matrix:
+        """Where a group of some elements starts again."""
+        spread = SPREADS[min(attempt, len(SPREADS)) - 1]
+        away = [generators[element].uniform(-spread, spread, len(group.unit)) for element in which.tolist()]
+        place = self._problem.moved(self._q[which], [group], [np.array(away)])
+        return place if self._limits is None else self._limits.clip(place, group.loops.velocities)
 
-    def _descend(self, q: Vector, going: Sequence[Evaluation]) -> tuple[Vector, list[Descent], list[bool]]:
-        """The configuration (nq,) after the descents of the groups, the descents, and whether each finished."""
-        q = np.array(q)
-        self.iterations += 1
-        descents = [Descent(evaluation, q) for evaluation in going]
-        moving: list[Descent] = []
-        for _ in range(MOST_STEPS):
-            moving = [descent for descent in descents if descent.error > self.tolerance and not descent.stuck]
-            feasible = [descent for descent in moving if _feasible(descent.evaluation)]
-            self._work += sum(descent.evaluation.work for descent in feasible)
-            if not feasible or self._work > _MOST_WORK:
-                break
-            steps = [descent.step(self._room(q, descent.evaluation)) for descent in feasible]
-            trial = self.moved(q, [descent.evaluation for descent in feasible], steps)
-            self.iterations += 1
-            for descent in feasible:
-                if descent.arrive(trial):
-                    coordinates = descent.evaluation.group.coordinates
-                    q[coordinates] = trial[coordinates]
-        else:
-            moving = []
-        cut = set(moving)
-        return q, descents, [descent not in cut for descent in descents]
+    def _keep(self, index: int, group: Group, which: Indices, found: Descended) -> None:
+        """Keep where a group of some elements is less open than before."""
+        self._ended[which, index] |= ~found.cut
+        errors = norms(found.residuals[0])
+        better = errors < self._errors[which, index]
+        own = which[better]
+        self._errors[own, index] = errors[better]
+        self._sure[own, index] = _well_closed(self._problem, found)[better]
+        if self._best is self._q:
+            self._best = np.array(self._q)
+        self._best[own[:, None], group.loops.coordinates] = found.q[better][:, group.loops.coordinates]
 
-    def _within_limits(self, q: Vector, going: Sequence[Evaluation]) -> Vector:
-        if self.limits is None or not going:
-            return q
-        return self.limits.clip(q, np.concatenate([evaluation.group.velocities for evaluation in going]))
+    def _descended(self, groups: Sequence[Group], which: Indices, q: Matrix) -> Descended:
+        """The descents of some elements from q (b, nq), within the bound of the work."""
+        work = sum(group.work for group in groups)
+        most = None
+        if work > MOST_WORK:
+            work, most = 0.0, np.zeros(len(which), dtype=np.intp)
+        elif self._spent.max(initial=0.0) + work * MOST_STEPS > MOST_WORK:
+            most = np.maximum((MOST_WORK - self._spent[which]) // work, 0.0).astype(np.intp)
+        found = descend(self._problem, groups, q, self._tolerance, self._limits, most)
+        self._spent[which] += work * (found.steps + found.cut)
+        return found
 
-    @np.errstate(over="ignore", invalid="ignore")
-    def _pressed(self, q: Vector, limits: PositionLimits) -> tuple[JointAtLimit, ...]:
-        """The joints at their limits that the descent direction -Kᵀ r would move beyond them."""
-        down = np.zeros(self._tree.nv)
-        for evaluation in filter(_feasible, self._whole):
-            b = evaluation.row_scale * evaluation.residual(q)
-            down[evaluation.group.velocities] = -evaluation.jacobian().T @ b
-        return limits.pressed(q, down)
-
-    def _room(self, q: Vector, evaluation: Evaluation) -> tuple[Vector, Vector] | None:
-        """Distance to the lower and upper limits, by velocity of a group, in rad and characteristic lengths."""
-        if self.limits is None:
-            return None
-        down, up = self.limits.room(q, evaluation.group.velocities)
-        return down / evaluation.unit, up / evaluation.unit
+    def _by_group(self, residuals: Sequence[Matrix]) -> list[Matrix]:
+        """Residuals of the loops that descended together, as those of each group."""
+        problem = self._problem
+        if len(residuals) == len(problem.groups):
+            return list(residuals)
+        (together,) = problem.together
+        return [residuals[0][:, np.searchsorted(together.loops.rows, each.loops.rows)] for each in problem.groups]
 
 
-def _feasible(evaluation: Evaluation) -> bool:
-    return evaluation.work <= _MOST_WORK
+class _Generators(dict[int, np.random.Generator]):
+    """Of each element random numbers, the same for all."""
+
+    def __missing__(self, element: int) -> np.random.Generator:
+        self[element] = np.random.default_rng(0)
+        return self[element]
 
 
-def _held_velocities(tree: TreeKinematics, names: str | Iterable[str]) -> list[int]:
-    return [velocity for name in several(names) for velocity in tree.velocities_of(name)]
+def _well_closed(problem: Problem, found: Descended) -> Mask:
+    """Which elements (B,) are closed so well that their openings need not be measured."""
+    return np.asarray(
+        (found.square <= WELL_CLOSED**2) & (found.scaled_square <= (WELL_CLOSED / problem.spaces.length) ** 2)
+    )
+
+
+@np.errstate(all="ignore")
+def is_closed(problem: Problem, q: Matrix, tolerance: float) -> Mask:
+    """Whether (B,) `close` would leave configurations (B, nq) as they are."""
+    sums = np.zeros((len(q), 2))
+    for part in problem.parts:
+        r = part.residual(q)
+        sums = sums + (r * r) @ part.weights
+    bound = tolerance**2, (WELL_CLOSED / problem.spaces.length) ** 2
+    return np.asarray((sums <= bound).all(axis=1))
+
+
+def assembled(
+    problem: Problem, q: Vector, tolerance: float, restarts: int = RESTARTS, limits: PositionLimits | None = None
+) -> Assembly:
+    """As `assemble`, from a configuration (nq,)."""
+    closed = close(problem, q[None], tolerance, restarts, limits)
+    with np.errstate(over="ignore", invalid="ignore"):
+        (r,), found = _measured(problem, closed.q)
+    closes = bool(closed.closes[0])
+    converged = float(np.abs(r).max(initial=0.0)) <= tolerance
+    at_limits = () if closes or limits is None else _pressed(problem, closed.q, limits)
+    reason: AssemblyReason | None = None
+    if not converged:
+        why_open: AssemblyReason = "joint limits" if at_limits else "not closed"
+        reason = "rounding" if closes else why_open if closed.decided[0] else "not decided"
+    return Assembly(
+        q=closed.q[0],
+        residual=math.hypot(*r),
+        converged=converged,
+        closes=closes,
+        iterations=int(closed.iterations[0]),
+        open=found,
+        reason=reason,
+        at_limits=at_limits,
+    )
+
+
+def closed_start(problem: Problem, q: Vector, tolerance: float, where: str = "the start") -> Vector:
+    """A configuration (nq,), with its loops closed.
+
+    Raises:
+        NotClosable: They cannot be closed there.
+    """
+    closed = close(problem, q[None], tolerance)
+    if closed.closes[0]:
+        return np.array(closed.q[0])
+    first = assembled(problem, q, tolerance)
+    if not first.closes:
+        raise NotClosable(f"no closed configuration was found near {where}", first.open, first.q)
+    return first.q
+
+
+def _measured(problem: Problem, q: Matrix) -> tuple[Matrix, tuple[Opening, ...]]:
+    """The residual (1, nc) at a configuration (1, nq), and how far each constraint is open."""
+    r, lengths, angles = problem.measured(q)
+    return r, tuple(map(Opening, problem.names, lengths[0].tolist(), angles[0].tolist()))
+
+
+@np.errstate(over="ignore", invalid="ignore")
+def _pressed(problem: Problem, q: Matrix, limits: PositionLimits) -> tuple[JointAtLimit, ...]:
+    """The joints at their limits that the descent direction -Kᵀ r would move beyond them at q (1, nq)."""
+    down = np.zeros(problem.tree.nv)
+    for group in problem.together:
+        if group.work <= MOST_WORK:
+            at = group.evaluator.at(q)
+            b = group.row_scale * group.evaluator.residual(at)[0]
+            down[group.loops.velocities] = -group.jacobian(at)[0].T @ b
+    return limits.pressed(q[0], down)

@@ -15,11 +15,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eurdf.kinematics.array import Matrix, Vector
-from eurdf.kinematics.evaluation import evaluations
-from eurdf.kinematics.loop import independent_groups
 from eurdf.kinematics.position_limit import PositionLimits
+from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import numerical_rank
-from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
+from eurdf.kinematics.tolerances import BRANCH, ROUNDED_CORRECTION, SAME
 from eurdf.mechanism.joint import LIMIT_TOLERANCE
 
 if TYPE_CHECKING:
@@ -35,10 +34,6 @@ _MOST_CORRECTION = 0.1
 
 # The corrections use the Jacobian from before the step: they converge fast if it changes little.
 _MOST_CORRECTIONS = 12
-_CLOSED = 1e-13  # bound of each row of the residual after the corrections, m or rad, ...
-_ROUNDING = 1e-14  # ... unless a correction is smaller than this (rad, or characteristic lengths): redundant rows
-
-_SAME = 1e-6  # largest difference of configurations that count as the same (rad, or characteristic lengths)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,26 +78,28 @@ class Branch:
             limits: The position limits of the passive joints, if any.
             follow: Indices in v of other actuators that are not held: they follow as passive joints do.
         """
-        tree = self._tree = robot.tree
+        self._tree = robot.tree
         held = set(robot.actuation.idx_v.tolist()) - {actuator, *follow}
-        groups = [group for group in independent_groups(robot, held) if actuator in group.velocities]
-        length = characteristic_length(robot)
-        rows, unit = row_scale(robot, length), velocity_scale(robot, length)
-        self._loops = evaluations(robot, groups, rows, unit)[0] if groups else None
-        self._rows = self._loops.row_scale if self._loops else np.empty(0)
-        self.velocities = groups[0].velocities if groups else np.array([actuator])
-        self._unit = unit[self.velocities]
+        self._problem = Problem(robot, sorted(held))
+        moved = [group for group in self._problem.groups if actuator in group.loops.velocities]
+        self._group = moved[0] if moved else None
+        self._rows = np.empty(0) if self._group is None else self._group.row_scale
+        self.velocities = np.array([actuator]) if self._group is None else self._group.loops.velocities
+        self._unit = self._problem.spaces.scale[self.velocities]
         self._driven = self.velocities == actuator
         # The group has all velocities of a joint with several, those held too.
         self._passive = ~self._driven & ~np.isin(self.velocities, list(held))
         self.passive = self.velocities[self._passive]
         self._limits = limits
-        self._turns = tree.whole_turns[self.velocities]
+        self._turns = robot.tree.whole_turns[self.velocities]
 
     def at(self, q: Vector, correction: float = 0.0) -> Point:
         """The point at the closed configuration q (nq,)."""
-        residual = float(np.abs(self._residual(q)).max(initial=0.0))
-        K = self._loops.jacobian() if self._loops else np.zeros((0, len(self._unit)))
+        residual, K = 0.0, np.zeros((0, len(self._unit)))
+        if self._group is not None:
+            at = self._group.evaluator.at(q[None])
+            residual = float(np.abs(self._group.evaluator.residual(at)).max(initial=0.0))
+            K = self._group.jacobian(at)[0]
         left, values, right = np.linalg.svd(K[:, self._passive], full_matrices=False)
         rank = numerical_rank(values, values.max(initial=0.0))
         inverse = np.zeros(K.T.shape)
@@ -117,13 +114,13 @@ class Branch:
         q = self._moved(here.q, step)
         correction = np.zeros(len(step))
         for _ in range(_MOST_CORRECTIONS):
-            r = self._residual(q)
-            if np.abs(r).max(initial=0.0) <= _CLOSED:
+            r = np.empty(0) if self._group is None else self._group.residual(q[None])[0]
+            if np.abs(r).max(initial=0.0) <= BRANCH:
                 break
             more = here.inverse @ -(self._rows * r)
             q = self._moved(q, more)
             correction += more
-            if np.abs(more).max() <= _ROUNDING:
+            if np.abs(more).max() <= ROUNDED_CORRECTION:
                 break
         else:
             return None
@@ -165,14 +162,9 @@ class Branch:
         apart = self._tree.difference(one.q, other.q)[self.velocities]
         apart = np.where(self._turns, np.remainder(apart + math.pi, 2.0 * math.pi) - math.pi, apart) / self._unit
         # K_p⁺ K removes the motions that K_p leaves free.
-        return bool(np.abs(one.inverse @ (one.K @ apart)).max() <= _SAME)
-
-    def _residual(self, q: Vector) -> Vector:
-        """Rows (m,) of the loops, m and rad."""
-        return self._loops.residual(q) if self._loops else np.empty(0)
+        return bool(np.abs(one.inverse @ (one.K @ apart)).max() <= SAME)
 
     def _moved(self, q: Vector, step: Vector) -> Vector:
-        v = np.zeros(self._tree.nv)
-        v[self.velocities] = self._unit * step
-        # Pinocchio normalizes quaternions to first order only.
-        return self._tree.normalized(self._tree.integrate(q, v))
+        v = np.zeros((1, self._tree.nv))
+        v[:, self.velocities] = self._unit * step
+        return np.asarray(self._problem.tree.integrate(q[None], v)[0])

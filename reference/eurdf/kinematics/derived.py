@@ -1,10 +1,10 @@
-"""What is computed from a robot once and kept with it."""
+"""What is computed from a robot, or from its tree, once and kept with it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -12,8 +12,16 @@ if TYPE_CHECKING:
 _T = TypeVar("_T")
 
 
-def derived(robot: Robot, compute: Callable[[Robot], _T]) -> _T:
-    """What a function computes from a robot alone, computed when first asked for.
+class _Keeper(Protocol):
+    @property
+    def derived(self) -> dict[Any, Any]: ...
+
+
+_Kept = TypeVar("_Kept", bound=_Keeper)
+
+
+def derived(robot: _Kept, compute: Callable[[_Kept], _T]) -> _T:
+    """What a function computes from a robot or a tree alone, computed when first asked for.
 
     Threads that ask at once all get the same.
     """

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pinocchio import LOCAL, LOCAL_WORLD_ALIGNED, WORLD
 
-from eurdf.kinematics.array import Matrix, Vector
-from eurdf.kinematics.constraints.vector import origins, velocity_of_origin
+from eurdf.array import Matrix, Vector
+from eurdf.closures.se3 import skew
 from eurdf.kinematics.derived import borrowed
-from eurdf.kinematics.tree_kinematics import PairMemory
+from eurdf.kinematics.evaluate import Frames, frames
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
+
+
+def frames_of(robot: Robot, *names: str) -> Frames:
+    """Frames for few configurations; see `eurdf.kinematics.evaluate.frames`."""
+    return frames(robot, names, few=True)
 
 
 def frame_jacobian(robot: Robot, q: Vector, frame: str, reference: Any) -> Matrix:
@@ -29,21 +33,30 @@ def frame_jacobian(robot: Robot, q: Vector, frame: str, reference: Any) -> Matri
     Raises:
         ValueError: The frame is unknown or ambiguous, or ``reference`` is none of the three.
     """
-    with borrowed(robot, _memory, frame) as memory:
-        placements = memory.placements(q)
-        return memory.jacobian(_rows(placements, reference), [0])
+    with borrowed(robot, frames_of, frame) as found:
+        J: Matrix = in_reference(found, q[None], checked_reference(reference))[0]
+        return J
 
 
-def _memory(robot: Robot, frame: str) -> PairMemory:
-    return robot.tree.frames([frame]).memory()
+def checked_reference(reference: Any) -> Any:
+    """The axes of a twist.
+
+    Raises:
+        ValueError: ``reference`` is none of the three.
+    """
+    if reference not in (LOCAL, WORLD, LOCAL_WORLD_ALIGNED):
+        raise ValueError(f"reference is {reference!r}; expected pin.LOCAL, pin.WORLD or pin.LOCAL_WORLD_ALIGNED")
+    return reference
 
 
-def _rows(placements: Sequence[Any], reference: Any) -> Matrix:
-    """The rows (1, 6, 6) of the motion in the axes of the reference over the twist in the world."""
+def in_reference(found: Frames, q: Matrix, reference: Any) -> Matrix:
+    """The Jacobians (B, 6, nv) of one frame at q (B, nq), in the axes of the reference."""
+    at = found.at(q)
+    J: Matrix = found.jacobians(at)[:, 0]
+    R, p = (part[:, 0] for part in found.poses(at))
     if reference == LOCAL:
-        return np.asarray(placements[0].toActionMatrixInverse())[None]
+        inverse = R.swapaxes(1, 2)
+        return np.concatenate((inverse @ J[:, :3], inverse @ J[:, 3:]), axis=1)
     if reference == WORLD:
-        return np.eye(6)[None]
-    if reference == LOCAL_WORLD_ALIGNED:
-        return np.concatenate((velocity_of_origin(origins(placements))[0], np.eye(3, 6, 3)))[None]
-    raise ValueError(f"reference is {reference!r}; expected pin.LOCAL, pin.WORLD or pin.LOCAL_WORLD_ALIGNED")
+        return np.concatenate((J[:, :3] + skew(p) @ J[:, 3:], J[:, 3:]), axis=1)
+    return J

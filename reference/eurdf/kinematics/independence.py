@@ -8,15 +8,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eurdf.kinematics.array import Matrix, Vector
+from eurdf.kinematics.tolerances import ZERO
 
 #: Up to this condition number of the dimensionless K Kᵀ, in Frobenius' norm, the rows of K are independent beyond
 #: doubt. The smallest singular value of K is then at least 1e-3 of the largest one, and
 #: `eurdf.kinematics.rank.numerical_rank` counts all values if none is below 3e-5 of it.
 INDEPENDENT = 1e6
 
-#: Singular values of the dimensionless K below this, relative to the largest one, are zero beyond doubt, as those of
-#: redundant rows are. If each is zero or at least 1e-3 of the largest one, `numerical_rank` counts the latter.
-_ZERO = 1e-12
+# If each singular value is below `ZERO` or at least 1e-3 of the largest one, `numerical_rank` counts the latter.
 
 
 class _Kept(NamedTuple):
@@ -83,7 +82,7 @@ class Independence:
         except np.linalg.LinAlgError:
             return None
         largest = float(values.max(initial=0.0))
-        rank = int(np.count_nonzero(values > _ZERO * largest))
+        rank = int(np.count_nonzero(values > ZERO * largest))
         if not 0.0 < largest < math.inf or values[rank - 1] ** 2 * INDEPENDENT < largest**2:
             return None
         kept = self._kept = _Kept(np.array(K), norm(A.ravel()), float(values[rank - 1]), left[:, rank:])
@@ -102,7 +101,7 @@ class Independence:
         """Whether the combinations of rows that are redundant in the kept K are so in K, beyond doubt."""
         A = K * self._scale
         # The largest singular value of A is at least its norm over √nc.
-        return norm(kept.null.T.dot(A).ravel()) * math.sqrt(len(K)) <= _ZERO * norm(A.ravel())
+        return norm(kept.null.T.dot(A).ravel()) * math.sqrt(len(K)) <= ZERO * norm(A.ravel())
 
     def _without(self, null: Matrix, lambdas: Vector) -> Vector:
         """The λ without its part in the left null space."""

@@ -20,7 +20,7 @@ from eurdf.kinematics.array import Vector
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.forward_solver import CLOSED, ForwardSolver
 from eurdf.kinematics.independence import norm
-from eurdf.kinematics.least_solution import certain_inverse
+from eurdf.kinematics.rank import certain_inverse
 from eurdf.kinematics.tangent_space import TangentSpaces
 
 if TYPE_CHECKING:
@@ -77,8 +77,8 @@ class InverseSolver:
             return None
         A = K * self._dimensionless
         locked = A[:, self._others]
-        inverse = certain_inverse(locked @ locked.T, norm(A.ravel()))
-        if inverse is None:
+        (inverse,), (certain,) = certain_inverse((locked @ locked.T)[None], np.array([norm(A.ravel())]))
+        if not certain:
             return None
         taken = self._tree.inverse_dynamics(q, v, a, memory)
         required = taken - force

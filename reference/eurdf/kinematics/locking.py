@@ -12,9 +12,9 @@ from eurdf.kinematics.assembly import start
 from eurdf.kinematics.exceptions import CannotLock, LockedOpen
 from eurdf.kinematics.locked_mechanism import lock_joints
 from eurdf.kinematics.loop import find_loops
-from eurdf.kinematics.opening import CLOSED
 from eurdf.kinematics.residual import all_openings, residual
 from eurdf.kinematics.several import several
+from eurdf.kinematics.tolerances import CLOSED
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_tolerance
 from eurdf.pinocchio.robot import Robot, build_robot, carried_over

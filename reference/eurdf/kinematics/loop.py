@@ -82,6 +82,13 @@ def joints_of_loops(robot: Robot, loops: Iterable[Loop] | None = None) -> list[i
     return sorted(beyond)
 
 
+def moving_velocities(robot: Robot, closures: Iterable[int]) -> set[int]:
+    """Indices in v of the velocities that move the joints of some constraints; a mimic joint is moved by its leader."""
+    loops = find_loops(robot)
+    joints = joints_of_loops(robot, [loops[index] for index in closures])
+    return {velocity for joint in joints for velocity in robot.tree.moving_velocities[joint]}
+
+
 class LoopGroup(NamedTuple):
     """Loops that share joints, so that only together they can be closed.
 

@@ -33,9 +33,10 @@ def metric(weights: Vector | Matrix | None, nv: int) -> Matrix:
 
 
 def orthonormal(basis: Matrix, W: Matrix) -> Matrix:
-    """An orthonormal basis in the metric, Zᵀ W Z = 1, of the span of Z (nv, m)."""
-    lower = np.linalg.cholesky(basis.T @ W @ basis)
-    return np.asarray(np.linalg.solve(lower, basis.T).T, dtype=np.float64)
+    """Orthonormal bases in the metric, Zᵀ W Z = 1, of the spans of Z (…, nv, m)."""
+    across = basis.swapaxes(-1, -2)
+    lower = np.linalg.cholesky(across @ W @ basis)
+    return np.asarray(np.linalg.solve(lower, across).swapaxes(-1, -2))
 
 
 def nearest(basis: Matrix, W: Matrix, v: Vector) -> Vector:

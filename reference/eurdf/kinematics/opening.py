@@ -6,8 +6,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-#: A closure that is open by no more than this, in m or rad, counts as closed (EU-CLO-005).
-CLOSED = 1e-6
+from eurdf.kinematics.tolerances import CLOSED
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices, Mask, Vector
+from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.derived import derived
 from eurdf.mechanism.joint import LIMIT_TOLERANCE, is_no_range
 
@@ -65,22 +65,20 @@ class PositionLimits:
     def _limits_of(self, bounded: Indices) -> tuple[Indices, Vector, Vector]:
         return self.coordinates[bounded], self.lower[bounded], self.upper[bounded]
 
-    def clip(self, q: Vector, velocities: Indices | None = None) -> Vector:
-        """The configuration with the coordinates that the given velocities, all if None, drive within their limits."""
+    def clip(self, q: Matrix, velocities: Indices | None = None) -> Matrix:
+        """Configurations (…, nq) with the coordinates that the given velocities, all if None, drive within limits."""
         within = np.array(q)
         coordinates, lower, upper = (
             self._of_bounded if velocities is None else self._limits_of(velocities[self._bounded[velocities]])
         )
-        within[coordinates] = np.minimum(np.maximum(q[coordinates], lower), upper)
+        within[..., coordinates] = np.minimum(np.maximum(q[..., coordinates], lower), upper)
         return within
 
-    def room(self, q: Vector, velocities: Indices | None = None) -> tuple[Vector, Vector]:
-        """Distance from q to the lower limits (at most 0) and to the upper limits (at least 0), by velocity."""
-        if velocities is None:
-            at = q[self.coordinates]
-            return np.minimum(self.lower - at, 0.0), np.maximum(self.upper - at, 0.0)
-        at = q[self.coordinates[velocities]]
-        return np.minimum(self.lower[velocities] - at, 0.0), np.maximum(self.upper[velocities] - at, 0.0)
+    def room(self, q: Matrix, velocities: Indices | None = None) -> tuple[Matrix, Matrix]:
+        """Distances from q (…, nq) to the lower limits (at most 0) and to the upper ones (at least 0), by velocity."""
+        chosen = slice(None) if velocities is None else velocities
+        at = q[..., self.coordinates[chosen]]
+        return np.minimum(self.lower[chosen] - at, 0.0), np.maximum(self.upper[chosen] - at, 0.0)
 
     def pressed(self, q: Vector, v: Vector) -> tuple[JointAtLimit, ...]:
         """The joints that are within 1e-9 of a limit at q, and that v (nv,) would move beyond it."""

@@ -1,25 +1,21 @@
 """The residual of the constraints, r(q), and its derivative, the constraint Jacobian K(q).
 
 A 6d closure has the six rows log6(ᴬM_B), (linear, angular) (EU-CLO-008), and a 3d closure has the three of the origin
-of B in A (EU-CLO-009); `eurdf.kinematics.constraints` has the rows of every kind. K is the exact derivative,
+of B in A (EU-CLO-009); `eurdf.closures` has the rows of every kind. K is the exact derivative,
 K v = d/dt r(q ⊕ t v) at t = 0 (EU-CLO-010), at every configuration, closed or not.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from eurdf.kinematics.array import Matrix, Vector
-from eurdf.kinematics.constraint_stack import ConstraintStack, all_constraints
-from eurdf.kinematics.constraints.kind import State
 from eurdf.kinematics.derived import borrowed
+from eurdf.kinematics.evaluate import Evaluator, State, evaluator
 from eurdf.kinematics.finite import finite
 from eurdf.kinematics.opening import Opening
-from eurdf.kinematics.tree_kinematics import PairMemory
 from eurdf.pinocchio.arguments import checked_array
 
 if TYPE_CHECKING:
@@ -40,8 +36,9 @@ def residual(robot: Robot, q: Vector) -> Vector:
         ValueError: ``q`` has another shape or is not finite.
         NumericalOverflow: Coordinates or lengths are so large that the residual is not finite.
     """
-    with _evaluated(robot, q) as (stack, at):
-        r = stack.residual(at)
+    q = checked_array("q", q, (robot.tree.nq,))
+    with borrowed(robot, _constraints) as constraints:
+        r: Vector = constraints.residual(constraints.at(q[None]))[0]
     finite("the residual", r)
     return r
 
@@ -60,8 +57,10 @@ def residual_and_jacobian(robot: Robot, q: Vector) -> tuple[Vector, Matrix]:
         ValueError: As in `residual`.
         NumericalOverflow: As in `residual`, also of the derivative.
     """
-    with _evaluated(robot, q) as (stack, at):
-        r, K = stack.residual(at), stack.jacobian(at)
+    q = checked_array("q", q, (robot.tree.nq,))
+    with borrowed(robot, _constraints) as constraints:
+        at = constraints.at(q[None])
+        r, K = constraints.residual(at)[0], constraints.jacobian(at)[0]
     finite("the residual and its derivative", r, K)
     return r, K
 
@@ -83,8 +82,8 @@ def acceleration_drift(robot: Robot, q: Vector, v: Vector) -> Vector:
         ValueError: As in `residual`, also for ``v``.
     """
     q, v = checked_array("q", q, (robot.tree.nq,)), checked_array("v", v, (robot.tree.nv,))
-    with borrowed(robot, _memory) as memory:
-        return all_constraints(robot).drift(q, v, memory)
+    with borrowed(robot, _constraints) as constraints:
+        return np.asarray(constraints.drift(q[None], v[None])[0])
 
 
 def closure_openings(robot: Robot, q: Vector) -> tuple[Opening, ...]:
@@ -105,24 +104,22 @@ def closure_openings(robot: Robot, q: Vector) -> tuple[Opening, ...]:
 
 def all_openings(robot: Robot, q: Vector) -> tuple[Opening, ...]:
     """As `closure_openings`, also where they are not finite: such a constraint is open."""
-    with _evaluated(robot, q) as (stack, at):
-        found = stack.openings(at)
-    return tuple(Opening(of.name, *opening) for of, opening in zip(stack.constraints, found, strict=True))
+    q = checked_array("q", q, (robot.tree.nq,))
+    with borrowed(robot, _constraints) as constraints:
+        return _named(robot, constraints, constraints.at(q[None]))
 
 
 def openings_once(robot: Robot, q: Vector) -> tuple[Opening, ...]:
     """As `all_openings`, sooner if nothing else is evaluated of the robot."""
-    stack = all_constraints(robot)
-    found = stack.openings_once(q)
-    return tuple(Opening(of.name, *opening) for of, opening in zip(stack.constraints, found, strict=True))
+    constraints = _constraints(robot)
+    return _named(robot, constraints, constraints.at_once(q[None]))
 
 
-@contextmanager
-def _evaluated(robot: Robot, q: Vector) -> Iterator[tuple[ConstraintStack, State]]:
-    stack, q = all_constraints(robot), checked_array("q", q, (robot.tree.nq,))
-    with borrowed(robot, _memory) as memory:
-        yield stack, stack.at(q, memory)
+def _named(robot: Robot, constraints: Evaluator, at: State) -> tuple[Opening, ...]:
+    (lengths,), (angles,) = constraints.openings(at)
+    found = zip(robot.constraints, lengths.tolist(), angles.tolist(), strict=True)
+    return tuple(Opening(of.name, length, angle) for of, length, angle in found)
 
 
-def _memory(robot: Robot) -> PairMemory:
-    return all_constraints(robot).memory()
+def _constraints(robot: Robot) -> Evaluator:
+    return evaluator(robot, few=True)

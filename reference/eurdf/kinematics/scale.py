@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from eurdf.closures.coupling import Couplings
 from eurdf.kinematics.array import Vector
-from eurdf.kinematics.constraint_stack import all_constraints
 from eurdf.kinematics.loop import find_loops, joints_of_loops
+from eurdf.mechanism.constraint import Coupling
 from eurdf.pinocchio.ancestry import Ancestry
 
 if TYPE_CHECKING:
@@ -34,7 +35,15 @@ def characteristic_length(robot: Robot) -> float:
 
 def row_scale(robot: Robot, length: float) -> Vector:
     """Factors (nc,) that make the rows of the residual dimensionless: 1/length for those in m, 1 for those in rad."""
-    return all_constraints(robot).scale(length)
+    factor = {"m": 1.0 / length, "rad": 1.0}
+    rows: list[float] = []
+    for each in robot.constraints:
+        if isinstance(each, Coupling):
+            couplings = Couplings([each], robot.tree.coordinate, np.empty(0, np.intp))
+            rows += couplings.scale(length).tolist()
+        else:
+            rows += [factor[unit] for unit in each.units]
+    return np.array(rows)
 
 
 def velocity_scale(robot: Robot, length: float) -> Vector:

@@ -8,19 +8,16 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from eurdf.kinematics.array import Indices, Matrix, Vector
-from eurdf.kinematics.assembly import Assembler
+from eurdf.kinematics.assembly import close
 from eurdf.kinematics.derived import derived
+from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.residual import acceleration_drift, residual_and_jacobian
-from eurdf.kinematics.tangent_space import TangentSpaces
+from eurdf.kinematics.tolerances import LONGEST_MOTION, MOST_CORRECTION
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
-# Bound of the motion of each joint in one step (rad, or characteristic lengths), so that it stays on its branch.
-_LONGEST_MOTION = 0.5
-# A step is accepted if closing the loops after it moves the joints by at most this fraction of the step.
-_MOST_CORRECTION = 0.25
 # A Newton step below this (rad, or characteristic lengths) is the last one: its error is about its square.
 _LAST_STEP = 1e-6
 # Energy that a step must save, relative to what its slope promises.
@@ -89,7 +86,7 @@ def _sprung(robot: Robot) -> list[tuple[str, list[int], list[int], list[float]]]
     return found
 
 
-def spring_equilibrium(robot: Robot, q: Vector, held: Indices, coordinates: Indices, assembler: Assembler) -> Vector:
+def spring_equilibrium(robot: Robot, q: Vector, coordinates: Indices, problem: Problem, tolerance: float) -> Vector:
     """A local minimum of the energy of the springs, on the branch of a closed configuration.
 
     Newton's method in the motions z that keep the loops closed and the held joints still: with K F = 0, the energy has
@@ -100,11 +97,11 @@ def spring_equilibrium(robot: Robot, q: Vector, held: Indices, coordinates: Indi
     Args:
         robot: The robot.
         q: Configuration (nq,), closed.
-        held: Indices in v of the joints that are held.
-        coordinates: Indices in q of these joints.
-        assembler: Closes the loops of the robot with these joints held.
+        coordinates: Indices in q of the joints that are held.
+        problem: The robot with these joints given.
+        tolerance: Bound of each row of the residual for closed loops, m or rad.
     """
-    tree, spaces, springs = robot.tree, derived(robot, TangentSpaces), robot.tree.springs
+    tree, spaces, springs, held = robot.tree, problem.spaces, robot.tree.springs, problem.given
     root = np.sqrt(springs.stiffness)
     while True:
         _, K = residual_and_jacobian(robot, q)
@@ -120,23 +117,23 @@ def spring_equilibrium(robot: Robot, q: Vector, held: Indices, coordinates: Indi
         # With the absolute values, the step leads downhill also where the energy is not convex. Each axis has its own
         # bound: along one that springs hardly act on, such as the spin of a rod, the step is long and saves little.
         axes = axes[:, acting]
-        bound = _LONGEST_MOTION / np.abs((F @ axes) / spaces.scale[:, None]).max(axis=0)
+        bound = LONGEST_MOTION / np.abs((F @ axes) / spaces.scale[:, None]).max(axis=0)
         z = -axes @ np.clip((axes.T @ gradient) / np.abs(values[acting]), -bound, bound)
         v = F @ z
-        size = float(np.abs(v / spaces.scale).max(initial=0.0))
+        size, length = float(np.abs(v / spaces.scale).max(initial=0.0)), float(np.linalg.norm(v / spaces.scale))
         last = size <= _LAST_STEP
-        step = min(1.0, _LONGEST_MOTION / size) if size else 1.0
+        step = min(1.0, LONGEST_MOTION / size) if size else 1.0
         energy, slope = springs.energy(q), float(gradient @ z)
         while True:
             expected = tree.integrate(q, step * v)
             expected[coordinates] = q[coordinates]
-            closed = assembler.closed(expected)
-            if closed is not None:
-                corrected = float(np.linalg.norm(tree.difference(expected, closed) / spaces.scale))
-                near = corrected <= _MOST_CORRECTION * step * float(np.linalg.norm(v / spaces.scale)) or last
-                if near and (last or springs.energy(closed) <= energy + _SAVED * step * slope):
-                    q = closed
-                    break
+            closed = close(problem, expected[None], tolerance)
+            there = closed.q[0]
+            corrected = float(np.linalg.norm(tree.difference(expected, there) / spaces.scale))
+            near = closed.closes[0] and (corrected <= MOST_CORRECTION * step * length or last)
+            if near and (last or springs.energy(there) <= energy + _SAVED * step * slope):
+                q = there
+                break
             step *= 0.5
             if step < _SHORTEST_STEP:
                 return q

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from eurdf.kinematics.array import Matrix, Vector
+from eurdf.kinematics.array import Mask, Matrix, Vector
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.branch import Branch, Point
 from eurdf.kinematics.exceptions import NotClosable
+from eurdf.kinematics.path import Elements, follow
 from eurdf.kinematics.position_limit import PositionLimits, chosen_limits
 from eurdf.kinematics.scale import characteristic_length
+from eurdf.kinematics.tolerances import DEAD, START
 from eurdf.mechanism.joint_types import JointType
 from eurdf.pinocchio.arguments import checked_count
 
@@ -24,13 +26,7 @@ if TYPE_CHECKING:
 #: translates; the position limit of a passive joint; a dead point (singular configuration).
 End = Literal["limit", "half turn", "characteristic length", "passive limit", "dead point"]
 
-# A mechanism is at a dead point if the smallest singular value of K_p is below this fraction of the largest one met:
-# forces are multiplied by a hundred there, and play and rounding decide which branch it takes.
-_DEAD = 0.01
-
 _SHORTEST_STEP = 2.0**-12  # steps are halved down to this fraction of one
-
-_TOLERANCE = 1e-12  # bound of each row of the residual at the start, m or rad
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -112,7 +108,7 @@ def sweep(
             ``steps`` is less than 1.
     """
     steps, kept = checked_count("steps", steps, 1), chosen_limits(robot, limits)
-    first = assemble(robot, q0, tolerance=_TOLERANCE)
+    first = assemble(robot, q0, tolerance=START)
     if not first.closes:
         raise NotClosable("no closed configuration was found near the start", first.open, first.q)
     drive = _drive(robot, actuator, first.q, kept)
@@ -217,24 +213,29 @@ def _follow(branch: Branch, start: Point, reach: float, steps: int, largest: flo
     points, configurations = [start], [start.q]
     end: End | None = None
     joint, done, part = None, 0.0, 1.0  # fraction of a step that is done, and that is tried next
-    while len(configurations) <= steps and reach:
-        there = branch.step(points[-1], part * reach / steps)
-        if there is None and part > _SHORTEST_STEP:
-            part *= 0.5
-            continue
-        met = branch.passive_limit(points[-1], there) if there else None
+
+    def advance(_: Elements, so_far: Vector, h: Vector) -> tuple[Vector, Mask]:
+        nonlocal end, joint, done, part, largest
+        done = float(so_far[0])
+        there = branch.step(points[-1], float(h[0]) * reach / steps)
+        if there is None:
+            return h, np.zeros(1, dtype=bool)
+        met = branch.passive_limit(points[-1], there)
         if met:
             end, (joint, until) = "passive limit", met
-            done += part * until
-            break
-        if there is None or there.rank != start.rank or there.smallest < _DEAD * max(largest, there.smallest):
+            done += float(h[0]) * until
+        elif there.rank != start.rank or there.smallest < DEAD * max(largest, there.smallest):
             end = "dead point"
-            break
+        if end is not None:
+            return np.zeros(1), np.zeros(1, dtype=bool)
         points.append(there)
-        largest = max(largest, there.smallest)
-        done += part
-        if done == 1.0:
-            configurations.append(there.q)
-            done = 0.0
-        part = min(2.0 * part, 1.0 - done)
+        largest, part = max(largest, there.smallest), 2.0 * float(h[0])
+        return h, np.ones(1, dtype=bool)
+
+    while len(configurations) <= steps and reach:
+        if follow(advance, shortest=_SHORTEST_STEP, first=min(part, 1.0))[0] < 1.0:
+            end = end or "dead point"
+            break
+        done = 0.0
+        configurations.append(points[-1].q)
     return _Trail(points, configurations, reach * (len(configurations) - 1 + done) / steps, end, joint)

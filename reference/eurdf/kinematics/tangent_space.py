@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -11,99 +11,105 @@ import numpy as np
 
 from eurdf.kinematics.array import Indices, Matrix, Vector
 from eurdf.kinematics.finite import finite
-from eurdf.kinematics.least_solution import CERTAIN, least_solution
 from eurdf.kinematics.loop import LoopGroup, independent_groups
-from eurdf.kinematics.rank import numerical_rank, numerical_ranks
+from eurdf.kinematics.rank import are_finite, inverses, least_solution, numerical_ranks
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
+from eurdf.kinematics.tolerances import CERTAIN
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
-
-#: From so many groups of one shape on, they are decomposed together; of fewer, each alone takes less time.
+# From so many blocks of one shape on, they are decomposed together; of fewer, each alone takes less time.
 _MANY = 3
 
 
 class _Block(NamedTuple):
-    """The part of a tangent space in one group of loops.
+    """The part of a tangent space in one group of loops, of b elements.
 
     Attributes:
-        velocities: Indices in v of the velocities of the group.
-        rows: Its rows.
-        free: Orthonormal basis (n, f) of its free motions, dimensionless.
-        inverse: Pseudoinverse (n, m) of its block of K, dimensionless.
+        group: The group.
+        free: Orthonormal basis (b, n, f) of its free motions, dimensionless.
+        inverse: Pseudoinverse (b, n, m) of its block of K, dimensionless.
     """
 
-    velocities: Indices
-    rows: Indices
+    group: LoopGroup
     free: Matrix
     inverse: Matrix
 
 
 class TangentSpace:
-    """The null space of K, and its pseudoinverse; each basis is computed when first asked for."""
+    """The null spaces of K, and its pseudoinverses; each basis is computed when first asked for.
 
-    def __init__(self, blocks: Sequence[_Block], scale: Vector, row_scale: Vector, outside: Indices) -> None:
-        self._blocks, self._outside = blocks, outside
-        self._scale, self._row_scale = scale, row_scale
+    Arrays are those of one element where `TangentSpaces.at` found it, and have the elements first where
+    `TangentSpaces.each` did.
+
+    Attributes:
+        which: The elements (b,), by index.
+    """
+
+    def __init__(self, which: Indices, blocks: Sequence[_Block], spaces: TangentSpaces, alone: bool) -> None:
+        self.which = which
+        self._blocks, self._spaces, self._alone = blocks, spaces, alone
 
     @cached_property
     def basis(self) -> Matrix:
         """Z (nv, nv - rank) with K Z = 0 and Zᵀ Z = 1."""
         found = []
         for block in self._blocks:
-            scale = self._scale[block.velocities]
+            scale = self._spaces.scale[block.group.velocities]
             found.append(block.free if (scale == 1.0).all() else np.linalg.qr(scale[:, None] * block.free)[0])
         return self._whole(found)
 
     @cached_property
     def free(self) -> Matrix:
         """Z (nv, nv - rank) with K Z = 0 that is orthonormal in units of the characteristic length."""
-        return self._whole([self._scale[block.velocities, None] * block.free for block in self._blocks])
+        return self._whole([self._spaces.scale[block.group.velocities, None] * block.free for block in self._blocks])
 
     @cached_property
     def inverse(self) -> Matrix:
         """K⁺ (nv, nc): v = K⁺ b is the least-squares solution of K v = b with the least norm, dimensionless."""
-        inverse = np.zeros((len(self._scale), len(self._row_scale)))
-        for block in self._blocks:
-            own = self._scale[block.velocities, None] * block.inverse * self._row_scale[block.rows]
-            inverse[block.velocities[:, None], block.rows] = own
-        return inverse
+        scale, rows = self._spaces.scale, self._spaces.row_scale
+        inverse = np.zeros((len(self.which), len(scale), len(rows)))
+        for group, _, own in self._blocks:
+            inverse[:, group.velocities[:, None], group.rows] = scale[group.velocities, None] * own * rows[group.rows]
+        return inverse[0] if self._alone else inverse
 
     def _whole(self, bases: Sequence[Matrix]) -> Matrix:
         """Bases of the groups, and the unit motions of the velocities outside of them, as columns (nv, …)."""
-        count = sum(basis.shape[1] for basis in bases)
-        whole = np.zeros((len(self._scale), count + len(self._outside)))
+        count, outside = sum(basis.shape[2] for basis in bases), self._spaces.outside
+        whole = np.zeros((len(self.which), len(self._spaces.scale), count + len(outside)))
         column = 0
         for block, basis in zip(self._blocks, bases, strict=True):
-            whole[block.velocities, column : column + basis.shape[1]] = basis
-            column += basis.shape[1]
-        whole[self._outside, np.arange(count, whole.shape[1])] = 1.0
-        return whole
+            whole[:, block.group.velocities, column : column + basis.shape[2]] = basis
+            column += basis.shape[2]
+        whole[:, outside, np.arange(count, whole.shape[2])] = 1.0
+        return whole[0] if self._alone else whole
 
 
 class TangentSpaces:
-    """Computes tangent spaces of one robot; its structure is analysed once.
+    """Computes tangent spaces of one robot; its structure is analysed once. Plain data, which can be pickled.
 
     Attributes:
-        scale: Unit (nv,) of each velocity: the characteristic length for one of a loop that only translates, else 1.
         length: Characteristic length, m.
+        scale: Unit (nv,) of each velocity: the characteristic length for one of a loop that only translates, else 1.
         row_scale: Factors (nc,) that make the rows of K dimensionless.
         dimensionless: Factors (nc, nv) that make K dimensionless.
+        outside: Indices of the velocities outside of all loops.
     """
 
     def __init__(self, robot: Robot) -> None:
         self.length = characteristic_length(robot)
         self.scale = velocity_scale(robot, self.length)
         self.row_scale = row_scale(robot, self.length)
-        self.dimensionless = self.row_scale[:, None] * self.scale
-        groups = [group for group in independent_groups(robot) if len(group.velocities)]
+        with np.errstate(over="ignore", invalid="ignore"):  # lengths such as 1e200 m
+            self.dimensionless = self.row_scale[:, None] * self.scale
         outside = np.ones(robot.tree.nv, dtype=bool)
         alike: dict[tuple[int, int], list[LoopGroup]] = {}  # by the numbers of their rows and velocities
-        for group in groups:
-            outside[group.velocities] = False
-            alike.setdefault((len(group.rows), len(group.velocities)), []).append(group)
-        self._outside = np.flatnonzero(outside)
+        for group in independent_groups(robot):
+            if len(group.velocities):
+                outside[group.velocities] = False
+                alike.setdefault((len(group.rows), len(group.velocities)), []).append(group)
+        self.outside = np.flatnonzero(outside)
         self._alike = [
             (groups, np.array([group.rows for group in groups]), np.array([group.velocities for group in groups]))
             for groups in alike.values()
@@ -114,9 +120,9 @@ class TangentSpaces:
         A = K * self.dimensionless
         norm = math.sqrt(float(np.vdot(A, A)))
         if math.isfinite(norm):
-            solution = least_solution(A, self.row_scale * b, norm)
-            if solution is not None:
-                return self.scale * solution
+            solution, sure = least_solution(A[None], (self.row_scale * b)[None, :, None], np.array([norm]))
+            if sure[0]:
+                return self.scale * solution[0, :, 0]
         return self.at(K).inverse @ b
 
     def at(self, K: Matrix) -> TangentSpace:
@@ -124,62 +130,76 @@ class TangentSpaces:
 
         The rank is computed as in `eurdf.kinematics.analysis.analyze`: `numerical_rank` of the dimensionless K of each
         group of loops. At a singular configuration the space is larger than around it.
+
+        Raises:
+            NumericalOverflow: K is not finite.
         """
         A = K * self.dimensionless
         finite("the constraint Jacobian", A)
-        blocks: list[_Block] = []
+        (space,) = self._spaces(A[None], alone=True)
+        return space
+
+    def each(self, K: Matrix) -> Iterator[TangentSpace]:
+        """The tangent spaces for K (B, nc, nv): those of one dimension together. A K that is not finite has no rank."""
+        A = K * self.dimensionless
+        ok = are_finite(A)
+        return self._spaces(A if ok.all() else np.where(ok[:, None, None], A, 0.0), alone=False)
+
+    def _spaces(self, A: Matrix, alone: bool) -> Iterator[TangentSpace]:
+        """The spaces of dimensionless K (B, nc, nv), by their ranks."""
+        decomposed: list[tuple[LoopGroup, _Decomposed]] = []
         for groups, rows, velocities in self._alike:
-            if len(groups) < _MANY:
-                parts = [_part(A[group.rows[:, None], group.velocities]) for group in groups]
+            own = A[:, rows[:, :, None], velocities[:, None]]  # (B, groups, m, n)
+            if len(A) == 1 and len(groups) < _MANY:
+                found = [_decomposed(block[None]) for block in own[0]]
             else:
-                parts = _parts(A[rows[:, :, None], velocities[:, None]])
-            blocks += [_Block(group.velocities, group.rows, *part) for group, part in zip(groups, parts, strict=True)]
-        return TangentSpace(blocks, self.scale, self.row_scale, self._outside)
+                parts = _decomposed(own.reshape(-1, *own.shape[2:]))
+                found = [parts.of(slice(first, None, len(groups))) for first in range(len(groups))]
+            decomposed += zip(groups, found, strict=True)
+        ranks = np.array([each.rank for _, each in decomposed], dtype=np.intp).reshape(len(decomposed), len(A)).T
+        for of_kind in np.unique(ranks, axis=0) if len(A) > 1 else ranks:
+            which = np.flatnonzero((ranks == of_kind).all(axis=1))
+            blocks = [
+                _Block(group, each.right[which][:, :, rank:], each.inverse[which])
+                for (group, each), rank in zip(decomposed, of_kind.tolist(), strict=True)
+            ]
+            yield TangentSpace(which, blocks, self, alone)
 
 
-_Part = tuple[Matrix, Matrix]  # free motions (n, f) and pseudoinverse (n, m) of a block of K (m, n)
+class _Decomposed(NamedTuple):
+    """Blocks (b, m, n) of K, decomposed.
+
+    Attributes:
+        right: Orthonormal bases (b, n, n): after the first columns, as many as the rank, they span the free motions.
+        inverse: Pseudoinverses (b, n, m).
+        rank: (b,).
+    """
+
+    right: Matrix
+    inverse: Matrix
+    rank: Indices
+
+    def of(self, which: slice) -> _Decomposed:
+        """Some of them."""
+        return _Decomposed(self.right[which], self.inverse[which], self.rank[which])
 
 
-def _part(A: Matrix) -> _Part:
-    """Free motions and pseudoinverse of a block (m, n); the singular values decide on its rank where it is in doubt."""
-    part = _of_independent_rows(A)
-    if part is None:
-        left, values, right = np.linalg.svd(A)
-        rank = numerical_rank(values, values.max(initial=0.0))
-        return right[rank:].T, (right[:rank].T / values[:rank]) @ left[:, :rank].T
-    return part
-
-
-def _parts(A: Matrix) -> list[_Part]:
-    """The same of several blocks (g, m, n)."""
-    squares = np.einsum("gij,gij->gi", A, A)
+def _decomposed(A: Matrix) -> _Decomposed:
+    """Decompose blocks; the singular values decide on the rank of those that are in doubt."""
+    m, n = A.shape[1:]
+    squares = np.einsum("bij,bij->bi", A, A)
+    total = squares.sum(axis=1)
     # The smallest singular value is at most the norm of a row.
-    may_be = squares.min(axis=1) > CERTAIN * CERTAIN * squares.sum(axis=1)
-    found = [
-        _of_independent_rows(each) if possible else None for each, possible in zip(A, may_be.tolist(), strict=True)
-    ]
-    doubtful = np.array([index for index, part in enumerate(found) if part is None], dtype=np.intp)
-    if len(doubtful):
-        left, values, right = np.linalg.svd(A[doubtful])
-        ranks = numerical_ranks(values)
-        for rank in set(ranks.tolist()):
-            own = ranks == rank
-            V, s, Ut = right[own].swapaxes(1, 2), values[own, None, :rank], left[own, :, :rank].swapaxes(1, 2)
-            for index, *part in zip(doubtful[own].tolist(), V[:, :, rank:], (V[:, :, :rank] / s) @ Ut, strict=True):
-                found[index] = tuple(part)
-    return [part for part in found if part is not None]
-
-
-def _of_independent_rows(A: Matrix) -> _Part | None:
-    """The same of a block (m, n) whose rows are independent beyond doubt; None for any other."""
-    m, n = A.shape
-    if m > n:
-        return None
-    Q, R = np.linalg.qr(A.T, mode="complete")
-    try:
-        inverse = np.linalg.inv(R[:m])
-    except np.linalg.LinAlgError:  # singular to the last digit
-        return None
-    # 1/|R⁻¹| bounds the smallest singular value of A from below.
-    is_certain = CERTAIN * np.linalg.norm(A) * np.linalg.norm(inverse) < 1.0
-    return (Q[:, m:], Q[:, :m] @ inverse.T) if is_certain else None
+    if m <= n and (squares.min(axis=1, initial=np.inf) > CERTAIN * CERTAIN * total).all():
+        Q, R = np.linalg.qr(np.swapaxes(A, 1, 2), mode="complete")
+        inverse = inverses(R[:, :m])
+        # 1/|R⁻¹| bounds the smallest singular value of A from below.
+        if (CERTAIN * np.sqrt(total * np.einsum("bij,bij->b", inverse, inverse)) < 1.0).all():
+            return _Decomposed(Q, Q[:, :, :m] @ np.swapaxes(inverse, 1, 2), np.full(len(A), m))
+    left, values, right = np.linalg.svd(A)
+    rank = numerical_ranks(values)
+    counts = np.arange(values.shape[1]) < rank[:, None]
+    reciprocal = np.divide(1.0, values, out=np.zeros_like(values), where=counts)
+    right = np.swapaxes(right, 1, 2)
+    k = values.shape[1]
+    return _Decomposed(right, (right[:, :, :k] * reciprocal[:, None]) @ np.swapaxes(left[:, :, :k], 1, 2), rank)

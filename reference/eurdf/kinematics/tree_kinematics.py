@@ -8,54 +8,41 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Protocol
 
-from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
+from eurdf.array import Indices, Mask, Matrix, Vector
+from eurdf.closures.coupling import Coordinate
 from eurdf.mechanism.frame import Anchor
 
 
-class Coordinate(Protocol):
-    """The coordinate of a joint that has one."""
+class MovingJoint(Protocol):
+    """How a joint moves: where its coordinates are neutral, and by its velocities from there."""
 
     @property
-    def joint(self) -> int:
-        """Index of the joint that has it as its own."""
+    def name(self) -> str:
+        """Its name."""
+
+    @property
+    def parent(self) -> int:
+        """Index of its parent."""
+
+    @property
+    def placement(self) -> Matrix:
+        """Pose (4, 4) of its moving frame in its parent's, where its coordinates are neutral."""
+
+    @property
+    def subspace(self) -> Matrix:
+        """Motion subspace (6, n) there: rows linear, then angular, in its moving frame."""
+
+    @property
+    def nq(self) -> int:
+        """Number of its own coordinates: none of one that mimics another."""
 
     @property
     def idx_q(self) -> int:
-        """Its index in q."""
+        """Index in q of the first coordinate; its leader's if it mimics."""
 
     @property
-    def idx_v(self) -> int:
-        """Index of its velocity in v."""
-
-    @property
-    def translates(self) -> bool:
-        """Whether it is a length, m; else it is an angle, rad."""
-
-
-class PairMemory(Protocol):
-    """Memory in which the relative poses of pairs of frames A, B are computed, at one configuration after the other."""
-
-    def placements(self, q: Vector) -> Sequence[Any]:
-        """ᴬM_B of each pair at q (nq,), as `pin.SE3`."""
-
-    def jacobian(self, rows: Matrix, which: Sequence[int]) -> Matrix:
-        """Derivative of rows of some pairs by the velocities, where `placements` last was.
-
-        Args:
-            rows: Of each of these k pairs its rows (k, r, 6) over the twist of B against A, seen from A.
-            which: Indices of these pairs.
-
-        Returns:
-            The derivative (k r, n) of all rows, stacked, by the velocities that the pairs were asked for with.
-        """
-
-    def motions(self, q: Vector, v: Vector) -> tuple[Sequence[Any], Sequence[Any], Sequence[Any]]:
-        """How the pairs move at q (nq,) while every joint keeps its velocity v (nv,).
-
-        Returns:
-            ᴬM_B of each pair as `pin.SE3`; and as `pin.Motion` the twist ξ of B against A in the axes of B, m/s and
-            rad/s, and ξ̇.
-        """
+    def idx_v(self) -> tuple[int, ...]:
+        """Indices (n,) in v of the velocities that move it."""
 
 
 class Springs(Protocol):
@@ -84,16 +71,6 @@ class Springs(Protocol):
 
     def energy(self, q: Vector) -> float:
         """Energy that the springs store at q (nq,), J."""
-
-
-class FramePairs(Protocol):
-    """Pairs of frames A, B. Threads may share it, each with memory of its own."""
-
-    def memory(self) -> PairMemory:
-        """Memory to compute in."""
-
-    def placements_once(self, q: Vector) -> Sequence[Any]:
-        """ᴬM_B of each pair at q (nq,), without memory."""
 
 
 class TreeKinematics(Protocol):
@@ -174,17 +151,31 @@ class TreeKinematics(Protocol):
             ValueError: The tree has no such joint.
         """
 
-    def frames(self, names: Sequence[str]) -> FramePairs:
-        """Pairs of the world, as A, and the frames with these names, as B; by all velocities.
+    @property
+    def moving_joints(self) -> Sequence[MovingJoint]:
+        """The joints but number 0, in order."""
 
-        A frame is named by a link, a joint (its frame on the child side), or a frame of the description.
+    @property
+    def model(self) -> Any:
+        """Its `pin.Model`."""
+
+    @property
+    def world(self) -> Any:
+        """The frame of the world, as `eurdf.pinocchio.tree_few.Site`."""
+
+    @property
+    def derived(self) -> dict[Any, Any]:
+        """What is computed from the tree and kept with it."""
+
+    def site(self, anchor: Anchor) -> Any:
+        """Where an anchor is, as `eurdf.pinocchio.tree_few.Site`."""
+
+    def frame_sites(self, names: Sequence[str]) -> Sequence[Any]:
+        """Where frames are. A frame is named by a link, a joint (its frame on the child side), or in the description.
 
         Raises:
             ValueError: A frame is unknown, or two different frames have this name.
         """
-
-    def pairs(self, anchors: Sequence[tuple[Anchor, Anchor]], velocities: Indices | None) -> FramePairs:
-        """Pairs of frames; ``velocities`` (n,) are the indices in v of the columns of their Jacobian, all if None."""
 
     def memory(self, given: Any = None) -> Any:
         """Memory of the whole tree, which takes some 8 nv³ numbers, and saves time for small trees.

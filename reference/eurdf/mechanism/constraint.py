@@ -1,16 +1,12 @@
-"""The constraints that a mechanism has beside its spanning tree, one class a kind.
-
-What a kind means, its residual and the derivatives of that, is in `eurdf.kinematics.constraints`.
-"""
+"""The constraints that a mechanism has beside its spanning tree: closures (kinds: `eurdf.closures`) and couplings."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, ClassVar, Literal
+from dataclasses import dataclass, field, fields, replace
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
 from eurdf.mechanism.frame import Anchor
-from eurdf.mechanism.pose import Vector3
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -53,6 +49,31 @@ class Constraint:
         return self
 
 
+class Key(NamedTuple):
+    """What a file states of a closure in one of its keys, beside the frames.
+
+    Attributes:
+        title: Its name for readers.
+        description: What it is, with its unit.
+        unit: Its unit; empty if it has none.
+        least: The least value, or None.
+        examples: Values as files have them.
+    """
+
+    title: str
+    description: str
+    unit: str = ""
+    least: float | None = None
+    examples: tuple[Any, ...] = ()
+
+
+def key(
+    title: str, description: str, *, unit: str = "", least: float | None = None, example: Any, **options: Any
+) -> Any:
+    """A field of a kind that a file states in a key; ``options`` are those of `dataclasses.field`."""
+    return field(metadata={"key": Key(title, description, unit, least, (example,))}, **options)
+
+
 @dataclass(frozen=True, slots=True)
 class Compliance:
     """How much a closure gives way under load: for simulators with soft constraints, without effect on kinematics.
@@ -88,59 +109,19 @@ class Closure(Constraint):
         """Frames A and B."""
         return self.a, self.b
 
+    @property
+    def own(self) -> dict[str, Any]:
+        """What the closures of its kind state beside name, frames and compliance, by key."""
+        return {each.name: getattr(self, each.name) for each in fields(self) if "key" in each.metadata}
+
+    def stated(self) -> dict[str, Any]:
+        """The same as a file states it: what is not stated is the default."""
+        default = {each.name: each.default for each in fields(self)}
+        return {name: value for name, value in self.own.items() if value != default[name]}
+
     def with_orientation_free(self) -> Closure:
         """The closure that constrains positions alone as this one does; itself if it leaves orientations free."""
         return self
-
-
-@dataclass(frozen=True, slots=True)
-class PointClosure(Closure):
-    """The origin of B is at the origin of A: a ball joint."""
-
-    type: ClassVar[str] = "3d"
-    units: ClassVar[tuple[Unit, ...]] = ("m",) * 3
-
-
-@dataclass(frozen=True, slots=True)
-class FrameClosure(Closure):
-    """B is at A in position and orientation: a weld."""
-
-    type: ClassVar[str] = "6d"
-    units: ClassVar[tuple[Unit, ...]] = ("m",) * 3 + ("rad",) * 3
-
-    def with_orientation_free(self) -> PointClosure:
-        """The 3d closure of the same frames."""
-        return PointClosure(self.name, self.a, self.b)
-
-
-@dataclass(frozen=True, slots=True)
-class HingeClosure(Closure):
-    """The origin of B is at the origin of A, and an axis of B is along an axis of A: a revolute joint.
-
-    Attributes:
-        axes: The axis in A and the axis in B, of any length but zero.
-    """
-
-    type: ClassVar[str] = "hinge"
-    units: ClassVar[tuple[Unit, ...]] = ("m",) * 3 + ("rad",) * 2
-    axes: tuple[Vector3, Vector3] = ((0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
-
-    def with_orientation_free(self) -> PointClosure:
-        """The 3d closure of the same frames."""
-        return PointClosure(self.name, self.a, self.b)
-
-
-@dataclass(frozen=True, slots=True)
-class DistanceClosure(Closure):
-    """The origins of A and B are at a fixed distance: a massless rod between two ball joints.
-
-    Attributes:
-        length: The distance, m; positive.
-    """
-
-    type: ClassVar[str] = "distance"
-    units: ClassVar[tuple[Unit, ...]] = ("m",)
-    length: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,9 +150,3 @@ class Coupling(Constraint):
             coefficients=tuple(each for each in self.coefficients if each[0] not in coordinates),
             offset=self.offset - sum(c * coordinates[name] for name, c in self.coefficients if name in coordinates),
         )
-
-
-#: The kinds of closure that files can state, by their type there.
-CLOSURES: Mapping[str, type[Closure]] = {
-    kind.type: kind for kind in (PointClosure, FrameClosure, HingeClosure, DistanceClosure)
-}

@@ -55,3 +55,14 @@ class Ancestry:
             else:
                 total, node = total + weights[node], self.parents[node]
         return total
+
+
+def between(parents: Sequence[int], a: int, b: int) -> dict[int, float]:
+    """The nodes between two, up to where their paths meet: +1 for those on the way to b, -1 for those to a."""
+    signs = {}
+    while a != b:
+        if a > b:  # a parent has a lower index than its child
+            signs[a], a = -1.0, parents[a]
+        else:
+            signs[b], b = 1.0, parents[b]
+    return signs

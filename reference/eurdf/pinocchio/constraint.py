@@ -7,11 +7,14 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 import pinocchio as pin
 
+from eurdf.closures.frame import FrameClosure
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.point import PointClosure
 from eurdf.exceptions import EurdfError
-from eurdf.mechanism.constraint import Constraint, FrameClosure, HingeClosure, PointClosure
+from eurdf.mechanism.constraint import Constraint
 from eurdf.mechanism.pose import Vector3, direction
-from eurdf.pinocchio.frame_pairs import Site
 from eurdf.pinocchio.tree import PinocchioTree
+from eurdf.pinocchio.tree_few import Site
 
 #: Number of constraint models of each kind of constraint.
 _NUMBER: Mapping[type[Constraint], int] = {PointClosure: 1, FrameClosure: 1, HingeClosure: 2}

@@ -6,21 +6,22 @@ import difflib
 import math
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
+from eurdf.array import Matrix, Vector
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.arguments import checked_data
 from eurdf.pinocchio.coordinates import Slot, slots
 from eurdf.pinocchio.frame_index import frame_index
-from eurdf.pinocchio.frame_pairs import FramePairs, Indices, Matrix, Site, Vector
 from eurdf.pinocchio.frames import body_frame_ids
 from eurdf.pinocchio.placement import placement_of
 from eurdf.pinocchio.springs import NO_SPRINGS, Springs, build_springs
+from eurdf.pinocchio.tree_few import Site
 from eurdf.pinocchio.tree_recursion import TreeRecursion
 
 #: The dynamics of trees with more velocities do without a `pin.Data`, which would take more than 140 MB.
@@ -36,13 +37,29 @@ class Coordinate(NamedTuple):
     translates: bool
 
 
+class MovingJoint(NamedTuple):
+    """How a joint moves; see `eurdf.kinematics.tree_kinematics.MovingJoint`."""
+
+    name: str
+    parent: int
+    placement: Matrix
+    subspace: Matrix
+    nq: int
+    idx_q: int
+    idx_v: tuple[int, ...]
+
+
 class PinocchioTree:
     """A `eurdf.kinematics.tree_kinematics.TreeKinematics` by Pinocchio; its joints are those of the model.
 
     Attributes:
         model: The model.
         springs: The springs of its joints, which the model does not contain.
+        derived: What kinematics has computed from the tree and keeps with it.
     """
+
+    #: The frame of the world.
+    world = Site(0, pin.SE3.Identity())
 
     def __init__(
         self,
@@ -63,6 +80,7 @@ class PinocchioTree:
         self.model = model
         self.springs = springs
         self._sites = sites
+        self.derived: dict[Any, Any] = {}
         self._first = first
 
     @cached_property
@@ -160,6 +178,22 @@ class PinocchioTree:
         data = moving.createData()
         moving.calc(data, self._neutral)
         return np.array(data.S.reshape(6, -1))
+
+    @property
+    def moving_joints(self) -> list[MovingJoint]:
+        """Its joints but the universe; a mimic joint has the first coordinate and the velocity of its leader."""
+        model, found = self.model, []
+        for index in range(1, model.njoints):
+            moving = model.joints[index]
+            data = moving.createData()
+            moving.calc(data, self._neutral)
+            placement = (model.jointPlacements[index] * data.M).homogeneous
+            S, first = np.array(data.S.reshape(6, -1)), moving.idx_v
+            idx_v = tuple(range(first, first + moving.nvExtended))
+            found.append(
+                MovingJoint(model.names[index], self.parents[index], placement, S, moving.nq, moving.idx_q, idx_v)
+            )
+        return found
 
     @cached_property
     def _upper(self) -> npt.NDArray[np.bool_]:
@@ -275,17 +309,14 @@ class PinocchioTree:
             return TreeRecursion(self.model)
         return checked_data(self.model, given)
 
-    def pairs(self, anchors: Sequence[tuple[Anchor, Anchor]], velocities: Indices | None) -> FramePairs:
-        """See `eurdf.kinematics.tree_kinematics.TreeKinematics`."""
-        return FramePairs(self.model, self.parents, [(self.site(a), self.site(b)) for a, b in anchors], velocities)
+    def frame_sites(self, names: Sequence[str]) -> list[Site]:
+        """Where frames are. A frame is named by a link, a joint (its frame on the child side), or in the description.
 
-    def frames(self, names: Sequence[str]) -> FramePairs:
-        """See `eurdf.kinematics.tree_kinematics.TreeKinematics`."""
-        world, pairs = Site(0, pin.SE3.Identity()), []
-        for name in names:
-            frame = self.model.frames[frame_index(self.model, name)]
-            pairs.append((world, Site(frame.parentJoint, pin.SE3(frame.placement))))
-        return FramePairs(self.model, self.parents, pairs, None)
+        Raises:
+            ValueError: A frame is unknown, or two different frames have this name.
+        """
+        frames = [self.model.frames[frame_index(self.model, name)] for name in names]
+        return [Site(frame.parentJoint, pin.SE3(frame.placement)) for frame in frames]
 
     def jacobian_along(self, joints: Sequence[int], q: Vector) -> Matrix:
         """The world Jacobian (6, nvExtended) at q (nq,), zero but in the columns of the joints and of their ancestors.

@@ -11,40 +11,37 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from eurdf.closures.kind import MODULES
 from eurdf.kinematics.array import Vector
-from eurdf.kinematics.assembly import MOST_STEPS, RESTARTS, SPREADS
-from eurdf.kinematics.constraint_stack import all_constraints
+from eurdf.kinematics.assembly import SPREADS
 from eurdf.kinematics.derived import derived
-from eurdf.kinematics.descent import MOST_IDLE_STEPS
-from eurdf.kinematics.forward_kinematics import LEAST_CORRECTION, LONGEST_MOTION, MOST_CORRECTION, SHORTEST_STEP
 from eurdf.kinematics.loop import find_loops
-from eurdf.kinematics.opening import CLOSED as STILL_CLOSED
+from eurdf.kinematics.scale import row_scale
 from eurdf.kinematics.tangent_space import TangentSpaces
-from eurdf.mechanism.constraint import (
-    Constraint,
-    Coupling,
-    DistanceClosure,
-    FrameClosure,
-    HingeClosure,
-    PointClosure,
+from eurdf.kinematics.tolerances import (
+    CLOSED,
+    FOLLOWED,
+    LEAST_CORRECTION,
+    LONGEST_MOTION,
+    MOST_CORRECTION,
+    MOST_IDLE_STEPS,
+    MOST_STEPS,
+    RESTARTS,
+    SHORTEST_STEP,
 )
+from eurdf.mechanism.constraint import Closure, Constraint, Coupling
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.pinocchio.mimic import following
-from eurdf.transmissions.drive import CLOSED, MOST_SUBSTEPS, SINGULAR, Drive
+from eurdf.transmissions.drive import MOST_SUBSTEPS, SINGULAR, Drive
 from eurdf.writing.output_folder import write_files
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
-_KINDS: Mapping[type[Constraint], str] = {
-    PointClosure: "POINT",
-    FrameClosure: "FRAME",
-    HingeClosure: "HINGE",
-    DistanceClosure: "DISTANCE",
-    Coupling: "COUPLING",
-}
+#: What the kernel calls each kind of constraint.
+_KINDS = {type_: module.upper() for type_, module in MODULES.items()} | {Coupling.type: "COUPLING"}
 
 _X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 _HERE = (0.0, 0.0, 0.0)
@@ -308,13 +305,13 @@ int {name}_at_joints({name}_pose *pose, const double joints[{nj}], double motors
 
 def _source(tables: _Tables, name: str, drives: Sequence[Drive], steps: int, substeps: int) -> str:
     robot = tables.robot
-    scale = all_constraints(robot).scale(derived(robot, TangentSpaces).length)
+    scale = row_scale(robot, derived(robot, TangentSpaces).length)
     rows = {index: loop.rows for index, loop in enumerate(find_loops(robot))}
     path: list[str] = []
     constraints: list[str] = []
     for index in tables.constraints:
         constraint, of_rows = robot.constraints[index], rows[index]
-        if type(constraint) not in _KINDS:
+        if constraint.type not in _KINDS:
             raise ValueError(
                 f"constraint '{constraint.name}' is {constraint.type}, which the generated C does not support"
             )
@@ -346,10 +343,10 @@ def _source(tables: _Tables, name: str, drives: Sequence[Drive], steps: int, sub
         "BALLS": int(-1 in tables.coordinates),
     }
     bounds = {
-        "CLOSED": CLOSED,
+        "CLOSED": FOLLOWED,
         "SINGULAR": SINGULAR,
         "DETERMINED": _DETERMINED,
-        "STILL_CLOSED": STILL_CLOSED,
+        "STILL_CLOSED": CLOSED,
         "LEAST_DAMPING": _LEAST_DAMPING,
         "SHORTEST_STEP": SHORTEST_STEP,
         "TURN": 2.0 * math.pi,
@@ -413,16 +410,13 @@ typedef struct {
 
 def _constraint(constraint: Constraint, tables: _Tables, first: int, last: int, scale: Vector) -> str:
     ends = tables.anchors(constraint) or [(0, IDENTITY), (0, IDENTITY)]
-    a, b, length = _Z, _Z, 0.0
-    if isinstance(constraint, HingeClosure):
-        a, b = (direction(axis) for axis in constraint.axes)
-    elif isinstance(constraint, DistanceClosure):
-        length = constraint.length
-    elif isinstance(constraint, Coupling):
-        length = constraint.offset
+    own = constraint.own if isinstance(constraint, Closure) else {}
+    a, b = (direction(axis) for axis in own.get("axes", (_Z, _Z)))
+    length = constraint.offset if isinstance(constraint, Coupling) else own.get("length", 0.0)
     frames = ", ".join(f"{_rotation(pose)}, {_vector(pose.xyz)}" for _, pose in ends)
     return (
-        f"{{{_KINDS[type(constraint)]}, {constraint.rows}, {first}, {last}, {ends[0][0]}, {ends[1][0]}, {frames}, "
+        f"{{{_KINDS[constraint.type]}, {constraint.rows}, {first}, {last}, "
+        f"{ends[0][0]}, {ends[1][0]}, {frames}, "
         f"{_number(length)}, {_vector(a)}, {_vector(b)}, {{{', '.join(map(_vector, _across(a)))}}}, {_vector(scale)}}}"
     )
 

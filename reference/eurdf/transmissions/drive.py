@@ -3,23 +3,29 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices, Matrix, Vector
-from eurdf.kinematics.assembly import Assembler, assemble, start
+from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
+from eurdf.kinematics.assembly import assemble, closed_start, start
 from eurdf.kinematics.derived import borrowed, derived
-from eurdf.kinematics.evaluation import Evaluation
+from eurdf.kinematics.evaluate import evaluator
 from eurdf.kinematics.exceptions import NotClosable, TooFar
-from eurdf.kinematics.forward_kinematics import LEAST_CORRECTION, LONGEST_MOTION, MOST_CORRECTION, SHORTEST_STEP
-from eurdf.kinematics.least_solution import least_solution
-from eurdf.kinematics.loop import LoopGroup, find_loops, independent_groups, joints_of_loops, merged
-from eurdf.kinematics.opening import CLOSED as STILL_CLOSED
-from eurdf.kinematics.rank import numerical_rank
+from eurdf.kinematics.loop import independent_groups, merged, moving_velocities
+from eurdf.kinematics.path import Elements, follow
+from eurdf.kinematics.problem import Problem
+from eurdf.kinematics.rank import least_solution, norms, numerical_rank
 from eurdf.kinematics.residual import all_openings
 from eurdf.kinematics.tangent_space import TangentSpaces
+from eurdf.kinematics.tolerances import (
+    CLOSED,
+    FOLLOWED,
+    LEAST_CORRECTION,
+    LONGEST_MOTION,
+    MOST_CORRECTION,
+    MOVES,
+)
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.transmissions.exceptions import NoTransmission
 from eurdf.transmissions.joint_coordinates import JointCoordinates
@@ -27,9 +33,6 @@ from eurdf.transmissions.transmission import Transmission, at_one
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
-
-#: Bound of each row of the residual before the last correction, which leaves rounding, m or rad.
-CLOSED = 1e-11
 
 #: Bound of the substeps of a motion, with those that fail.
 MOST_SUBSTEPS = 256
@@ -39,12 +42,8 @@ SINGULAR = 1e-6
 #: Newton steps of a substep after the first one.
 STEPS = 4
 
-# The same at the first pose, m or rad.
+# Bound of each row of the residual at the first pose, m or rad.
 _AT_FIRST = 1e-13
-
-# A velocity is determined by the given ones if its entry in each unit vector of the motions that remain is below this,
-# and given velocities are independent if no combination of them opens the loops by more.
-_DETERMINED = 1e-6
 
 
 class Drive:
@@ -76,13 +75,20 @@ class Drive:
         spaces = derived(robot, TangentSpaces)
         self.closures: tuple[int, ...] = ()
         self.own: Indices = np.zeros(0, np.intp)
-        self._evaluation: Evaluation | None = None
-        groups = _moved_groups(robot, given.of.velocities.tolist(), at.held_index.tolist())
+        self._evaluator: Any = None
+        driven = given.of.velocities.tolist()
+        groups = [
+            group
+            for group in independent_groups(robot, {*driven, *at.held_index.tolist()})
+            if not moving_velocities(robot, group.closures).isdisjoint(driven)
+        ]
         if groups:
             group = merged(groups)
             self.closures, self.own = group.closures, group.velocities
-            columns = group._replace(velocities=np.concatenate((group.velocities, given.of.velocities)))
-            self._evaluation = Evaluation(robot, columns, spaces.row_scale, spaces.scale)
+            columns = np.concatenate((group.velocities, given.of.velocities))
+            self._evaluator = evaluator(robot, group.closures, columns, few=True)
+            self._rows = spaces.row_scale[group.rows]
+            self._factors = self._rows[:, None] * spaces.scale[columns]
         self._unit, self._given_unit = spaces.scale[self.own], spaces.scale[given.of.velocities]
         every = np.concatenate((self.own, given.of.velocities)).tolist()
         place = {velocity: index for index, velocity in enumerate(every)}
@@ -120,24 +126,25 @@ class Drive:
     def _followed(self, q: Vector, positions: Vector) -> tuple[Vector, Matrix | None]:
         """As `_newton`, along the straight path from q (nq,).
 
-        A substep that fails is halved; after two that do not, the next one is twice as long.
+        A substep that fails is halved; after one that does not, the next one is twice as long.
         """
         first = self.given.read(q)
         path = self.given.nearest(positions, first) - first
-        done, part, again = 0.0, 1.0, False
-        for _ in range(MOST_SUBSTEPS):
-            last = done + part >= 1.0
-            reached = self._newton(q, positions if last else first + (done + part) * path)
-            if reached is None:
-                part, again = 0.5 * part, False
-                if part < SHORTEST_STEP:
-                    break
-                continue
-            if last:
-                return reached
-            q, done = reached[0], done + part
-            part, again = min(2.0 * part if again else part, 1.0 - done), not again
-        raise self._unreached(q, positions)
+        here, left, found = q, MOST_SUBSTEPS, None
+
+        def advance(_: Elements, done: Vector, h: Vector) -> tuple[Vector, Mask]:
+            nonlocal here, left, found
+            left -= 1
+            if left < 0:
+                return np.zeros(1), np.zeros(1, dtype=bool)
+            to = float(done[0] + h[0])
+            found = self._newton(here, positions if to >= 1.0 else first + to * path)
+            here = here if found is None else found[0]
+            return h, np.array([found is not None])
+
+        if follow(advance)[0] < 1.0 or found is None:
+            raise self._unreached(here, positions)
+        return found
 
     def _newton(self, q: Vector, positions: Vector) -> tuple[Vector, Matrix | None] | None:
         """The closed pose (nq,) at the positions, and the derivative (k, n) there, dimensionless.
@@ -145,7 +152,7 @@ class Drive:
         None where the path has to be divided. The derivative is None where the rank of K_x is in doubt.
         """
         there, correction = self._moved(q, np.zeros(len(self.own)), positions), np.zeros(len(self.own))
-        if self._evaluation is None:
+        if self._evaluator is None:
             return there, np.zeros((0, len(self.given)))
         before = self.given.read(q)
         step = (self.given.nearest(positions, before) - before) / self._given_unit
@@ -153,8 +160,9 @@ class Drive:
             return None
         length = math.inf
         for _ in range(1 + STEPS):
-            r = self._evaluation.residual(there)
-            solution, certain = self._solved(r)
+            at = self._evaluator.at(there[None])
+            r = self._evaluator.residual(at)[0]
+            solution, certain = self._solved(r, self._evaluator.jacobian(at)[0] * self._factors)
             if solution is None:
                 return None
             motion = solution[:, 0]
@@ -167,26 +175,27 @@ class Drive:
                 correction += motion
             largest = np.abs(r).max()
             # Rounded numbers in files can make redundant rows contradict each other.
-            if largest <= CLOSED or (largest <= STILL_CLOSED and np.abs(motion).max() <= CLOSED):
+            if largest <= FOLLOWED or (largest <= CLOSED and np.abs(motion).max() <= FOLLOWED):
                 if math.hypot(*correction.tolist()) > max(MOST_CORRECTION * length, LEAST_CORRECTION):
                     return None
                 return there, solution[:, 1:] if certain else None
         return None
 
-    def _solved(self, r: Vector) -> tuple[Matrix | None, bool]:
+    def _solved(self, r: Vector, K: Matrix) -> tuple[Matrix | None, bool]:
         """K_x⁺ (-r, -K_g), dimensionless (k, 1 + n), where the residual is r, and whether its rank is certain.
 
         None at a singular pose.
         """
-        assert self._evaluation is not None
-        K, count = self._evaluation.jacobian(), len(self.own)
+        count = len(self.own)
         b = np.empty((len(r), 1 + len(self.given)))
-        b[:, 0] = -self._evaluation.row_scale * r
+        b[:, 0] = -self._rows * r
         b[:, 1:] = -K[:, count:]
         A = K[:, :count]
-        solution = least_solution(A, b, math.sqrt(float(np.vdot(K, K))))
-        if solution is not None or not np.isfinite(K).all():
+        (solution,), (certain,) = least_solution(A[None], b[None], norms(K[None]))
+        if certain:
             return solution, True
+        if not np.isfinite(K).all():
+            return None, True
         left, values, right = np.linalg.svd(A, full_matrices=False)
         rank = self.rank
         if (values[:rank] <= SINGULAR * values.max(initial=0.0)).any():
@@ -222,15 +231,14 @@ class Drive:
         Raises:
             NoTransmission: The given joints do not determine the others, or depend on each other.
         """
-        if self._evaluation is None:
+        if self._evaluator is None:
             return np.zeros((0, len(self.given))), 0
-        self._evaluation.residual(q)
-        A, count = self._evaluation.jacobian(), len(self.own)
+        A, count = self._evaluator.jacobian(self._evaluator.at(q[None]))[0] * self._factors, len(self.own)
         left, values, right = np.linalg.svd(A[:, :count])
         rank = numerical_rank(values, float(np.linalg.norm(A, 2)))
         opening = np.abs(left[:, rank:].T @ A[:, count:]).max(initial=0.0)
         remaining = np.concatenate((right[rank:].T, np.zeros((len(self.given), count - rank))))[self._asked]
-        if rank < self.rank or max(opening, np.abs(remaining).max(initial=0.0)) > _DETERMINED:
+        if rank < self.rank or max(opening, np.abs(remaining).max(initial=0.0)) > MOVES:
             raise self._refusal(q)
         return right[:rank].T @ ((left[:, :rank].T @ -A[:, count:]) / values[:rank, None]), rank
 
@@ -245,16 +253,6 @@ class Drive:
         return NoTransmission("G" if self._by_joints else "B_J", reason or f"{named} cannot move independently")
 
 
-def _moved_groups(robot: Robot, driven: Sequence[int], held: Sequence[int]) -> list[LoopGroup]:
-    """The groups of loops that driven velocities move, while others are held."""
-    tree, loops, found = robot.tree, find_loops(robot), []
-    for group in independent_groups(robot, {*driven, *held}):
-        joints = joints_of_loops(robot, [loops[index] for index in group.closures])
-        if not set(driven).isdisjoint(velocity for joint in joints for velocity in tree.moving_velocities[joint]):
-            found.append(group)
-    return found
-
-
 def closed_pose(robot: Robot, q: Vector | None) -> Vector:
     """A configuration, with its loops closed.
 
@@ -263,12 +261,5 @@ def closed_pose(robot: Robot, q: Vector | None) -> Vector:
         ValueError: It is not a configuration.
     """
     first = start(robot, q, "q")
-    with borrowed(robot, Assembler) as assembler:
-        assembler.tolerance, assembler.limits = _AT_FIRST, None
-        closed = assembler.closed(first)
-        if closed is not None:
-            return closed
-        assembly = assembler.assemble(first)
-    if not assembly.closes:
-        raise NotClosable("no closed configuration was found near q", assembly.open, assembly.q)
-    return assembly.q
+    with borrowed(robot, Problem) as problem:
+        return closed_start(problem, first, _AT_FIRST, "q")

@@ -17,22 +17,16 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
-from eurdf.kinematics.batch.problem import Problem
-from eurdf.kinematics.batch.tangent import tangents
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.exceptions import NotClosable
+from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import numerical_ranks
 from eurdf.kinematics.residual import all_openings, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
+from eurdf.kinematics.tolerances import CLOSED, MOVES
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
-
-# Largest row of the residual (m, rad) of a closed configuration (EU-CLO-005).
-CLOSED = 1e-6
-
-#: A unit motion moves a joint if it does so by more than this.
-MOVES = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,8 +75,7 @@ class Maps(NamedTuple):
 def maps(task: Task, q: Matrix) -> Maps:
     """The maps at closed configurations (b, nq)."""
     model, b = task.problem, len(q)
-    at = model.whole.at(np.ascontiguousarray(q.T))
-    closed = (np.abs(model.whole.residual(at)) <= CLOSED).all(axis=0)
+    closed = (np.abs(model.residual(q)) <= CLOSED).all(axis=1)
     nm, nJ = len(task.motors), len(task.joints)
     nowhere = np.full(b, -1)
     found = Maps(
@@ -95,11 +88,9 @@ def maps(task: Task, q: Matrix) -> Maps:
         held=np.zeros((b, len(task.springs)), dtype=bool),
         blocked=np.zeros(b, dtype=bool),
     )
-    K = model.whole.jacobian(at)
     which = np.flatnonzero(closed)
-    for space in tangents(model, K[:, :, which]):
-        own = which[space.which]
-        Z, _ = np.linalg.qr(space.basis / model.scale[:, None])
+    for space in model.spaces.each(model.jacobian(q[which])):
+        own, Z = which[space.which], space.free / model.spaces.scale[:, None]
         # Springs can hold another number of motions at each configuration.
         for elements, motions in [(own, Z)] if not len(task.springs) else zip(own[:, None], Z[:, None], strict=True):
             for whole, part in zip(found, _maps(task, motions)[0], strict=True):
@@ -123,7 +114,7 @@ def maps_at(robot: Robot, task: Task, q: Vector) -> tuple[Maps, Matrix]:
 
 def _maps(task: Task, Z: Matrix) -> tuple[Maps, Matrix]:
     """The maps of orthonormal motions (c, nv, m), and these without what springs hold; with springs, c is 1."""
-    c, scale = len(Z), task.problem.scale
+    c, scale = len(Z), task.problem.spaces.scale
     held, blocked = np.zeros((c, len(task.springs)), dtype=bool), np.zeros(c, dtype=bool)
     if len(task.springs):
         rigid, held[0], blocked[0] = _with_springs_held(task, Z[0])

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eurdf.kinematics.array import Indices, Mask
-from eurdf.kinematics.assembly import Assembler, start
-from eurdf.kinematics.batch.problem import problem
+from eurdf.kinematics.assembly import assembled, close, start
 from eurdf.kinematics.derived import borrowed, derived
-from eurdf.kinematics.loop import find_loops, independent_groups, joints_of_loops
-from eurdf.transmissions.maps import MOVES, Task, maps_at, pseudoinverse
+from eurdf.kinematics.loop import independent_groups, moving_velocities
+from eurdf.kinematics.problem import Problem, for_many
+from eurdf.kinematics.tangent_space import TangentSpaces
+from eurdf.kinematics.tolerances import MOVES, SOLVED
+from eurdf.transmissions.maps import Task, maps_at, pseudoinverse
 from eurdf.transmissions.selection import Selection, selection
 
 if TYPE_CHECKING:
@@ -86,24 +88,21 @@ def _in_loops_of(robot: Robot, velocities: Indices) -> Mask:
 
 def driven_loops(robot: Robot) -> list[tuple[set[int], set[int]]]:
     """Groups of loops while the actuators are held: the velocities that close each, and the actuated ones in it."""
-    tree, loops, actuated = robot.tree, find_loops(robot), set(robot.actuation.idx_v.tolist())
-    found = []
-    for group in independent_groups(robot, actuated):
-        joints = joints_of_loops(robot, [loops[index] for index in group.closures])
-        moving = {velocity for joint in joints for velocity in tree.moving_velocities[joint]}
-        found.append((set(group.velocities.tolist()), moving & actuated))
-    return found
+    actuated = set(robot.actuation.idx_v.tolist())
+    return [
+        (set(group.velocities.tolist()), moving_velocities(robot, group.closures) & actuated)
+        for group in independent_groups(robot, actuated)
+    ]
 
 
 def _moved(robot: Robot, velocities: Indices) -> Mask:
     """Which actuated velocities (nu,) move these velocities at some configurations; all if the loops do not close."""
-    model, actuated = problem(robot), robot.actuation.idx_v
-    task = Task(model, actuated, velocities, actuated, springs_of(robot))
+    actuated, scale = robot.actuation.idx_v, derived(robot, TangentSpaces).scale
+    task = Task(for_many(robot), actuated, velocities, actuated, springs_of(robot))
     random = np.random.default_rng(0)
     found = np.zeros(len(actuated), dtype=bool)
-    with borrowed(robot, Assembler) as assembler:
-        assembler.tolerance, assembler.limits = 1e-10, None
-        assembly = assembler.assemble(start(robot))
+    with borrowed(robot, Problem) as problem:
+        assembly = assembled(problem, start(robot), SOLVED)
         if not assembly.closes:
             return ~found
         q = assembly.q
@@ -113,8 +112,8 @@ def _moved(robot: Robot, velocities: Indices) -> Mask:
             _, Q = maps_at(robot, task, q)
             step = Q @ random.uniform(-1.0, 1.0, Q.shape[1])
             step *= _FAR / max(np.abs(step).max(initial=0.0), _FAR)
-            near = assembler.closed(robot.tree.integrate(q, model.scale * step))
-            _, Q = maps_at(robot, task, q if near is None else near)
+            near = close(problem, robot.tree.integrate(q, scale * step)[None])
+            _, Q = maps_at(robot, task, near.q[0] if near.closes[0] else q)
             inverse, _ = pseudoinverse(Q[None, actuated])
             found |= (np.abs(Q[velocities] @ inverse[0]) > MOVES).any(axis=0)
     return found

@@ -9,9 +9,9 @@ import numpy as np
 
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.scale import characteristic_length, velocity_scale
+from eurdf.kinematics.tolerances import MOVES
 from eurdf.transmissions.exceptions import NoTransmission
 from eurdf.transmissions.limits import motor_ranges
-from eurdf.transmissions.maps import MOVES
 from eurdf.transmissions.selection import selectable, selection
 from eurdf.transmissions.transmission import at_one
 

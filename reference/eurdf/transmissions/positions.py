@@ -10,7 +10,7 @@ import numpy as np
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import assemble, start
 from eurdf.kinematics.exceptions import NotClosable
-from eurdf.kinematics.forward_kinematics import farthest
+from eurdf.kinematics.forward import farthest
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.mechanism.joint import LIMIT_TOLERANCE
 from eurdf.pinocchio.arguments import checked_array

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
-from eurdf.kinematics.batch.forward_kinematics import forward_kinematics
+from eurdf.kinematics.batch import forward_kinematics
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.tangent_space import TangentSpaces

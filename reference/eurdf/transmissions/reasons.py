@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eurdf.kinematics.array import Matrix
-from eurdf.transmissions.maps import MOVES, pseudoinverse
+from eurdf.kinematics.tolerances import MOVES
+from eurdf.transmissions.maps import pseudoinverse
 from eurdf.transmissions.selection import Selection, selectable
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from eurdf.convert.export import export, files_of_meshes
 from eurdf.diagnostics import enumerated
 from eurdf.json_schema import PAIRS, ROW, ROWS, Keywords
 from eurdf.kinematics.array import Mask, Matrix, Vector
-from eurdf.kinematics.driven_motion import DrivenMotion
+from eurdf.kinematics.problem import Problem
 from eurdf.mechanism.joint import JointProperties
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.robot import build_robot
@@ -438,13 +438,13 @@ class _Holding:
         self._tree = robot.tree
         self._memory = robot.tree.memory()
         driven = [velocity for name in (*joints, *others) for velocity in robot.tree.velocities_of(name)]
-        self._motion = DrivenMotion(robot, tuple(driven))
+        self._motion = Problem(robot, driven)
         self._count = sum(len(robot.tree.velocities_of(name)) for name in joints)
 
     def torque(self, q: Vector) -> Vector:
         """Torques (n,) at q (nq,); NaN where the motion is in doubt."""
-        D = self._motion.derivative(q)
-        if D is None:
+        (D,), (sure,) = self._motion.derivative(q[None])
+        if not sure:
             return np.full(self._count, np.nan)
         zero = np.zeros(self._tree.nv)
         return np.asarray(D[:, : self._count].T @ self._tree.inverse_dynamics(q, zero, zero, self._memory))

@@ -12,10 +12,9 @@ from numpy.typing import ArrayLike
 
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import start
-from eurdf.kinematics.batch.arguments import checked_configurations, shape_of
-from eurdf.kinematics.batch.blocks import blocks
-from eurdf.kinematics.batch.problem import problem
+from eurdf.kinematics.blocks import blocks, checked_configurations, shape_of
 from eurdf.kinematics.finite import overflow_refused
+from eurdf.kinematics.problem import for_many
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.transmissions.curvature import second_derivative
 from eurdf.transmissions.exceptions import DependentVelocities, NoTransmission
@@ -147,7 +146,7 @@ class Transmission:
     def internal(self) -> Matrix:
         """Basis (nm, k) of the motor torques that have no effect, since the motors depend on each other: ker Gᵀ."""
         left, _, _ = np.linalg.svd(self._dimensionless(self.motor_index))
-        return np.asarray(left[:, self.rank_motors :] / problem(self.robot).scale[self.motor_index, None])
+        return np.asarray(left[:, self.rank_motors :] / for_many(self.robot).spaces.scale[self.motor_index, None])
 
     @cached_property
     def hessian(self) -> Matrix:
@@ -202,10 +201,10 @@ class Transmission:
 
     def _dimensionless(self, index: Indices) -> Matrix:
         """Rows (n, m) of the motions, dimensionless."""
-        return np.asarray(self.motions[index] / problem(self.robot).scale[index, None])
+        return np.asarray(self.motions[index] / for_many(self.robot).spaces.scale[index, None])
 
     def _refuse_dependent(self, names: tuple[str, ...], index: Indices, v: Vector) -> None:
-        unit, rows = problem(self.robot).scale[index], self._dimensionless(index)
+        unit, rows = for_many(self.robot).spaces.scale[index], self._dimensionless(index)
         nearest = unit * (rows @ (pseudoinverse(rows[None])[0][0] @ (v / unit)))
         if np.linalg.norm((v - nearest) / unit) > _MISSED * np.linalg.norm(v / unit):
             raise DependentVelocities(names, v, nearest)
@@ -333,14 +332,14 @@ def at_one(robot: Robot, joints: Selection, q: Vector, motors: Selection) -> Tra
         np.array(motors.velocities),
         np.array(joints.velocities),
         task.springs[at.held[0]],
-        task.problem.scale[:, None] * Q,
+        task.problem.spaces.scale[:, None] * Q,
     )
 
 
 def at_many(robot: Robot, joints: Selection, q: Matrix, motors: Selection) -> Transmissions:
     """The transmissions at several closed configurations (B, nq); see `transmission`."""
     task = _task(robot, motors, joints)
-    work = blocks(2 * task.problem.whole.numbers + 20 * robot.tree.nv, None, 1, None, None)
+    work = blocks(2 * task.problem.numbers + 20 * robot.tree.nv, None, 1, None, None)
     at = Maps(*work.map(maps, task, (q,)))
     forward, inverse = _codes(at, len(joints), len(motors))
     ranks = at.rank_motors, at.rank_joints
@@ -351,7 +350,7 @@ def at_many(robot: Robot, joints: Selection, q: Matrix, motors: Selection) -> Tr
 
 def _task(robot: Robot, motors: Selection, joints: Selection) -> Task:
     driven = np.union1d(robot.actuation.idx_v, motors.velocities)
-    return Task(problem(robot), motors.velocities, joints.velocities, driven, springs_of(robot))
+    return Task(for_many(robot), motors.velocities, joints.velocities, driven, springs_of(robot))
 
 
 def _codes(at: Maps, nJ: int, nm: int) -> tuple[tuple[Reason | None, ...], tuple[Reason | None, ...]]:

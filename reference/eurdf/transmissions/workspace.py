@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from eurdf.kinematics.array import Indices, Matrix, Vector
-from eurdf.kinematics.batch.arguments import checked_configurations, checked_rows
+from eurdf.kinematics.blocks import checked_configurations, checked_rows
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.transmissions.drive import closed_pose

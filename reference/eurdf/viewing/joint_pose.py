@@ -12,9 +12,9 @@ from collections.abc import Iterator
 import numpy as np
 import pinocchio as pin
 
+from eurdf.closures.se3 import quaternion_log
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.mechanism.joint_types import JointType
-from eurdf.pinocchio.logarithm import log3
 
 #: Names of the coordinates of a rotation.
 ROTATION = ("rotation x", "rotation y", "rotation z")
@@ -46,7 +46,7 @@ def values_at(kind: JointType, q: Vector) -> Vector:
     if kind.quaternion is None:
         x, y, cosine, sine = q
         return np.array((x, y, math.atan2(sine, cosine)))
-    return np.concatenate((q[:-4], log3(pin.Quaternion(np.asarray(q[-4:])).toRotationMatrix())))
+    return np.concatenate((q[:-4], quaternion_log(np.asarray(q[-4:]))))
 
 
 def motions(kind: JointType, here: Vector, there: Vector) -> Iterator[tuple[int, float]]:

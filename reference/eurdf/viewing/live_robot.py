@@ -14,7 +14,7 @@ import numpy as np
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
-from eurdf.mechanism.constraint import Closure, Constraint, Coupling, DistanceClosure, HingeClosure
+from eurdf.mechanism.constraint import Closure, Constraint, Coupling
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, root_joint
 from eurdf.mechanism.mimic import drivers
@@ -178,10 +178,9 @@ def _constraint(
             found["offset"] = constraint.offset
         case Closure():
             found["a"], found["b"] = (_anchor(each, bodies) for each in constraint.anchors)
-            if isinstance(constraint, HingeClosure):
-                found["axes"] = [direction(axis) for axis in constraint.axes]
-            if isinstance(constraint, DistanceClosure):
-                found["length"] = constraint.length
+            found |= constraint.own
+            if "axes" in found:
+                found["axes"] = [direction(axis) for axis in found["axes"]]
     return found
 
 

@@ -14,10 +14,10 @@ import pinocchio as pin
 
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.exceptions import NotClosable, SimulationDiverged
-from eurdf.kinematics.forward_kinematics import forward_kinematics
-from eurdf.kinematics.opening import CLOSED
+from eurdf.kinematics.forward import forward_kinematics
 from eurdf.kinematics.residual import residual
 from eurdf.kinematics.simulation import Simulation, simulate
+from eurdf.kinematics.tolerances import CLOSED
 from eurdf.pinocchio.robot import build_robot
 from eurdf.viewing.session import Session
 from eurdf.viewing.trajectory import Trajectory, frames_between

@@ -12,15 +12,17 @@ import coal
 import numpy as np
 import pinocchio as pin
 
+from eurdf.closures.se3 import quaternion_of
 from eurdf.kinematics.array import Matrix, Vector
-from eurdf.kinematics.derived import borrowed, derived
+from eurdf.kinematics.derived import borrowed
+from eurdf.kinematics.evaluate import Frames, frames_at
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.residual import all_openings
 from eurdf.mechanism.body import Inertia
+from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import direction
-from eurdf.pinocchio.frame_pairs import FramePairs, Site
 from eurdf.pinocchio.frames import body_frame_ids
 from eurdf.pinocchio.placement import placement_of
 from eurdf.viewing.surface import Surface, sphere, surface_of
@@ -185,9 +187,9 @@ class Scene:
 
     def at(self, q: Vector) -> Placed:
         """Where everything is at a configuration (nq,)."""
-        with borrowed(self.robot, _memory) as memory:
-            # The placements are Pinocchio's own and change with the next q.
-            poses = np.array([pin.SE3ToXYZQUAT(pose) for pose in memory.placements(q)])
+        with borrowed(self.robot, _body_frames) as memory:
+            (rotations,), (origins,) = memory.poses(memory.at(q[None]))
+            poses = np.concatenate((origins, quaternion_of(rotations)), axis=1)
             return Placed(poses, all_openings(self.robot, q))
 
     def skeleton(self, placed: Placed) -> Matrix:
@@ -224,16 +226,9 @@ class Scene:
         return np.concatenate(clouds)
 
 
-def _memory(robot: Robot) -> Any:
-    return derived(robot, _body_frames).memory()
-
-
-def _body_frames(robot: Robot) -> FramePairs:
-    ids = body_frame_ids(robot.mechanism)
-    frames = [robot.model.frames[ids[body.name]] for body in robot.mechanism.bodies]
-    world = Site(0, pin.SE3.Identity())
-    pairs = [(world, Site(frame.parentJoint, pin.SE3(frame.placement))) for frame in frames]
-    return FramePairs(robot.model, robot.tree.parents, pairs, None)
+def _body_frames(robot: Robot) -> Frames:
+    tree = robot.tree
+    return frames_at(tree, [tree.site(Anchor(body.name)) for body in robot.mechanism.bodies], few=True)
 
 
 def _shapes(robot: Robot, kind: Literal["visual", "collision"]) -> list[Part]:

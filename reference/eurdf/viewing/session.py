@@ -13,16 +13,17 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from eurdf.kinematics.analysis import Analysis, analyze
-from eurdf.kinematics.array import Vector
+from eurdf.kinematics.array import Mask, Vector
 from eurdf.kinematics.assembly import Assembly, assemble, start
 from eurdf.kinematics.branch import Branch, Point
 from eurdf.kinematics.derived import derived
-from eurdf.kinematics.inverse_kinematics import inverse_kinematics
-from eurdf.kinematics.opening import CLOSED
+from eurdf.kinematics.inverse import inverse_kinematics
+from eurdf.kinematics.path import Elements, follow
 from eurdf.kinematics.position_limit import driven_coordinates, position_limits
 from eurdf.kinematics.residual import residual
 from eurdf.kinematics.scale import characteristic_length
 from eurdf.kinematics.sweep import sweep
+from eurdf.kinematics.tolerances import CLOSED, DEAD, START
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.viewing.joint_pose import LONGEST, NAMES, ROTATION, motions, values_at
@@ -34,8 +35,6 @@ if TYPE_CHECKING:
 #: The configuration to start at, if the description has it.
 ASSEMBLED = "assembled"
 
-# A dead point is where the smallest singular value of K_p is below this fraction of the largest one met, as in `sweep`.
-_DEAD = 0.01
 # Steps are halved down to this fraction of the range of a slider.
 _SHORTEST_STEP = 2.0**-22
 # Corrections of a last step to the limit of a passive joint.
@@ -45,8 +44,6 @@ _REST_STEPS = 40
 _SHORTEST_REST_STEP = 2.0**-12
 # Longest step of a coordinate of a pose, as a part of the range of its slider.
 _POSE_STEP = 1.0 / 40.0
-# Bound of each row of the residual of a configuration that is shown as closed, m or rad.
-_TOLERANCE = 1e-12
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +118,7 @@ class Session:
             ValueError: ``q`` is not a configuration.
         """
         self.robot = robot
-        assembly = assemble(robot, start(robot, q, "q"), tolerance=_TOLERANCE)
+        assembly = assemble(robot, start(robot, q, "q"), tolerance=START)
         self.q: Vector = assembly.q
         self.first: Vector = assembly.q
         self.configurations: dict[str, Vector] = dict(robot.configurations)
@@ -202,8 +199,8 @@ class Session:
 
     def assemble(self) -> Assembly:
         """Close the loops near the configuration, within the position limits of all joints if possible."""
-        within = assemble(self.robot, self._limits.clip(self.q), tolerance=_TOLERANCE, limits=True)
-        found = within if within.closes else assemble(self.robot, self.q, tolerance=_TOLERANCE)
+        within = assemble(self.robot, self._limits.clip(self.q), tolerance=START, limits=True)
+        found = within if within.closes else assemble(self.robot, self.q, tolerance=START)
         self.q = found.q
         return found
 
@@ -324,28 +321,35 @@ class Session:
         """As `_moved`, from a closed configuration."""
         branch = self._branch(slider, velocity)
         here = branch.at(q)
-        largest = max(self._largest.get(velocity, 0.0), here.smallest)
-        shortest = _SHORTEST_STEP * (slider.upper - slider.lower)
-        left, part, stop = distance, distance, None
-        while left:
+        largest, stop = max(self._largest.get(velocity, 0.0), here.smallest), None
+
+        def advance(_: Elements, done: Vector, h: Vector) -> tuple[Vector, Mask]:
+            nonlocal here, largest, stop
+            part = float(h[0]) * distance
             there = branch.step(here, part)
-            if there is None and abs(part) > shortest:
-                part *= 0.5
-                continue
-            met = branch.passive_limit(here, there) if there else None
-            if there is not None and met is not None:
+            if there is None:
+                return h, np.zeros(1, dtype=bool)
+            if branch.passive_limit(here, there) is not None:
                 here, stop = self._to_limit(branch, here, part)
-                break
-            leaves = there is not None and there.smallest >= here.smallest
-            if there is None or there.rank != here.rank or not (leaves or there.smallest >= _DEAD * largest):
-                blocked = left == distance and any(slider.joint in each for each in self.analysis.dependent_actuators)
-                stop = Stop("blocked" if blocked else "dead point", slider.joint, begin + distance - left)
-                break
-            here, left = there, left - part
-            largest = max(largest, here.smallest)
-            part = math.copysign(min(abs(2.0 * part), abs(left)), left)
+            elif there.rank != here.rank or (there.smallest < here.smallest and there.smallest < DEAD * largest):
+                stop = self._dead_point(slider, begin + float(done[0]) * distance, float(done[0]) == 0.0)
+            if stop is not None:
+                return np.zeros(1), np.zeros(1, dtype=bool)
+            here, largest = there, max(largest, there.smallest)
+            return h, np.ones(1, dtype=bool)
+
+        done = 1.0
+        if distance:
+            shortest = 0.5 * _SHORTEST_STEP * (slider.upper - slider.lower) / abs(distance)
+            done = follow(advance, shortest=min(shortest, 1.0))[0]
+        if done < 1.0 and stop is None:
+            stop = self._dead_point(slider, begin + done * distance, done == 0.0)
         self._largest[velocity] = largest if math.isfinite(largest) else 0.0
         return here.q, stop
+
+    def _dead_point(self, slider: Slider, at: float, at_once: bool) -> Stop:
+        blocked = at_once and any(slider.joint in each for each in self.analysis.dependent_actuators)
+        return Stop("blocked" if blocked else "dead point", slider.joint, at)
 
     def _to_limit(self, branch: Branch, here: Point, part: float) -> tuple[Point, Stop]:
         """The last point before a passive joint exceeds its limit, on a step that does."""
@@ -375,23 +379,25 @@ class Session:
         """As `_follow`, for a robot whose springs decide what the actuators do not: it is at rest after each step."""
         tree = self.robot.tree
         rest = SpringRest(self.robot, self._branch(slider, velocity).passive)
-        longest, left = (slider.upper - slider.lower) / _REST_STEPS, distance
+        longest = (slider.upper - slider.lower) / _REST_STEPS / abs(distance) if distance else 1.0
         pressed: tuple[int, ...] = ()
-        part = math.copysign(min(abs(distance), longest), distance)
-        while left:
+        met: list[int] = []
+
+        def advance(_: Elements, done: Vector, h: Vector) -> tuple[Vector, Mask]:
+            nonlocal q, pressed, met
+            h = np.minimum(h, longest)
             v = np.zeros(tree.nv)
-            v[velocity] = part
+            v[velocity] = float(h[0]) * distance
             there = rest.near(tree.integrate(q, v))
+            met = [each for each in there.pressed if each not in pressed]
             if there.q is not None:
-                q, left, pressed = there.q, left - part, there.pressed
-                part = math.copysign(min(abs(2.0 * part), abs(left), longest), distance)
-            elif abs(part) > _SHORTEST_REST_STEP * longest:
-                part *= 0.5
-            else:
-                met = [each for each in there.pressed if each not in pressed]
-                dead = Stop("dead point", slider.joint, begin + distance - left)
-                return q, self._at_limit(met[0], q) if met else dead
-        return q, None
+                q, pressed = there.q, there.pressed
+            return h, np.array([there.q is not None])
+
+        done = follow(advance, shortest=min(_SHORTEST_REST_STEP * longest, 1.0))[0] if distance else 1.0
+        if done == 1.0:
+            return q, None
+        return q, self._at_limit(met[0], q) if met else Stop("dead point", slider.joint, begin + done * distance)
 
     def _branch(self, slider: Slider, velocity: int) -> Branch:
         if velocity not in self._branches:

@@ -13,16 +13,15 @@ from eurdf.kinematics.position_limit import driven_coordinates, position_limits
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.residual import residual, residual_and_jacobian
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
+from eurdf.kinematics.tolerances import MOST_STEPS, START
 from eurdf.mechanism.joint import LIMIT_TOLERANCE
 
 if TYPE_CHECKING:
     from eurdf.kinematics.array import Matrix
     from eurdf.pinocchio.robot import Robot
 
-_MOST_STEPS = 60
 _LONGEST = 0.3  # bound of the motion of a joint in one step (rad, or characteristic lengths)
 _LAST = 1e-10  # a step below this (rad, or characteristic lengths) is the last one
-_CLOSED = 1e-12  # bound of each row of the residual at the end, m or rad
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +69,7 @@ class SpringRest:
         start = q[self._coordinates]
         lower, upper = np.minimum(self._lower, start), np.maximum(self._upper, start)
         pressed: dict[int, float] = {}
-        for _ in range(_MOST_STEPS):
+        for _ in range(MOST_STEPS):
             step, pressed = self._step(q, lower, upper)
             size = float(np.abs(step).max(initial=0.0))
             v = np.zeros(self._robot.tree.nv)
@@ -81,7 +80,7 @@ class SpringRest:
         at_limits = all(
             abs(q[self._coordinates[column]] - limit) <= LIMIT_TOLERANCE for column, limit in pressed.items()
         )
-        closed = np.abs(residual(self._robot, q)).max(initial=0.0) <= _CLOSED
+        closed = np.abs(residual(self._robot, q)).max(initial=0.0) <= START
         return Rest(q if closed and at_limits else None, tuple(int(self._free[column]) for column in pressed))
 
     def _step(self, q: Vector, lower: Vector, upper: Vector) -> tuple[Vector, dict[int, float]]:

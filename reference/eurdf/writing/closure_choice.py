@@ -6,8 +6,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from eurdf.closures.kind import REGISTRY
 from eurdf.diagnostics import enumerated
-from eurdf.mechanism.constraint import CLOSURES, Closure
+from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.writing.naming_conventions import ClosureType
 
@@ -149,7 +150,7 @@ def _candidate(mechanism: Mechanism, types: Mapping[str, ClosureType]) -> _Candi
 
 
 def _with_type(closure: Closure, type_: ClosureType | None) -> Closure:
-    return CLOSURES[type_](closure.name, closure.a, closure.b) if type_ else closure
+    return REGISTRY[type_](closure.name, closure.a, closure.b) if type_ else closure
 
 
 def _dependent(together: Sequence[str]) -> str:

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.point import PointClosure
 from eurdf.diagnostics import Diagnostics, enumerated
-from eurdf.format.own_key import is_own_key
+from eurdf.format.conventions import VERSION2_0, VERSION2_1, is_own_key
 from eurdf.format.urdf.data import Urdf
-from eurdf.format.version import VERSION2_0, VERSION2_1
 from eurdf.linking.merging import find_chains
 from eurdf.linking.rereading import reread
 from eurdf.linking.urdf_tree import joint_of
-from eurdf.mechanism.constraint import HingeClosure, PointClosure
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.mechanism import Mechanism, Root
 from eurdf.mechanism.spanning_tree import rigid_poses

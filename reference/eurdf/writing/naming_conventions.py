@@ -8,9 +8,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal, cast
 
-from eurdf.format.own_key import is_own_key
+from eurdf.format.conventions import VERSION2_0, is_own_key
 from eurdf.format.urdf.data import Urdf
-from eurdf.format.version import VERSION2_0
 from eurdf.format.yaml_text import Entry, Value, entries_of, lines_of, modeline, text_of
 from eurdf.linking.merging import MASSLESS
 from eurdf.mechanism.joint_types import ROTARY

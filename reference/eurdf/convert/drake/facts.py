@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 
+from eurdf.closures.distance import DistanceClosure
 from eurdf.convert.common_losses import CONVERSION, impossible_inertia, unequal
 from eurdf.convert.losses import Motor, approximate, by_writer, dropped, exact
 from eurdf.convert.urdf.facts import EXACT as URDF_EXACT
 from eurdf.convert.urdf.facts import URDF_ROWS
-from eurdf.mechanism.constraint import DistanceClosure
 from eurdf.mechanism.joint import Joint
 
 #: Stiffness of a coupling, N/m or N·m/rad: Drake has no rigid ones of three joints, and softens what is stiffer than

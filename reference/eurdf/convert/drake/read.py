@@ -12,12 +12,13 @@ from dataclasses import dataclass, field, replace
 
 from lxml import etree
 
+from eurdf.closures.point import PointClosure
 from eurdf.convert.import_format import LOCKED, ImportFormat, ImportInput, RobotRead, loss_kinds, without_locks
 from eurdf.convert.losses import approximate, dropped
 from eurdf.convert.names import UniqueNames
 from eurdf.convert.urdf.read import URDF_LOSSES, UrdfTree, read_tree
 from eurdf.convert.xml_elements import Elements, local, named
-from eurdf.mechanism.constraint import Closure, Coupling, PointClosure
+from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType

@@ -15,6 +15,8 @@ from pathlib import PurePosixPath
 
 from lxml import etree
 
+from eurdf.closures.frame import FrameClosure
+from eurdf.closures.hinge import HingeClosure
 from eurdf.convert.conventions import point_on
 from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.drake.facts import CLOSURES, EXACT, LEAST, ROWS, STIFFNESS, can_have_actuator, has_one_acceleration
@@ -25,7 +27,7 @@ from eurdf.convert.parts import Part, part_of
 from eurdf.convert.steps import AXES, ExportedJoint
 from eurdf.convert.urdf.tree import UrdfTree
 from eurdf.mechanism.body import Body, Inertia
-from eurdf.mechanism.constraint import Closure, Coupling, FrameClosure, HingeClosure
+from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism

@@ -10,12 +10,15 @@ from dataclasses import replace
 
 from lxml import etree
 
+from eurdf.closures.frame import FrameClosure
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.point import PointClosure
 from eurdf.convert.import_format import ImportFormat, ImportInput, RobotRead, loss_kinds
 from eurdf.convert.losses import approximate
 from eurdf.convert.names import UniqueNames
 from eurdf.convert.urdf.read import URDF_LOSSES, UrdfTree, loop_left_out, read_tree
 from eurdf.convert.xml_elements import named
-from eurdf.mechanism.constraint import Closure, FrameClosure, HingeClosure, PointClosure
+from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.frame import Anchor, Frame
 
 _LOSSES = {

@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from eurdf.closures.distance import DistanceClosure
+from eurdf.closures.frame import FrameClosure
+from eurdf.closures.point import PointClosure
 from eurdf.convert.mjcf.compiled import Element
 from eurdf.convert.mjcf.read_state import MjcfReading, pose_from, vector
-from eurdf.mechanism.constraint import Closure, Coupling, DistanceClosure, FrameClosure, PointClosure
+from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType

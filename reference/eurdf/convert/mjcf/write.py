@@ -14,6 +14,8 @@ from pathlib import PurePosixPath
 
 from lxml import etree
 
+from eurdf.closures.distance import DistanceClosure
+from eurdf.closures.hinge import HingeClosure
 from eurdf.convert.conventions import neighbours, point_on, position_gain
 from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format
@@ -25,7 +27,7 @@ from eurdf.convert.names import UniqueNames
 from eurdf.convert.parts import Part, part_of
 from eurdf.convert.steps import AXES, ExportedJoint, in_series
 from eurdf.mechanism.body import Body, Shape
-from eurdf.mechanism.constraint import Closure, Coupling, DistanceClosure, HingeClosure
+from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT

@@ -18,6 +18,9 @@ from typing import Any
 
 from lxml import etree
 
+from eurdf.closures.frame import FrameClosure
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.point import PointClosure
 from eurdf.convert.import_format import (
     LOCKED,
     SIMULATION,
@@ -33,7 +36,7 @@ from eurdf.convert.losses import dropped, exact
 from eurdf.convert.names import UniqueNames
 from eurdf.convert.xml_elements import Elements, inside, named, read_root
 from eurdf.mechanism.body import Body, Inertia, Shape
-from eurdf.mechanism.constraint import Closure, FrameClosure, HingeClosure, PointClosure
+from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType

@@ -15,6 +15,8 @@ from dataclasses import replace
 
 from lxml import etree
 
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.point import PointClosure
 from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.exceptions import CannotExport
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format, coordinates_at
@@ -26,7 +28,7 @@ from eurdf.convert.parts import Part, part_of
 from eurdf.convert.sdf.facts import CLOSURES, EXACT, LEAST, ROWS, VERSION
 from eurdf.convert.steps import AXES, in_series, turn_type
 from eurdf.mechanism.body import Body, Inertia, Shape
-from eurdf.mechanism.constraint import Closure, Coupling, HingeClosure, PointClosure
+from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import ROTARY, JointType

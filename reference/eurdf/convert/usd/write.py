@@ -14,6 +14,8 @@ from itertools import combinations, permutations
 
 import numpy as np
 
+from eurdf.closures.distance import DistanceClosure
+from eurdf.closures.hinge import HingeClosure
 from eurdf.convert.conventions import neighbours, position_gain
 from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format, coordinates_at
@@ -28,7 +30,7 @@ from eurdf.convert.usd.joints import KINDS, WHOLE, Freedom, axis_and_frame, free
 from eurdf.diagnostics.extras import install_command
 from eurdf.exceptions import MissingExtra
 from eurdf.mechanism.body import Body, Shape
-from eurdf.mechanism.constraint import Closure, Coupling, DistanceClosure, HingeClosure
+from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT

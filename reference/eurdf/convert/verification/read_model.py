@@ -11,9 +11,12 @@ from typing import Any, NamedTuple
 import numpy as np
 import pinocchio as pin
 
+from eurdf.closures.distance import DistanceClosure
+from eurdf.closures.frame import FrameClosure
+from eurdf.closures.hinge import HingeClosure
 from eurdf.convert.coordinates import Coordinates, Matrix, Vector
 from eurdf.kinematics.opening import Opening
-from eurdf.mechanism.constraint import Closure, DistanceClosure, FrameClosure, HingeClosure
+from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.pose import direction
 from eurdf.pinocchio.robot import Robot, build_robot

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
+from eurdf.closures.hinge import HingeClosure
 from eurdf.convert.coordinates import Matrix, Vector
 from eurdf.convert.verification.read_model import CannotRead, Exported, Range, ReadModel, opening_of
 from eurdf.kinematics.mass_matrix import mass_matrix
 from eurdf.kinematics.opening import Opening
 from eurdf.mechanism.body import Inertia
-from eurdf.mechanism.constraint import HingeClosure
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import build_robot
 

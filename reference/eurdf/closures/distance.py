@@ -1,0 +1,72 @@
+"""distance: the origins of A and B are as far apart as a rod is long (EU-CLO-015)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from eurdf.array import Matrix, Vector
+from eurdf.closures.kind import ClosureKind, RelativeMotions, RelativePoses, no_angle
+from eurdf.closures.se3 import cross, dot, norm
+from eurdf.mechanism.constraint import Unit, key
+
+
+@dataclass(frozen=True, slots=True)
+class DistanceClosure(ClosureKind):
+    """The origins of A and B are at a fixed distance: a massless rod between two ball joints.
+
+    r = |p| - length, m, with p = ᴬp_B. At p = 0, where r has no derivative, u = p / |p| is taken along x of A.
+
+    Attributes:
+        length: The distance, m; positive.
+    """
+
+    type: ClassVar[str] = "distance"
+    units: ClassVar[tuple[Unit, ...]] = ("m",)
+    length: float = key(
+        "Length", "Distance between the origins of A and B, m, at least 0.0001.", unit="m", least=1e-4, example=0.155
+    )
+
+    @classmethod
+    def prepare(cls, closures: Sequence[DistanceClosure]) -> Vector:
+        """The lengths (k,)."""
+        return np.array([closure.length for closure in closures])
+
+    @staticmethod
+    def residual(poses: RelativePoses, fixed: Vector) -> Matrix:
+        """|p| - length."""
+        return np.asarray(norm(poses.position) - fixed)[..., None]
+
+    @staticmethod
+    def jacobian(poses: RelativePoses, fixed: Vector) -> Matrix:
+        """[uᵀ, 0]: u is across ω × p."""
+        u, _ = _direction(poses.position)
+        return np.concatenate((u, np.zeros_like(u)), axis=-1)[..., None, :]
+
+    @staticmethod
+    def drift(motions: RelativeMotions, fixed: Vector) -> Matrix:
+        """u · p̈ + |u × ṗ|² / |p|."""
+        u, distance = _direction(motions.poses.position)
+        across = cross(u, motions.velocity)
+        turning = np.divide(dot(across, across), distance, out=np.zeros_like(distance), where=distance > 0.0)
+        return np.asarray(dot(u, motions.acceleration) + turning)[..., None]
+
+    @staticmethod
+    def opening(poses: RelativePoses, fixed: Vector) -> tuple[Vector, Vector]:
+        """|r|; the angle is free."""
+        return no_angle(np.abs(norm(poses.position) - fixed))
+
+
+KIND = DistanceClosure
+
+
+def _direction(p: Matrix) -> tuple[Matrix, Vector]:
+    """u (…, 3) and |p| (…)."""
+    distance = norm(p)
+    u = np.zeros_like(p)
+    u[..., 0] = 1.0
+    np.divide(p, distance[..., None], out=u, where=distance[..., None] > 0.0)
+    return u, distance

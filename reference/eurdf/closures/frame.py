@@ -1,0 +1,51 @@
+"""6d: B is at A, in position and orientation: a weld (EU-CLO-008)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from eurdf.array import Matrix, Vector
+from eurdf.closures.kind import ClosureKind, RelativeMotions, RelativePoses
+from eurdf.closures.point import PointClosure
+from eurdf.closures.se3 import log6_derivative, log6_second_derivative, turned
+from eurdf.mechanism.constraint import Unit
+
+
+@dataclass(frozen=True, slots=True)
+class FrameClosure(ClosureKind):
+    """B is at A in position and orientation: a weld. r = log6(ᴬM_B), linear and angular, m and rad."""
+
+    type: ClassVar[str] = "6d"
+    units: ClassVar[tuple[Unit, ...]] = ("m",) * 3 + ("rad",) * 3
+
+    def with_orientation_free(self) -> PointClosure:
+        """The 3d closure of the same frames."""
+        return PointClosure(self.name, self.a, self.b)
+
+    @staticmethod
+    def residual(poses: RelativePoses, fixed: Any) -> Matrix:
+        """log6(ᴬM_B)."""
+        return poses.logarithm()
+
+    @staticmethod
+    def jacobian(poses: RelativePoses, fixed: Any) -> Matrix:
+        """Jlog6(ᴮM_A)."""
+        return poses.logarithm_by_twist()
+
+    @staticmethod
+    def drift(motions: RelativeMotions, fixed: Any) -> Matrix:
+        """J ξ̇ + J̇ ξ, with ṙ = J(r) ξ the derivative of log6 by the twist in the axes of B."""
+        r = motions.poses.logarithm()
+        J = log6_derivative(r)
+        return turned(J, motions.change) + turned(log6_second_derivative(r, turned(J, motions.twist)), motions.twist)
+
+    @staticmethod
+    def opening(poses: RelativePoses, fixed: Any) -> tuple[Vector, Vector]:
+        """|p| and the angle of ᴬR_B."""
+        return np.hypot.reduce(poses.position, axis=-1), np.hypot.reduce(poses.logarithm()[..., 3:], axis=-1)
+
+
+KIND = FrameClosure

@@ -1,0 +1,149 @@
+"""hinge: the origin of B is at the origin of A, and an axis of B along an axis of A: a revolute joint (EU-CLO-014)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+
+from eurdf.array import Matrix, Vector
+from eurdf.closures.kind import ClosureKind, RelativeMotions, RelativePoses
+from eurdf.closures.point import PointClosure
+from eurdf.closures.se3 import cross, dot, norm, outer, plane_across, skew, transposed, turned, velocity_of_origin
+from eurdf.mechanism.constraint import Unit, key
+from eurdf.mechanism.pose import Vector3
+
+# The sine of θ near half a turn, where the shortest rotation has no derivative, is taken as no less than this.
+_LEAST_SINE = 1e-9
+
+# Coefficients of the series of θ / sin θ in powers of cos θ - 1, for angles below _SMALL rad, where the quotients of
+# the second derivative are of small numbers: each is -(n + 1) / (2n + 3) of the one before.
+_SERIES = np.polynomial.Polynomial(np.cumprod([1.0, *(-(n + 1.0) / (2.0 * n + 3.0) for n in range(9))]))
+_SLOPE, _BEND = _SERIES.deriv(), _SERIES.deriv(2)
+_SMALL = 0.1
+
+
+class Axes(NamedTuple):
+    """The axes of k hinges, of unit length.
+
+    Attributes:
+        a: Axis (k, 3) in A.
+        b: Axis (k, 3) in B.
+        across: E (k, 3, 2), which spans the plane across a.
+    """
+
+    a: Matrix
+    b: Matrix
+    across: Matrix
+
+
+@dataclass(frozen=True, slots=True)
+class HingeClosure(ClosureKind):
+    """The origin of B is at the origin of A, and an axis of B is along an axis of A: a revolute joint.
+
+    r = (p, Eᵀ s), m and rad. s is the shortest rotation vector that takes axis a of A to β, axis b of B seen from A: of
+    the angle θ, with c = cos θ = a · β and g = θ / sin θ, s = g a × β = θ n. E (3, 2) spans the plane across a. Where
+    β = -a, s is half a turn about the first column of E, as the logarithm of a half turn is one of two.
+
+    Attributes:
+        axes: The axis in A and the axis in B, of any length but zero.
+    """
+
+    type: ClassVar[str] = "hinge"
+    units: ClassVar[tuple[Unit, ...]] = ("m",) * 3 + ("rad",) * 2
+    axes: tuple[Vector3, Vector3] = key(
+        "Axes",
+        "The axis in frame A, and the axis in frame B: vectors of any length but zero, no unit.",
+        example=((0.0, 0.0, 1.0), (0.0, 1.0, 0.0)),
+        default=((0.0, 0.0, 1.0), (0.0, 0.0, 1.0)),
+    )
+
+    def stated(self) -> dict[str, Any]:
+        """``axis`` where A and B have the same one, else ``axes``; nothing where that is z."""
+        one, other = self.axes
+        if one != other:
+            return {"axes": [list(one), list(other)]}
+        return {} if one == (0.0, 0.0, 1.0) else {"axis": list(one)}
+
+    def with_orientation_free(self) -> PointClosure:
+        """The 3d closure of the same frames."""
+        return PointClosure(self.name, self.a, self.b)
+
+    @classmethod
+    def prepare(cls, closures: Sequence[HingeClosure]) -> Axes:
+        """The axes, made unit vectors."""
+        axes = np.array([closure.axes for closure in closures], dtype=np.float64)
+        axes /= np.abs(axes).max(axis=2, keepdims=True)  # of any length, also of one whose square is out of range
+        axes /= norm(axes)[..., None]
+        return Axes(axes[:, 0], axes[:, 1], np.array([plane_across(a) for a in axes[:, 0]]))
+
+    @staticmethod
+    def residual(poses: RelativePoses, fixed: Axes) -> Matrix:
+        """p and Eᵀ s."""
+        _, theta, n = poses.once(_turn, fixed)
+        return np.concatenate((poses.position, turned(transposed(fixed.across), theta[..., None] * n)), axis=-1)
+
+    @staticmethod
+    def jacobian(poses: RelativePoses, fixed: Axes) -> Matrix:
+        """[1, -skew(p); 0, Eᵀ S], where ṡ = S ω = g a × (ω × β) + (1 - g c) (n · ω) n."""
+        beta, theta, n = poses.once(_turn, fixed)
+        g = _stretch(theta)
+        S = (1.0 - g * np.cos(theta))[..., None, None] * outer(n, n)
+        S -= g[..., None, None] * (skew(fixed.a) @ skew(beta))
+        rows = np.zeros((*theta.shape, 5, 6))
+        rows[..., :3, :] = velocity_of_origin(poses.position)
+        rows[..., 3:, 3:] = transposed(fixed.across) @ S
+        return rows
+
+    @staticmethod
+    def drift(motions: RelativeMotions, fixed: Axes) -> Matrix:
+        """p̈ and Eᵀ s̈, with s̈ = g a × β̈ + 2 g' ċ a × β̇ + (g' c̈ + g'' ċ²) a × β."""
+        a = fixed.a
+        beta, theta, n = motions.poses.once(_turn, fixed)
+        g, slope, bend = (values[..., None] for values in _profile(theta))
+        omega = motions.omega
+        rate = cross(omega, beta)
+        second = cross(motions.alpha, beta) + cross(omega, rate)
+        c_rate, c_second = dot(a, rate)[..., None], dot(a, second)[..., None]
+        s = g * cross(a, second) + 2.0 * slope * c_rate * cross(a, rate)
+        s += (slope * c_second + bend * c_rate**2) * np.sin(theta)[..., None] * n
+        return np.concatenate((motions.acceleration, turned(transposed(fixed.across), s)), axis=-1)
+
+    @staticmethod
+    def opening(poses: RelativePoses, fixed: Axes) -> tuple[Vector, Vector]:
+        """|p| and θ."""
+        return np.hypot.reduce(poses.position, axis=-1), poses.once(_turn, fixed)[1]
+
+
+KIND = HingeClosure
+
+
+def _turn(poses: RelativePoses, axes: Axes) -> tuple[Matrix, Vector, Matrix]:
+    """β (…, k, 3), the angle θ (…, k) from a to β, in [0, π], and the unit vector n (…, k, 3) about which it turns."""
+    beta = turned(poses.rotation, axes.b)
+    normal = cross(axes.a, beta)
+    sine = norm(normal)
+    n = np.empty_like(normal)
+    n[...] = axes.across[..., 0]
+    np.divide(normal, sine[..., None], out=n, where=sine[..., None] > 0.0)
+    return beta, np.arctan2(sine, dot(axes.a, beta)), n
+
+
+def _stretch(theta: Vector) -> Vector:
+    """g = θ / sin θ."""
+    return np.asarray(1.0 / np.maximum(np.sinc(theta / np.pi), _LEAST_SINE / np.pi))
+
+
+def _profile(theta: Vector) -> tuple[Vector, Vector, Vector]:
+    """g = θ / sin θ, and its first and second derivative by c = cos θ.
+
+    They satisfy (1 - c²) g' = c g - 1 and (1 - c²) g'' = 3 c g' + g.
+    """
+    g, c = _stretch(theta), np.cos(theta)
+    squares = np.maximum(np.sin(theta), _LEAST_SINE) ** 2
+    slope = (c * g - 1.0) / squares
+    bend = (3.0 * c * slope + g) / squares
+    small, away = theta < _SMALL, -2.0 * np.sin(0.5 * theta) ** 2  # cos θ - 1
+    return g, np.where(small, _SLOPE(away), slope), np.where(small, _BEND(away), bend)

@@ -1,0 +1,177 @@
+"""What a kind of closure is, and the registry of the kinds.
+
+A kind is a class in a file of its own: a dataclass of what a file states of one closure, and the mathematics of k
+closures of the kind, as functions of the poses of their frames B in A. To add a kind: its file, and its line in
+`MODULES`.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+
+import numpy as np
+
+from eurdf.closures.se3 import cross, log6, log6_derivative, turned
+from eurdf.mechanism.constraint import Closure
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+    from eurdf.array import Matrix, Vector
+
+
+_T = TypeVar("_T")
+
+
+class RelativePoses:
+    """ᴬM_B of k pairs of frames A, B at B configurations.
+
+    Attributes:
+        rotation: ᴬR_B (B, k, 3, 3).
+        position: Origin p of B in A (B, k, 3), m.
+    """
+
+    rotation: Matrix
+    position: Matrix
+    _logarithm: Matrix | None = None
+    _found: tuple[Callable[..., Any], Any] = isinstance, None
+
+    def of(self, which: slice) -> RelativePoses:
+        """Those of some of the pairs."""
+        return PoseArrays(self.rotation[:, which], self.position[:, which])
+
+    def logarithm(self) -> Matrix:
+        """log6(ᴬM_B) (B, k, 6), linear and angular, m and rad."""
+        if self._logarithm is None:
+            self._logarithm = log6(self.rotation, self.position)
+        return self._logarithm
+
+    def logarithm_by_twist(self) -> Matrix:
+        """Its derivative (B, k, 6, 6) by the twist of B against A, seen from A: Jlog6(ᴬM_B) Ad(ᴮM_A) = Jlog6(ᴮM_A)."""
+        return log6_derivative(-self.logarithm())
+
+    def once(self, compute: Callable[[RelativePoses, Any], _T], fixed: Any) -> _T:
+        """What a function of a kind computes from the poses; it is kept for the next to ask for it."""
+        if self._found[0] is not compute:
+            self._found = compute, compute(self, fixed)
+        value: _T = self._found[1]
+        return value
+
+
+class PoseArrays(RelativePoses):
+    """Poses that were computed."""
+
+    def __init__(self, rotation: Matrix, position: Matrix) -> None:
+        self.rotation, self.position = rotation, position
+
+
+class RelativeMotions(NamedTuple):
+    """How k frames B move against frames A, at B configurations, while every joint keeps its velocity.
+
+    Attributes:
+        poses: ᴬM_B.
+        twist: ξ (B, k, 6), the twist of B against A in the axes of B, m/s and rad/s.
+        change: ξ̇ (B, k, 6), m/s² and rad/s².
+    """
+
+    poses: RelativePoses
+    twist: Matrix
+    change: Matrix
+
+    def of(self, which: slice) -> RelativeMotions:
+        """Those of some of the pairs."""
+        return RelativeMotions(self.poses.of(which), self.twist[:, which], self.change[:, which])
+
+    @property
+    def velocity(self) -> Matrix:
+        """ṗ (B, k, 3), m/s, in the axes of A."""
+        return turned(self.poses.rotation, self.twist[..., :3])
+
+    @property
+    def omega(self) -> Matrix:
+        """Angular velocity ω of B against A (B, k, 3), rad/s, in the axes of A."""
+        return turned(self.poses.rotation, self.twist[..., 3:])
+
+    @property
+    def acceleration(self) -> Matrix:
+        """p̈ (B, k, 3), m/s², in the axes of A."""
+        linear, angular = self.twist[..., :3], self.twist[..., 3:]
+        return turned(self.poses.rotation, self.change[..., :3] + cross(angular, linear))  # ξ̇ lacks what turns with B
+
+    @property
+    def alpha(self) -> Matrix:
+        """ω̇ (B, k, 3), rad/s², in the axes of A."""
+        return turned(self.poses.rotation, self.change[..., 3:])
+
+
+@dataclass(frozen=True, slots=True)
+class ClosureKind(Closure, ABC):
+    """A closure whose residual r is a function of the pose of B in A, and how that is computed for k of its kind.
+
+    The residual is zero where the closure holds; its derivatives are exact everywhere (EU-CLO-010).
+    """
+
+    @classmethod
+    def prepare(cls, closures: Sequence[Self]) -> Any:
+        """What the functions below need of k closures, as arrays."""
+        return None
+
+    @staticmethod
+    @abstractmethod
+    def residual(poses: RelativePoses, fixed: Any) -> Matrix:
+        """r (B, k, r), in the units of the kind; ``fixed`` is what `prepare` returned."""
+
+    @staticmethod
+    @abstractmethod
+    def jacobian(poses: RelativePoses, fixed: Any) -> Matrix:
+        """The derivative (B, k, r, 6) of r by the twist of B against A, seen from A."""
+
+    @staticmethod
+    @abstractmethod
+    def drift(motions: RelativeMotions, fixed: Any) -> Matrix:
+        """r̈ (B, k, r) while every joint keeps its velocity."""
+
+    @staticmethod
+    @abstractmethod
+    def opening(poses: RelativePoses, fixed: Any) -> tuple[Vector, Vector]:
+        """How far each closure is open, a length, m, and an angle, rad (EU-CLO-005): (B, k) each."""
+
+
+#: The module of each kind that files can state, by its type there.
+MODULES = {"3d": "point", "6d": "frame", "hinge": "hinge", "distance": "distance"}
+
+
+class _Registry(Mapping[str, type[ClosureKind]]):
+    """The kinds by type; each is imported when it is first used."""
+
+    def __init__(self) -> None:
+        self._found: dict[str, type[ClosureKind] | None] = dict.fromkeys(MODULES)
+
+    def __getitem__(self, type_: str) -> type[ClosureKind]:
+        kind = self._found[type_]
+        if kind is None:
+            kind = self._found[type_] = import_module(f"{__package__}.{MODULES[type_]}").KIND
+        return kind
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._found)
+
+    def __len__(self) -> int:
+        return len(self._found)
+
+    def add(self, kind: type[ClosureKind]) -> None:
+        """Take a kind that has no line in `MODULES`."""
+        self._found[kind.type] = kind
+
+
+#: The kinds of closure that files can state, by their type there.
+REGISTRY = _Registry()
+
+
+def no_angle(lengths: Vector) -> tuple[Vector, Vector]:
+    """The openings of a kind that leaves angles free."""
+    return lengths, np.zeros_like(lengths)

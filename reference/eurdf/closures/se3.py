@@ -1,0 +1,278 @@
+"""Vectors, rotations and rigid motions, over any leading dimensions: (…, 3), (…, 3, 3).
+
+A rotation vector ω has the matrix W = [ω]ₓ, and t = |ω|². The left and the right Jacobian of exp3, and their inverses,
+have the form 1 + a(t) W + b(t) W²; that of exp6 is the same over dual numbers: its block beside the diagonal is the
+derivative of the block on the diagonal along the linear part.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from eurdf.array import Matrix, Vector
+
+_NEXT, _LAST = [1, 2, 0], [2, 0, 1]
+_EACH = np.arange(3)
+_ONE = np.eye(3)
+# Linear maps are one product with a vector: it is faster than to set entries one by one.
+_SKEW = np.cross(_ONE[:, None], _ONE).transpose(0, 2, 1).reshape(3, 9)
+_OF_ORIGIN = np.concatenate((np.zeros((3, 3, 3)), -_SKEW.reshape(3, 3, 3)), axis=2).reshape(3, 18)
+_OF_ZERO = np.eye(3, 6).ravel()
+
+
+def cross(a: Matrix, b: Matrix) -> Matrix:
+    """a × b (…, 3); `numpy.cross` takes several times as long."""
+    return np.asarray(a[..., _NEXT] * b[..., _LAST] - a[..., _LAST] * b[..., _NEXT])
+
+
+def dot(a: Matrix, b: Matrix) -> Vector:
+    """a · b (…)."""
+    return np.asarray(np.einsum("...i,...i->...", a, b))
+
+
+def norm(a: Matrix) -> Vector:
+    """|a| (…)."""
+    return np.asarray(np.sqrt(dot(a, a)))
+
+
+def skew(a: Matrix) -> Matrix:
+    """The matrices (…, 3, 3) that multiply b to a × b."""
+    return np.asarray((a @ _SKEW).reshape(*a.shape, 3))
+
+
+def turned(R: Matrix, a: Matrix) -> Matrix:
+    """R a (…, 3)."""
+    return np.asarray((R @ a[..., None])[..., 0])
+
+
+def transposed(R: Matrix) -> Matrix:
+    """Rᵀ (…, 3, 3)."""
+    return np.swapaxes(R, -1, -2)
+
+
+def outer(a: Matrix, b: Matrix) -> Matrix:
+    """a bᵀ (…, 3, 3)."""
+    return np.asarray(a[..., :, None] * b[..., None, :])
+
+
+def velocity_of_origin(p: Matrix) -> Matrix:
+    """[1, -skew(p)] (…, 3, 6): ṗ over the twist of B against A, seen from A, where the origin of B is at p (…, 3)."""
+    return np.asarray((p @ _OF_ORIGIN + _OF_ZERO).reshape(*p.shape, 6))
+
+
+def plane_across(a: Vector) -> Matrix:
+    """E (3, 2): what the shortest rotation that takes z to the unit vector a makes of x and y (EU-CLO-014).
+
+    Of an axis within 1e-9 of -z, it is the half turn about x.
+    """
+    x, y, z = a
+    if z < -1.0 + 1e-9 and math.hypot(x, y) < 1e-9:
+        return np.array([[1.0, 0.0], [0.0, -1.0], [0.0, 0.0]])
+    above = 1.0 + z if z > 0.0 else (x * x + y * y) / (1.0 - z)  # 1 + z, which rounding makes 0 near -z
+    turn = skew(np.array([-y, x, 0.0]))
+    return np.asarray((_ONE + turn + turn @ turn / above)[:, :2])
+
+
+# -- quaternions x, y, z, w -------------------------------------------------------------------------------------------
+
+
+def rotation_of(quaternion: Matrix) -> Matrix:
+    """The rotations (…, 3, 3) of unit quaternions (…, 4)."""
+    D = 2.0 * outer(quaternion, quaternion)
+    xx, yy, zz = D[..., 0, 0], D[..., 1, 1], D[..., 2, 2]
+    R = np.empty((*quaternion.shape[:-1], 3, 3))
+    R[..., 0, 0], R[..., 1, 1], R[..., 2, 2] = 1.0 - (yy + zz), 1.0 - (xx + zz), 1.0 - (xx + yy)
+    R[..., 0, 1], R[..., 1, 0] = D[..., 0, 1] - D[..., 2, 3], D[..., 0, 1] + D[..., 2, 3]
+    R[..., 0, 2], R[..., 2, 0] = D[..., 0, 2] + D[..., 1, 3], D[..., 0, 2] - D[..., 1, 3]
+    R[..., 1, 2], R[..., 2, 1] = D[..., 1, 2] - D[..., 0, 3], D[..., 1, 2] + D[..., 0, 3]
+    return R
+
+
+def quaternion_of(R: Matrix) -> Matrix:
+    """The unit quaternions (…, 4) of rotations (…, 3, 3)."""
+    x, y, z = R[..., 0, 0], R[..., 1, 1], R[..., 2, 2]
+    # Four times the squares of x, y, z and w; the largest is at least 1 and decides the other three.
+    squares = np.stack((1.0 + x - y - z, 1.0 - x + y - z, 1.0 - x - y + z, 1.0 + x + y + z), axis=-1)
+    vector = R[..., _LAST, _NEXT] - R[..., _NEXT, _LAST]  # 4 w times x, y, z
+    quaternion = np.concatenate((vector, squares[..., 3:]), axis=-1)
+    if not (squares[..., 3] >= 1.0).all():
+        sums = R + transposed(R)
+        others = np.concatenate((sums, vector[..., None]), axis=-1)  # a row for each of x, y, z as the largest
+        others[..., _EACH, _EACH] = squares[..., :3]
+        largest = np.argmax(squares[..., :3], axis=-1)[..., None, None]
+        chosen = np.take_along_axis(others, largest, axis=-2)[..., 0, :]
+        quaternion = np.where(squares[..., 3:] >= 1.0, quaternion, chosen)
+    return np.asarray(quaternion / norm(quaternion)[..., None])
+
+
+def quaternion_product(a: Matrix, b: Matrix) -> Matrix:
+    """The quaternions (…, 4) of the rotation by b followed by that by a."""
+    u, v, c, d = a[..., :3], b[..., :3], a[..., 3:], b[..., 3:]
+    return np.concatenate((c * v + d * u + cross(u, v), c * d - dot(u, v)[..., None]), axis=-1)
+
+
+def quaternion_exp(turn: Matrix) -> Matrix:
+    """The unit quaternions (…, 4) of rotation vectors (…, 3), rad."""
+    half = 0.5 * norm(turn)[..., None]
+    return np.concatenate((0.5 * np.sinc(half / np.pi) * turn, np.cos(half)), axis=-1)
+
+
+def quaternion_log(quaternion: Matrix) -> Matrix:
+    """The rotation vectors (…, 3), rad, of at most half a turn, of unit quaternions (…, 4)."""
+    vector, w = quaternion[..., :3], quaternion[..., 3]
+    sine = norm(vector)
+    factor = np.full_like(sine, 2.0)
+    np.divide(2.0 * np.arctan2(sine, np.abs(w)), sine, out=factor, where=sine > 0.0)
+    return np.asarray(np.where(w < 0.0, -factor, factor)[..., None] * vector)
+
+
+# -- exponentials and logarithms --------------------------------------------------------------------------------------
+
+# Coefficients cₙ of tⁿ, n > 0, in 1 - (θ/2) cot(θ/2), t = θ², from the differential equation that it satisfies.
+_COTANGENT: list[float] = []
+for _n in range(1, 10):
+    _sum = sum(a * b for a, b in zip(_COTANGENT, reversed(_COTANGENT), strict=True))
+    _COTANGENT.append(((_n == 1) / 4.0 + _sum) / (2.0 * _n + 1.0))
+_NEAR = 0.25  # below this t the series counts; its terms shrink by t / 4π²
+
+
+def _beta(turn: Matrix, order: int = 0) -> list[Vector]:
+    """β(t) = 1/t - cot(θ/2) / 2θ (…, 1), and its derivatives up to an order of at most 2.
+
+    The inverse of the right Jacobian of exp3 is 1 + W/2 + β W².
+    """
+    t = dot(turn, turn)[..., None]
+    most = float(t.max(initial=0.0))
+    if most < _NEAR:
+        return _series(t, most, order)
+    small = t < _NEAR
+    far = np.where(small, 1.0, t)
+    half = 0.5 * np.sqrt(far)
+    h = half / np.tan(half)
+    h_slope = (h - h * h - 0.25 * far) / (2.0 * far)
+    h_bend = (h_slope * (1.0 - 2.0 * h) - 0.25 - 2.0 * h_slope) / (2.0 * far)
+    found = [(1.0 - h) / far]
+    found.append(-(h_slope + found[0]) / far)
+    found.append(-(h_bend + 2.0 * found[1]) / far)
+    near = _series(np.where(small, t, 0.0), _NEAR, order)
+    return [np.where(small, one, other) for one, other in zip(near, found, strict=False)]
+
+
+def _series(t: Vector, most: float, order: int) -> list[Vector]:
+    """β and its derivatives by their series, of as many terms as the largest t needs."""
+    count = min(len(_COTANGENT), 3 + order + int(37.0 / math.log(39.0 / max(most, 1e-300))))
+    coefficients, found = _COTANGENT[:count], []
+    for _ in range(order + 1):
+        value = np.full_like(t, coefficients[-1])
+        for coefficient in reversed(coefficients[:-1]):
+            value *= t
+            value += coefficient
+        found.append(value)
+        coefficients = [n * coefficient for n, coefficient in enumerate(coefficients)][1:]
+    return found
+
+
+def log3(R: Matrix) -> Matrix:
+    """The rotation vectors (…, 3), rad."""
+    return quaternion_log(quaternion_of(R))
+
+
+def log3_derivative(turn: Matrix) -> Matrix:
+    """The derivative (…, 3, 3) of log3 by the angular velocity in the axes that turn, of rotation vectors (…, 3)."""
+    return _inverse_jacobian(turn, *_beta(turn))
+
+
+def _inverse_jacobian(w: Matrix, beta: Vector) -> Matrix:
+    """1 + W/2 + β W²."""
+    return skew(0.5 * w) + outer(beta * w, w) + _scalar(1.0 - beta * _along(w, w))
+
+
+def log6(R: Matrix, p: Matrix) -> Matrix:
+    """log6 (…, 6) of poses: linear, m, and angular, rad."""
+    turn = log3(R)
+    across = cross(turn, p)
+    (beta,) = _beta(turn)
+    return np.concatenate((p - 0.5 * across + beta * cross(turn, across), turn), axis=-1)
+
+
+def log6_derivative(r: Matrix) -> Matrix:
+    """The derivative (…, 6, 6) of log6 by the twist in the axes of the moved frame, of logarithms (…, 6)."""
+    v, w = r[..., :3], r[..., 3:]
+    beta, slope = _beta(w, 1)
+    along = 2.0 * _along(w, v)
+    # The derivative of 1 + W/2 + β W² along v, where W² = w wᵀ - t and t changes by 2 w · v.
+    beside = skew(0.5 * v) + outer(beta * v + slope * along * w, w) + outer(beta * w, v)
+    beside += _scalar(-along * (beta + slope * _along(w, w)))
+    return _blocks(_inverse_jacobian(w, beta), beside)
+
+
+def log6_second_derivative(r: Matrix, rate: Matrix) -> Matrix:
+    """The derivative (…, 6, 6) of `log6_derivative` while the logarithm r (…, 6) changes at a rate (…, 6)."""
+    v, w, dv, dw = r[..., :3], r[..., 3:], rate[..., :3], rate[..., 3:]
+    beta, slope, bend = (values[..., None] for values in _beta(w, 2))
+    V, W, dV, dW = (skew(each) for each in (v, w, dv, dw))
+    square, along_v, along_w = W @ W, 2.0 * _along(w, v)[..., None], 2.0 * _along(w, dw)[..., None]
+    turn = 0.5 * dW + beta * _both(W, dW) + slope * along_w * square
+    moved = 0.5 * dV + beta * (_both(W, dV) + _both(dW, V)) + slope * along_w * _both(W, V)
+    moved += slope * along_v * _both(W, dW)
+    moved += (2.0 * slope * (_along(dw, v) + _along(w, dv))[..., None] + bend * along_w * along_v) * square
+    return _blocks(turn, moved)
+
+
+def exp6(v: Matrix) -> tuple[Matrix, Matrix]:
+    """The rotations (…, 3, 3) and translations (…, 3), m, that twists (…, 6) lead to in unit time."""
+    move, turn = v[..., :3], v[..., 3:]
+    (a, b), _ = _exponential(turn)
+    across = cross(turn, move)
+    return rotation_of(quaternion_exp(turn)), move + a * across + b * cross(turn, across)
+
+
+def exp6_derivative(v: Matrix) -> Matrix:
+    """The right Jacobian (…, 6, 6) of exp6: the twist in the axes of the moved frame over the change of v (…, 6)."""
+    V, W = skew(v[..., :3]), skew(v[..., 3:])
+    (a, b), (a_slope, b_slope) = ([value[..., None] for value in values] for values in _exponential(v[..., 3:]))
+    square, along = W @ W, 2.0 * _along(v[..., 3:], v[..., :3])[..., None]
+    return _blocks(_ONE - a * W + b * square, -a * V - along * a_slope * W + b * _both(W, V) + along * b_slope * square)
+
+
+def _exponential(turn: Matrix) -> tuple[tuple[Vector, Vector], tuple[Vector, Vector]]:
+    """a = (1 - cos θ) / t and b = (θ - sin θ) / θ³ (…, 1), and a′(t), b′(t); the left Jacobian is 1 + a W + b W²."""
+    t = _along(turn, turn)
+    angle = np.sqrt(t)
+    a = 0.5 * np.sinc(0.5 * angle / np.pi) ** 2
+    small = angle < 0.5
+    far = np.where(small, 1.0, angle)
+    near = np.where(small, t, 0.0)
+    b = np.where(small, _taylor(near, 3), (far - np.sin(far)) / far**3)
+    a_slope = np.where(small, -_taylor(near, 4, 1), (far * np.sin(far) - 2.0 * (1.0 - np.cos(far))) / (2.0 * far**4))
+    b_slope = (a - 3.0 * b) / (2.0 * far * far)
+    return (a, b), (a_slope, np.where(small, -_taylor(near, 5, 1), b_slope))
+
+
+def _taylor(t: Matrix, first: int, factor: int = 0) -> Matrix:
+    """Σ (-t)ⁿ / (first + 2 n)!, with the factor n + 1 of a derivative if that is asked for."""
+    terms = [(n + 1) ** factor / math.factorial(first + 2 * n) for n in range(6)]
+    return np.asarray(np.polynomial.polynomial.polyval(-t, terms))
+
+
+def _along(a: Matrix, b: Matrix) -> Vector:
+    return dot(a, b)[..., None]
+
+
+def _scalar(s: Vector) -> Matrix:
+    """s (…, 1) times the identity."""
+    return np.asarray(s[..., None] * _ONE)
+
+
+def _both(A: Matrix, B: Matrix) -> Matrix:
+    """The derivative A B + B A of a square."""
+    return np.asarray(A @ B + B @ A)
+
+
+def _blocks(diagonal: Matrix, beside: Matrix) -> Matrix:
+    J = np.zeros((*diagonal.shape[:-2], 6, 6))
+    J[..., :3, :3] = J[..., 3:, 3:] = diagonal
+    J[..., :3, 3:] = beside
+    return J

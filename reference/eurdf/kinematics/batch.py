@@ -1,0 +1,436 @@
+"""Kinematics of many elements at once; the public names are those of `eurdf.batch`.
+
+Each function does for arrays of elements, which come first in arguments and results, what the function of the same name
+in `eurdf` does for one. The solvers are the same: they are written for B elements, and one is B = 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from pinocchio import LOCAL
+
+from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
+from eurdf.kinematics.assembly import close
+from eurdf.kinematics.blocks import Progress, blocks, checked_configurations, checked_rows, shape_of, starts
+from eurdf.kinematics.derived import borrowed
+from eurdf.kinematics.evaluate import frames
+from eurdf.kinematics.exceptions import NumericalOverflow
+from eurdf.kinematics.forward import driving_many, goals, in_equilibrium, moved_many
+from eurdf.kinematics.frame_jacobian import checked_reference
+from eurdf.kinematics.inverse import checked_targets
+from eurdf.kinematics.inverse_search import InverseKinematicsReason, InverseTask, Target, search
+from eurdf.kinematics.metric import metric
+from eurdf.kinematics.position_limit import chosen_limits
+from eurdf.kinematics.problem import Problem, for_many
+from eurdf.kinematics.project import ProjectionTask, nearest_closed
+from eurdf.kinematics.residual import residual as residual_of_one
+from eurdf.kinematics.sensitivity import JacobianTask, actuated_jacobians
+from eurdf.kinematics.tolerances import RESTARTS, SOLVED
+from eurdf.pinocchio.arguments import checked_count, checked_tolerance
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
+
+#: Why forward kinematics did not converge: no closed configuration was found near the start; the loops do not close at
+#: the given coordinates, as far as steps from where the joints stopped show; or they close there, but not on a straight
+#: path from the start.
+ForwardKinematicsReason = Literal["start open", "not closed", "blocked"]
+
+_FORWARD_REASONS: tuple[ForwardKinematicsReason | None, ...] = (None, "start open", "not closed", "blocked")
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class ForwardKinematics:
+    """The result of `forward_kinematics`; B elements.
+
+    Attributes:
+        q: Configurations (B, nq). Where an element did not converge, the least open one found at the given coordinates,
+            or near the start.
+        converged: Whether every loop is closed and the given joints are at the given coordinates (B,).
+        residual: Euclidean norms (B,) of the residual at q, m and rad.
+        reason: For each element why it did not converge; None if it did.
+    """
+
+    q: Matrix
+    converged: Mask
+    residual: Vector
+    reason: tuple[ForwardKinematicsReason | None, ...]
+
+    def __repr__(self) -> str:
+        return f"<ForwardKinematics: {int(self.converged.sum())} of {len(self.q)} converged>"
+
+
+def forward_kinematics(
+    robot: Robot,
+    values: Matrix,
+    q0: Matrix | None = None,
+    *,
+    tolerance: float = SOLVED,
+    block: int | None = None,
+    threads: int = 1,
+    executor: Executor | None = None,
+    progress: Progress | None = None,
+) -> ForwardKinematics:
+    """The closed configurations at which the actuated joints have the given coordinates; B elements.
+
+    Each element equals the result of `eurdf.forward_kinematics` to 1e-9, on the branch of its start. It does not
+    depend on the other elements or on how the batch is divided. If joints have springs that the loops do not let rest,
+    each element is moved to their equilibrium afterwards, one after the other.
+
+    Args:
+        robot: The robot.
+        values: The actuated coordinates (B, nu), in each row as `eurdf.split_configuration` returns them.
+        q0: Where to start: one configuration (nq,) for all, or one for each element (B, nq). The default is the
+            `assembled` configuration, or the neutral one if there is none. To stay on a branch far from the start, give
+            the result for near values.
+        tolerance: Bound of each row of the residual for closed loops, m or rad.
+        block: Number of elements that are worked on together. By default as many as take some 32 MB, at most 1,000.
+        threads: Number of threads that work on blocks.
+        executor: Any `concurrent.futures.Executor` that works on blocks instead: a process pool, or that of a cluster.
+        progress: Called after each block with the number of elements done and the number of all.
+
+    Returns:
+        The configurations. Elements that did not converge do not raise; they state the reason.
+
+    Raises:
+        ValueError: An argument has a wrong shape or is not finite.
+    """
+    actuation = robot.actuation
+    values = checked_rows("values", values, len(actuation.idx_q))
+    q, common = starts(robot, q0, len(values))
+    driving = driving_many(robot, checked_tolerance(tolerance))
+    goal = goals(driving, q, values)
+    work = blocks(driving.free.numbers + driving.driven.numbers, block, threads, executor, progress)
+    closed = None
+    if common and len(q):
+        first = close(driving.free, q[:1], driving.tolerance, RESTARTS)
+        q, closed = np.broadcast_to(first.q, q.shape), np.broadcast_to(first.closes, len(q))
+        goal = goals(driving, q, values)
+    found, residual, code, rests = work.map(moved_many, driving, (q, goal) if closed is None else (q, goal, closed))
+    if len(robot.tree.springs):
+        with borrowed(robot, Problem, tuple(actuation.idx_v.tolist())) as driven:
+            alone = driving._replace(driven=driven)
+            for each in np.flatnonzero((code == 0) & ~rests).tolist():
+                found[each] = in_equilibrium(robot, found[each], alone)
+                residual[each] = np.linalg.norm(residual_of_one(robot, found[each]))
+    return ForwardKinematics(found, code == 0, residual, tuple(_FORWARD_REASONS[each] for each in code.tolist()))
+
+
+def residual(
+    robot: Robot,
+    q: Matrix,
+    *,
+    block: int | None = None,
+    threads: int = 1,
+    executor: Executor | None = None,
+    progress: Progress | None = None,
+) -> Matrix:
+    """Residual of all constraints at B configurations, as `eurdf.residual` has it.
+
+    Args:
+        robot: The robot.
+        q: Configurations (B, nq).
+        block: See `eurdf.batch.forward_kinematics`, also for the following ones.
+        threads: Number of threads.
+        executor: Who works on blocks instead.
+        progress: Called after each block.
+
+    Returns:
+        r (B, nc), m and rad.
+
+    Raises:
+        ValueError: An argument has a wrong shape or is not finite.
+        NumericalOverflow: A configuration is so large that its residual is not finite; the message names it.
+    """
+    rows = checked_rows("q", q, robot.tree.nq)
+    model = for_many(robot)
+    (r,) = blocks(model.numbers, block, threads, executor, progress).map(_residual, model, (rows,))
+    _require_finite(r)
+    return r
+
+
+def residual_and_jacobian(
+    robot: Robot,
+    q: Matrix,
+    *,
+    block: int | None = None,
+    threads: int = 1,
+    executor: Executor | None = None,
+    progress: Progress | None = None,
+) -> tuple[Matrix, Matrix]:
+    """Residual of all constraints and its derivative at B configurations, as `eurdf.residual_and_jacobian` has them.
+
+    Args:
+        robot: The robot.
+        q: Configurations (B, nq).
+        block: See `eurdf.batch.forward_kinematics`, also for the following ones.
+        threads: Number of threads.
+        executor: Who works on blocks instead.
+        progress: Called after each block.
+
+    Returns:
+        r (B, nc), and K (B, nc, nv), in m and rad over the units of v.
+
+    Raises:
+        ValueError: As in `residual`.
+        NumericalOverflow: As in `residual`, also of the derivative.
+    """
+    rows = checked_rows("q", q, robot.tree.nq)
+    model = for_many(robot)
+    r, K = blocks(model.numbers, block, threads, executor, progress).map(_residual_and_jacobian, model, (rows,))
+    _require_finite(r, K)
+    return r, K
+
+
+def _residual(model: Problem, q: Matrix) -> tuple[Matrix]:
+    return (model.residual(q),)
+
+
+def _residual_and_jacobian(model: Problem, q: Matrix) -> tuple[Matrix, Matrix]:
+    return model.residual(q), model.jacobian(q)
+
+
+def _require_finite(*results: Matrix) -> None:
+    wrong = np.any([~np.isfinite(result).all(axis=tuple(range(1, result.ndim))) for result in results], axis=0)
+    if wrong.any():
+        raise NumericalOverflow(f"the residual at q[{int(wrong.argmax())}]")
+
+
+_INVERSE_REASONS: tuple[InverseKinematicsReason | None, ...] = (
+    None,
+    "closures open",
+    "joint limits",
+    "singular",
+    "out of reach",
+    "steps",
+)
+
+#: Why a projection did not converge: no closed configuration was found near the given one.
+ProjectionReason = Literal["not closed"]
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Projection:
+    """The result of `project_configuration`; B elements.
+
+    Attributes:
+        q: The nearest closed configurations (B, nq); where none was found, the least open one.
+        converged: Whether the loops are closed (B,).
+        residual: Euclidean norms (B,) of the residual at q, m and rad.
+        reason: For each element why it did not converge; None if it did.
+    """
+
+    q: Matrix
+    converged: Mask
+    residual: Vector
+    reason: tuple[ProjectionReason | None, ...]
+
+    def __repr__(self) -> str:
+        return f"<Projection: {int(self.converged.sum())} of {len(self.q)} converged>"
+
+
+def project_configuration(
+    robot: Robot,
+    q: Matrix,
+    weights: Vector | Matrix | None = None,
+    *,
+    tolerance: float = SOLVED,
+    block: int | None = None,
+    threads: int = 1,
+    executor: Executor | None = None,
+    progress: Progress | None = None,
+) -> Projection:
+    """The closed configurations nearest to q, as `eurdf.project_configuration` finds them; B elements.
+
+    Args:
+        robot: The robot.
+        q: Any configurations (B, nq).
+        weights: The metric W: a matrix (nv, nv), or its diagonal (nv,). The default is the identity: the sum of squares
+            of all motions, in rad and m.
+        tolerance: Bound of each row of the residual for closed loops, m or rad.
+        block: See `eurdf.batch.forward_kinematics`, also for the following ones.
+        threads: Number of threads.
+        executor: Who works on blocks instead.
+        progress: Called after each block.
+
+    Returns:
+        The configurations. Elements that did not converge do not raise; they state the reason.
+
+    Raises:
+        ValueError: An argument has a wrong shape or is not finite, or ``weights`` is not a metric.
+    """
+    model = for_many(robot)
+    task = ProjectionTask(model, metric(weights, model.tree.nv), checked_tolerance(tolerance))
+    rows = checked_configurations(robot, "q", q)
+    numbers = 3 * model.numbers + 2 * model.tree.nv**2
+    found, residual, closed = blocks(numbers, block, threads, executor, progress).map(_projected, task, (rows,))
+    return Projection(found, closed, residual, tuple(None if each else "not closed" for each in closed.tolist()))
+
+
+def _projected(task: ProjectionTask, q: Matrix) -> tuple[Matrix, Vector, Mask]:
+    found, closed = nearest_closed(task, q)
+    return found, np.linalg.norm(task.problem.residual(found), axis=1), closed
+
+
+#: Why there is no Jacobian: the closures do not let the actuators move independently; or numbers overflow.
+ActuatedJacobianReason = Literal["dependent actuators", "overflow"]
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class ActuatedJacobian:
+    """The result of `actuated_jacobian`; B elements.
+
+    Attributes:
+        jacobian: (B, 6, nu): linear (m/s), then angular (rad/s), over the units of the actuated velocities; NaN where
+            it does not exist.
+        converged: Whether it exists (B,).
+        reason: For each element why it does not exist; None if it does.
+    """
+
+    jacobian: Matrix
+    converged: Mask
+    reason: tuple[ActuatedJacobianReason | None, ...]
+
+    def __repr__(self) -> str:
+        return f"<ActuatedJacobian: {int(self.converged.sum())} of {len(self.jacobian)} exist>"
+
+
+def actuated_jacobian(
+    robot: Robot,
+    q: Matrix,
+    frame: str,
+    reference: Any = LOCAL,
+    weights: Vector | Matrix | None = None,
+    *,
+    block: int | None = None,
+    threads: int = 1,
+    executor: Executor | None = None,
+    progress: Progress | None = None,
+) -> ActuatedJacobian:
+    """Jacobians of a frame by the actuated velocities, as `eurdf.actuated_jacobian` has them; B elements.
+
+    Args:
+        robot: The robot.
+        q: Closed configurations (B, nq).
+        frame: Name of a link, a joint (its frame on the child's side), or a frame of the description.
+        reference: Where the twist is expressed: ``pin.LOCAL``, ``pin.WORLD`` or ``pin.LOCAL_WORLD_ALIGNED``.
+        weights: The metric in which motions that the actuators do not control are minimal: a matrix (nv, nv), or its
+            diagonal (nv,); the identity by default, in rad/s and m/s.
+        block: See `eurdf.batch.forward_kinematics`, also for the following ones.
+        threads: Number of threads.
+        executor: Who works on blocks instead.
+        progress: Called after each block.
+
+    Returns:
+        The Jacobians. Where the actuators depend on each other there is none, and the element states it.
+
+    Raises:
+        ValueError: The frame is unknown or ambiguous, or an argument has a wrong shape or value.
+    """
+    model = for_many(robot)
+    W = None if weights is None else metric(weights, model.tree.nv)
+    driven = Problem(robot, robot.actuation.idx_v.tolist(), few=False)
+    task = JacobianTask(model, driven, frames(robot, [frame], few=False), checked_reference(reference), W)
+    rows = checked_configurations(robot, "q", q)
+    work = blocks(model.numbers + 20 * model.tree.nv, block, threads, executor, progress)
+    jacobian, dependent = work.map(actuated_jacobians, task, (rows,))
+    finite = np.isfinite(jacobian).all(axis=(1, 2))
+    jacobian[dependent | ~finite] = np.nan
+    reason: list[ActuatedJacobianReason | None] = [
+        "dependent actuators" if depends else None if exists else "overflow"
+        for depends, exists in zip(dependent.tolist(), finite.tolist(), strict=True)
+    ]
+    return ActuatedJacobian(jacobian, finite & ~dependent, tuple(reason))
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class InverseKinematics:
+    """The result of `inverse_kinematics`; B elements, F frames.
+
+    Attributes:
+        q: The configurations (B, nq) nearest to the targets: closed and within the limits, if such were found.
+        converged: Whether every frame is at its target, and every loop closed, within the tolerances (B,).
+        position_error: Distances (B, F) of the origins of the frames from those of the targets, m, in their order.
+        angle_error: Angles (B, F) between their axes and those of the targets, rad; 0 for targets that are positions.
+        residual: Euclidean norms (B,) of the residual at q, m and rad.
+        reason: For each element why it did not converge, as `eurdf.InverseKinematics` has it; None if it did.
+    """
+
+    q: Matrix
+    converged: Mask
+    position_error: Matrix
+    angle_error: Matrix
+    residual: Vector
+    reason: tuple[InverseKinematicsReason | None, ...]
+
+    def __repr__(self) -> str:
+        return f"<InverseKinematics: {int(self.converged.sum())} of {len(self.q)} converged>"
+
+
+def inverse_kinematics(
+    robot: Robot,
+    targets: Mapping[str, Any],
+    q0: Matrix | None = None,
+    limits: bool = True,
+    *,
+    tolerance: float = 1e-8,
+    restarts: int = 10,
+    block: int | None = None,
+    threads: int = 1,
+    executor: Executor | None = None,
+    progress: Progress | None = None,
+) -> InverseKinematics:
+    """Move frames of the closed mechanism to targets, as `eurdf.inverse_kinematics` does; B elements.
+
+    Args:
+        robot: The robot.
+        targets: For each frame, by name, its targets in the world: B positions (B, 3), m, or B poses, as `pin.SE3` or
+            as homogeneous matrices (B, 4, 4).
+        q0: Where to start: one configuration (nq,) for all, or one for each element (B, nq). The default is the
+            `assembled` configuration, or the neutral one if there is none.
+        limits: Whether to respect the position limits of joints.
+        tolerance: Bound of the distance of a frame from its target, m and rad. Loops are closed to 1e-10 if possible.
+        restarts: Maximum number of restarts of an element while frames are off target.
+        block: See `eurdf.batch.forward_kinematics`, also for the following ones.
+        threads: Number of threads.
+        executor: Who works on blocks instead.
+        progress: Called after each block.
+
+    Returns:
+        The configurations. Elements that did not converge do not raise; they state the reason.
+
+    Raises:
+        ValueError: A frame is unknown or ambiguous, the targets are no poses or positions, or an argument has a wrong
+            shape or value.
+    """
+    model, names = for_many(robot), list(targets)
+    places = frames(robot, names, few=False)
+    goals = [checked_targets(name, target) for name, target in targets.items()]
+    count = len(goals[0].position) if goals else len(q0) if q0 is not None and len(shape_of(q0)) == 2 else 1
+    for name, goal in zip(names, goals, strict=True):
+        if len(goal.position) != count:
+            raise ValueError(f"targets['{name}'] has {len(goal.position)} elements; the first frame has {count}")
+    q, _ = starts(robot, q0, count)
+    poses = tuple(goal.rotation is not None for goal in goals)
+    chosen, restarts = chosen_limits(robot, limits), checked_count("restarts", restarts, 0)
+    task = InverseTask(model, places, poses, chosen, checked_tolerance(tolerance), restarts)
+    arrays = [part for goal in goals for part in (goal.position, goal.rotation) if part is not None]
+    numbers = 2 * model.numbers + 40 * len(goals) * model.tree.nv
+    found = blocks(numbers, block, threads, executor, progress).map(_searched, task, (q, *arrays))
+    at, position, angle, residual, code = found
+    reason = tuple(_INVERSE_REASONS[each] for each in code.tolist())
+    return InverseKinematics(at, code == 0, position, angle, residual, reason)
+
+
+def _searched(task: InverseTask, q: Matrix, *arrays: Matrix) -> tuple[Matrix, Matrix, Matrix, Vector, Indices]:
+    parts = iter(arrays)
+    goals = [Target(next(parts), next(parts) if is_pose else None) for is_pose in task.poses]
+    found = search(task, goals, q)
+    code = np.array([_INVERSE_REASONS.index(reason) for reason in found.reason], dtype=np.intp)
+    residual = np.linalg.norm(task.problem.residual(found.q), axis=1)
+    return found.q, found.position, found.angle, residual, code

@@ -1,0 +1,371 @@
+"""The search for configurations at which frames are at their targets, within the joint limits.
+
+With K̃ and Ẽ the derivatives of the residual and of the errors in units of the velocities, and P the projection onto
+ker K̃, a damped step is v = -P Ẽᵀ (Ẽ P Ẽᵀ + λ 1)⁻¹ e: small systems, of the size of the errors. Where a step would
+exceed a limit, the bounded step of that element is computed by itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import numpy as np
+
+from eurdf.closures.se3 import log3, log3_derivative
+from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
+from eurdf.kinematics.assembly import Closed, close
+from eurdf.kinematics.bounded_step import bounded_step
+from eurdf.kinematics.descend import next_damping
+from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits
+from eurdf.kinematics.problem import Problem
+from eurdf.kinematics.rank import certain_inverse, damped_step, norms, numerical_ranks, squares
+from eurdf.kinematics.tolerances import (
+    CLOSED,
+    FIRST_DAMPING,
+    IDLE,
+    LEAST_GAIN,
+    LEAST_SHARE,
+    MORE_DAMPING,
+    MOST_IDLE_STEPS,
+    MOST_STEPS,
+    RESTARTS,
+    SOLVED,
+)
+from eurdf.mechanism.joint import LIMIT_TOLERANCE
+
+if TYPE_CHECKING:
+    pass
+
+#: Why inverse kinematics did not converge: closures stay open; joints at their limits keep the frames off target; the
+#: configuration is singular, at the edge of the workspace; no motion of the mechanism brings the frames nearer; or the
+#: maximum number of steps was reached.
+InverseKinematicsReason = Literal["closures open", "joint limits", "singular", "out of reach", "steps"]
+
+# As `IDLE`, in the last descent, after which the target is out of reach.
+_IDLE_AT_LAST = 1e-8
+# Distance of the restarts from the start (rad, or characteristic lengths); the last one is repeated.
+_SPREADS = (0.2, 0.5, 1.0, 2.0)
+# The gradient of the squared error counts as zero below this fraction of |A| |e|; |A| is at least its smallest value
+# met.
+_FLAT = 0.02
+# A configuration is singular if the smallest singular value of A is below this fraction of its largest value met.
+_SINGULAR = 0.05
+
+
+class Target(NamedTuple):
+    """Where frames should be; B elements.
+
+    Attributes:
+        position: (B, 3), m.
+        rotation: (B, 3, 3); None for positions.
+    """
+
+    position: Matrix
+    rotation: Matrix | None = None
+
+
+class InverseTask(NamedTuple):
+    """What is the same for all elements.
+
+    Attributes:
+        problem: The robot.
+        frames: Evaluates the F frames that have targets.
+        poses: Of each frame whether its targets are poses.
+        limits: The position limits to respect, or None.
+        tolerance: Bound of the distance of a frame from its target, m and rad.
+        restarts: Maximum number of restarts.
+    """
+
+    problem: Problem
+    frames: Any
+    poses: tuple[bool, ...]
+    limits: PositionLimits | None
+    tolerance: float
+    restarts: int
+
+
+class Found(NamedTuple):
+    """The result of `search`; B elements.
+
+    Attributes:
+        q: The configurations (B, nq) nearest to the targets.
+        position: Distances (B, F) of the origins of the frames from those of the targets, m.
+        angle: Angles (B, F) between their axes and those of the targets, rad; 0 for targets that are positions.
+        iterations: Numbers (B,) of steps tried.
+        reason: For each element why it did not converge; None if it did.
+        at_limits: For each element the joints that are at their limits and would have to exceed them to come nearer.
+    """
+
+    q: Matrix
+    position: Matrix
+    angle: Matrix
+    iterations: Indices
+    reason: list[InverseKinematicsReason | None]
+    at_limits: list[tuple[JointAtLimit, ...]]
+
+
+@np.errstate(all="ignore")
+def search(task: InverseTask, goals: Sequence[Target], q: Matrix) -> Found:
+    """The configurations nearest to the targets, from q (B, nq)."""
+    return _Search(task, goals, len(q)).run(q)
+
+
+class _Search:
+    """The descents of B elements."""
+
+    def __init__(self, task: InverseTask, goals: Sequence[Target], count: int) -> None:
+        self._task, self._problem, self._spaces = task, task.problem, task.problem.spaces
+        poses = [index for index, is_pose in enumerate(task.poses) if is_pose]
+        self._poses = np.array(poses, dtype=np.intp)
+        self._position = np.stack([goal.position for goal in goals], axis=1) if goals else np.empty((count, 0, 3))
+        rotations = [goal.rotation for goal in goals if goal.rotation is not None]
+        self._inverse = np.stack(rotations, axis=1).swapaxes(2, 3) if rotations else np.empty((count, 0, 3, 3))
+        # Rows of the errors in the order of the frames: those of its position, then those of its rotation.
+        self._used = np.repeat(np.array([[True, is_pose] for is_pose in task.poses], dtype=bool).ravel(), 3)
+        self._iterations = np.zeros(count, dtype=np.intp)
+        self._begun: list[tuple[Indices, Matrix]] = []  # elements and where descents of them began
+        self._farthest: dict[int, tuple[int, int, float]] = {}
+
+    def run(self, start: Matrix) -> Found:
+        """The configurations found from start (B, nq)."""
+        task, B = self._task, len(start)
+        everything = np.arange(B)
+        reason: list[InverseKinematicsReason | None] = [None] * B
+        at_limits: list[tuple[JointAtLimit, ...]] = [()] * B
+        clipped = self._clipped(start)
+        done = (clipped == start).all(axis=1)
+        done[done] = self._reached(self._error(start[done], everything[done])[0])
+        done[done] = self._problem.closes(start[done], CLOSED)
+        going = np.flatnonzero(~done)
+        best, cost = np.array(start), np.full(B, np.inf)
+        first = self._close(clipped[going], RESTARTS)
+        best[going] = first.q
+        for element in going[~first.closes].tolist():
+            reason[element] = "closures open"
+        place, going = first.q[first.closes], going[first.closes]
+        best[going], cost[going] = self._descend(place, going, IDLE)
+        off = self._off_target(best, going)
+        random = np.random.default_rng(0)
+        for attempt in range(task.restarts):
+            if not len(off):
+                break
+            spread = _SPREADS[min(attempt, len(_SPREADS) - 1)]
+            away = self._spaces.scale * random.uniform(-spread, spread, self._problem.tree.nv)
+            again = self._close(self._moved(place[np.searchsorted(going, off)], np.tile(away, (len(off), 1))))
+            own = off[again.closes]
+            end, reached = self._descend(again.q[again.closes], own, IDLE)
+            better = reached < cost[own]
+            best[own[better]], cost[own[better]] = end[better], reached[better]
+            off = self._off_target(best, off)
+        if len(off):
+            best[off], cost[off] = self._descend(best[off], off, _IDLE_AT_LAST)
+            for element in self._off_target(best, off).tolist():
+                reason[element], at_limits[element] = self._why_off_target(best[[element]], element)
+        e, _ = self._error(best, everything)
+        return Found(best, *self._distances(e), self._iterations, reason, at_limits)
+
+    def _close(self, q: Matrix, restarts: int = 0) -> Closed:
+        return close(self._problem, q, SOLVED, restarts, self._task.limits)
+
+    def _off_target(self, q: Matrix, which: Indices) -> Indices:
+        """Those of some elements whose frames are not at their targets at q (B, nq)."""
+        return which[~self._reached(self._error(q[which], which)[0])] if len(which) else which
+
+    def _descend(self, q: Matrix, which: Indices, idle_below: float) -> tuple[Matrix, Vector]:
+        """Where descents of some elements from closed configurations (b, nq) end, and the squared errors (b,) there.
+
+        Args:
+            q: Where to start (b, nq).
+            which: The elements (b,).
+            idle_below: A step that reduces the squared error by less than this fraction is idle.
+        """
+        end, squared = np.array(q), np.zeros(len(q))
+        e, at = self._error(q, which)
+        on, cost = np.arange(len(q)), squares(e)
+        damping, idle = np.full(len(q), FIRST_DAMPING), np.zeros(len(q), dtype=np.intp)
+        E: Matrix | None = None
+        going = ~self._reached(e)
+        begun = which[going]
+        if len(begun):
+            self._begun.append((begun, np.array(q[going])))
+        for step in range(MOST_STEPS + 1):
+            if step:
+                going = ~self._reached(e) & (idle <= MOST_IDLE_STEPS)
+            if step == MOST_STEPS or not going.all() or not len(on):
+                stays = ~going if step < MOST_STEPS else np.ones(len(on), dtype=bool)
+                end[on[stays]], squared[on[stays]] = q[stays], cost[stays]
+                if stays.all():
+                    break
+                on, q, e, cost, damping, idle = on[going], q[going], e[going], cost[going], damping[going], idle[going]
+                E = None if E is None else E[going]
+                at = None
+            if E is None:
+                E = self._jacobian(self._task.frames.at(q) if at is None else at, which[on])
+            v = self._steps(q, e, E, damping * cost)
+            expected = cost - squares(e + (E @ v[:, :, None])[:, :, 0])
+            worth = expected > LEAST_GAIN * cost
+            if not worth.all():
+                end[on[~worth]], squared[on[~worth]] = q[~worth], cost[~worth]
+                on, q, e, cost, damping, idle = on[worth], q[worth], e[worth], cost[worth], damping[worth], idle[worth]
+                E, v, expected = E[worth], v[worth], expected[worth]
+                if not len(on):
+                    break
+            self._iterations[which[on]] += 1
+            closed = self._close(self._moved(q, v))
+            e_there, at = self._error(closed.q, which[on])
+            reached = squares(e_there)
+            gain = np.where(closed.closes, (cost - reached) / expected, 0.0)
+            idle = np.where(closed.closes & (reached < (1.0 - idle_below) * cost), 0, idle + 1)
+            accepted = gain > LEAST_SHARE
+            damping = np.where(accepted, next_damping(damping, gain), MORE_DAMPING * damping)
+            if accepted.all():
+                q, e, cost, E = closed.q, e_there, reached, None
+                continue
+            q, e = np.where(accepted[:, None], closed.q, q), np.where(accepted[:, None], e_there, e)
+            cost, at = np.where(accepted, reached, cost), None
+            if accepted.any():
+                E[accepted] = self._jacobian(self._task.frames.at(q[accepted]), which[on[accepted]])
+        return end, squared
+
+    def _steps(self, q: Matrix, e: Matrix, E: Matrix, damping: Vector) -> Matrix:
+        """The v (b, nv) with K v = 0 that minimise |E v + e|² + λ|v|² within the limits; at most 1 rad or length."""
+        scale = self._spaces.scale
+        A, K, _ = self._projected(q, E)
+        damping = np.maximum(np.maximum(damping, 1e-13 * squares(A)), 1e-300)
+        v = scale * damped_step(A, e, damping)
+        if self._task.limits is not None:
+            down, up = self._task.limits.room(q)
+            over = (((up <= scale) & (v > up)) | ((-down <= scale) & (v < down))).any(axis=1)
+            for element in np.flatnonzero(over).tolist():
+                own = e[element], float(damping[element])
+                v[element] = self._bounded_step(q[element], K[element], E[element], *own)
+        return np.asarray(v / np.abs(v / scale).max(axis=1, initial=1.0)[:, None])
+
+    def _bounded_step(self, q: Vector, K: Matrix, E: Matrix, e: Vector, damping: float) -> Vector:
+        """The step (nv,) of one element that limits may bound."""
+        Z = self._spaces.at(K).free
+        A = E @ Z
+        H = A.T @ A
+        H.ravel()[:: len(H) + 1] += damping
+        G, h = self._bounds(q, Z)
+        y = damped_step(A[None], e[None], np.array([damping]))[0]
+        if (G @ y > h).any():
+            y = bounded_step(H, A.T @ e, G, h)
+        return np.asarray(Z @ y)
+
+    def _projected(self, q: Matrix, E: Matrix) -> tuple[Matrix, Matrix, Indices]:
+        """Ẽ P (b, k, nv), K (b, nc, nv), and the numbers (b,) of free motions.
+
+        Where the rows of K are independent for certain, P = 1 - K̃ᵀ (K̃ K̃ᵀ)⁻¹ K̃.
+        """
+        spaces, nv = self._spaces, self._problem.tree.nv
+        K, B = self._problem.jacobian(q), E * spaces.scale
+        free = np.full(len(q), nv - K.shape[1])
+        if not K.shape[1]:
+            return B, K, free
+        A = K * spaces.dimensionless
+        across = A.swapaxes(1, 2)
+        inverse, sure = certain_inverse(A @ across, norms(A))
+        every = np.count_nonzero(sure) == len(q)
+        if every or sure.any():
+            projected = B - B @ across @ inverse @ A
+            projected -= projected @ across @ inverse @ A  # what rounding left
+            B = projected if every else np.where(sure[:, None, None], projected, B)
+        if not every:
+            doubtful = np.flatnonzero(~sure)
+            for space in spaces.each(K[doubtful]):
+                own, Q = doubtful[space.which], space.free / spaces.scale[:, None]
+                B[own] = B[own] @ Q @ Q.swapaxes(1, 2)
+                free[own] = Q.shape[2]
+        return B, K, free
+
+    def _bounds(self, q: Vector, Z: Matrix) -> tuple[Matrix, Vector]:
+        """G and h such that v = Z y respects the limits if G y ≤ h, for limits within a step of 1 rad or length."""
+        if self._task.limits is None:
+            return np.empty((0, Z.shape[1])), np.empty(0)
+        down, up = self._task.limits.room(q)
+        scale = self._spaces.scale
+        rows = Z / scale[:, None]
+        moves = np.linalg.norm(rows, axis=1) > 1e-9
+        above, below = moves & (up <= scale), moves & (-down <= scale)
+        return np.vstack([rows[above], -rows[below]]), np.concatenate([(up / scale)[above], (-down / scale)[below]])
+
+    def _why_off_target(self, q: Matrix, element: int) -> tuple[InverseKinematicsReason, tuple[JointAtLimit, ...]]:
+        """Why no descent of one element continues from a closed configuration (1, nq) at which frames are off."""
+        which, limits = np.array([element]), self._task.limits
+        for elements, begun in self._begun:
+            own = np.flatnonzero(elements == element)
+            if len(own):
+                E = self._jacobian(self._task.frames.at(begun[own]), which)
+                self._look_at_rank(begun[own], E, element)
+        (e,), at = self._error(q, which)
+        E = self._jacobian(at, which)
+        values = self._look_at_rank(q, E, element)
+        Z = self._spaces.at(self._problem.jacobian(q)[0]).free
+        _, rank, smallest = self._farthest[element]
+        slope = (E[0] @ Z).T @ e
+        size = max(values.max(initial=0.0), smallest) * np.linalg.norm(e)
+        at_limits = () if limits is None else limits.pressed(q[0], -Z @ slope)
+        if np.linalg.norm(slope) <= _FLAT * size:
+            singular = rank > 0 and not values[rank - 1] > _SINGULAR * smallest
+            return ("singular" if singular else "out of reach"), ()
+        if at_limits:
+            G, h = self._bounds(q[0], Z)
+            at_bounds = h <= LIMIT_TOLERANCE
+            down = bounded_step(np.eye(len(slope)), slope, G[at_bounds], np.zeros(int(at_bounds.sum())))
+            if np.linalg.norm(down) <= _FLAT * size:
+                return "joint limits", at_limits
+        return "steps", at_limits
+
+    def _look_at_rank(self, q: Matrix, E: Matrix, element: int) -> Vector:
+        """Keep the largest rank of Ẽ P that an element has met, and the largest of its smallest singular values then.
+
+        Only configurations with the fewest free motions count: at singular loops, there are more, and the rank can be
+        larger. The singular values at this one (1, nq) are returned.
+        """
+        A, _, free = self._projected(q, E)
+        values = np.linalg.svd(A[0], compute_uv=False) if A.size else np.empty(0)
+        rank = int(numerical_ranks(values[None])[0])
+        met = -int(free[0]), rank, float(values[rank - 1]) if rank else 0.0
+        before = self._farthest.get(element, (-self._problem.tree.nv, 0, 0.0))
+        self._farthest[element] = max(before, met)
+        return np.asarray(values[: int(free[0])])
+
+    def _moved(self, q: Matrix, v: Matrix) -> Matrix:
+        return self._clipped(self._problem.tree.integrate(q, v))
+
+    def _clipped(self, q: Matrix) -> Matrix:
+        return q if self._task.limits is None else self._task.limits.clip(q)
+
+    def _error(self, q: Matrix, which: Indices) -> tuple[Matrix, Any]:
+        """Stacked errors (b, k) of some elements, in characteristic lengths and rad, and the frames there."""
+        at = self._task.frames.at(q)
+        R, p = self._task.frames.poses(at)
+        errors = np.empty((len(q), len(self._task.poses), 6))
+        errors[:, :, :3] = (p - self._position[which]) / self._spaces.length
+        if len(self._poses):
+            errors[:, self._poses, 3:] = log3(self._inverse[which] @ R[:, self._poses])
+        return errors.reshape(len(q), len(self._used))[:, self._used], at
+
+    def _jacobian(self, at: Any, which: Indices) -> Matrix:
+        """Derivatives (b, k, nv) of the errors by v, where the frames are."""
+        J = np.array(self._task.frames.jacobians(at))
+        J[:, :, :3] /= self._spaces.length
+        if len(self._poses):
+            R = self._task.frames.poses(at)[0][:, self._poses]
+            turn = log3(self._inverse[which] @ R)
+            J[:, self._poses, 3:] = log3_derivative(turn) @ R.swapaxes(2, 3) @ J[:, self._poses, 3:]
+        return J.reshape(len(J), len(self._used), self._problem.tree.nv)[:, self._used]
+
+    def _distances(self, e: Matrix) -> tuple[Matrix, Matrix]:
+        """How far each frame is from its target (b, F), m and rad, by the errors."""
+        errors = np.zeros((len(e), len(self._used)))
+        errors[:, self._used] = e
+        both = np.sqrt((errors.reshape(len(e), len(self._task.poses), 2, 3) ** 2).sum(axis=3))
+        return self._spaces.length * both[:, :, 0], both[:, :, 1]
+
+    def _reached(self, e: Matrix) -> Mask:
+        """Whether (b,) every frame is at its target within the tolerance."""
+        position, angle = self._distances(e)
+        return np.asarray((np.maximum(position, angle) <= self._task.tolerance).all(axis=1))

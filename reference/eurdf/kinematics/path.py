@@ -1,0 +1,137 @@
+"""Motions along a path in steps: how long they are, and how joints follow others that move along it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
+from eurdf.kinematics.assembly import close
+from eurdf.kinematics.problem import Problem
+from eurdf.kinematics.rank import squares
+from eurdf.kinematics.tolerances import (
+    FASTEST,
+    LEAST_CORRECTION,
+    LONGEST_MOTION,
+    MOST_CORRECTION,
+    SHORTEST_STEP,
+)
+
+#: Some elements: their indices, or all of them.
+Elements = Indices | slice
+
+#: Takes a step of some elements: which, the fractions (b,) of their paths that are done, and the steps (b,) to take, in
+#: the same unit. Returns the steps that were tried, at most as long, and whether each was accepted. A step of zero that
+#: was not accepted ends the path.
+Advance = Callable[[Elements, Vector, Vector], tuple[Vector, Mask]]
+
+
+def follow(advance: Advance, count: int = 1, *, shortest: float = SHORTEST_STEP, first: float = 1.0) -> Vector:
+    """Take steps along paths: a step that is not accepted is halved; after one that is, the next is twice as long.
+
+    Args:
+        advance: Takes a step of some elements.
+        count: Number of elements.
+        shortest: A path ends where a step below this fraction of it would have to be tried.
+        first: The step to try first.
+
+    Returns:
+        What fraction (count,) of each path is done: 1, or less if it ended early.
+    """
+    done, step = np.zeros(count), np.full(count, first)
+    on: Elements = slice(None)
+    part = done  # what is done of the elements that go on
+    while True:
+        tried, accepted = advance(on, part, np.minimum(step, 1.0 - part))
+        part = part + accepted * tried
+        step = np.where(accepted, 2.0, 0.5) * tried
+        done[on] = part
+        going = np.where(accepted, part < 1.0, step >= shortest)
+        left = np.count_nonzero(going)
+        if not left:
+            return done
+        if left < len(going):
+            on = np.arange(count)[on][going]
+            part, step = part[going], step[going]
+
+
+def follow_given(
+    problem: Problem,
+    first: Matrix,
+    goal: Matrix,
+    coordinates: Indices,
+    tolerance: float,
+    shortest: float = SHORTEST_STEP,
+    *,
+    free: Problem | None = None,
+) -> tuple[Matrix, Vector, Mask]:
+    """Move given joints along straight paths, in steps that are short enough to stay on the branch.
+
+    Args:
+        problem: The robot whose velocities of these joints are given.
+        first: Closed configurations (B, nq) to start from.
+        goal: The configurations (B, nq) with the coordinates to move to.
+        coordinates: Indices in q of the given coordinates.
+        tolerance: Bound of each row of the residual for closed loops, m or rad.
+        shortest: Smallest step, as a part of the path.
+        free: The robot with no velocity given. Without it, the joints stop where the loops may block them.
+
+    Returns:
+        Where the joints get (B, nq), what part (B,) of their paths that is, and where (B,) they stopped so, or numbers
+        overflow.
+    """
+    tree, scale = problem.tree, problem.spaces.scale
+    path = tree.difference(first, goal)  # zero except for the given joints
+    driven, ends = path[:, problem.given], goal[:, coordinates]
+    q, stopped = np.array(first), np.zeros(len(first), dtype=bool)
+
+    def advance(on: Elements, done: Vector, h: Vector) -> tuple[Vector, Mask]:
+        here = q[on]
+        v = _followed(problem, here, driven[on], free)
+        motion = v / scale
+        fastest = np.abs(motion).max(axis=1, initial=0.0)
+        while np.count_nonzero(far := (fastest * h > LONGEST_MOTION) & (h > shortest)):
+            h = np.where(far, 0.5 * h, h)
+        to, at = done + h, ends[on]
+        if np.count_nonzero(to < 1.0):
+            between = tree.integrate(first[on], to[:, None] * path[on])
+            at = np.where((to < 1.0)[:, None], between[:, coordinates], at)
+        expected = tree.integrate(here, h[:, None] * v)
+        expected[:, coordinates] = at
+        closed = close(problem, expected, tolerance)
+        corrected = squares(tree.difference(expected, closed.q) / scale)
+        allowed = np.maximum((MOST_CORRECTION * h) ** 2 * squares(motion), LEAST_CORRECTION**2)
+        accepted = closed.closes & (corrected <= allowed)
+        if np.count_nonzero(accepted) == len(h):
+            q[on] = closed.q
+            return h, accepted
+        q[on] = np.where(accepted[:, None], closed.q, here)
+        lost = np.isnan(fastest)
+        stopped[on] = lost
+        return np.where(lost, 0.0, h), accepted
+
+    return q, follow(advance, len(first), shortest=shortest), stopped
+
+
+def _followed(problem: Problem, q: Matrix, driven: Matrix, free: Problem | None) -> Matrix:
+    """The velocities (B, nv) with given ones (B, k); NaN where loops may block these, or K is not finite."""
+    v, certain = problem.velocity(q, driven)
+    if np.count_nonzero(certain) < len(q):
+        doubtful = np.flatnonzero(~certain)
+        v[doubtful] = np.nan if free is None else nearest_velocity(free, problem.given, q[doubtful], driven[doubtful])
+    return v
+
+
+def nearest_velocity(free: Problem, given: Indices, q: Matrix, driven: Matrix) -> Matrix:
+    """The velocities (B, nv) of a robot whose given ones are nearest to these (B, k), where loops may block them.
+
+    They are v = Z (Z_g)⁺ v_g with K Z = 0; NaN where K is not finite.
+    """
+    K, v = free.jacobian(q), np.zeros((len(q), free.tree.nv))
+    for space in free.spaces.each(K):
+        Z = space.basis
+        y = np.linalg.pinv(Z[:, given], rcond=1.0 / FASTEST) @ driven[space.which, :, None]
+        v[space.which] = (Z @ y)[:, :, 0]
+    v[~np.isfinite(K).all(axis=(1, 2))] = np.nan
+    return v

@@ -1,0 +1,226 @@
+"""A robot as the solvers see it: its tree, and groups of its loops, for arrays of configurations (B, nq)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
+from eurdf.kinematics.derived import derived
+from eurdf.kinematics.evaluate import evaluator, few_tree, many_tree
+from eurdf.kinematics.loop import LoopGroup, independent_groups, merged, moving_velocities
+from eurdf.kinematics.rank import least_solution, norms
+from eurdf.kinematics.tangent_space import TangentSpaces
+from eurdf.kinematics.tolerances import MOST_VELOCITIES_AT_ONCE
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
+
+# Cost of the residual and Jacobian of one closure, in multiplications.
+_WORK_OF_A_CLOSURE = 3e5
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """Loops that are closed together, and the velocities that close them.
+
+    Attributes:
+        loops: The loops.
+        by: Indices in v of the given velocities that move them.
+        evaluator: Evaluates their constraints by their own velocities, followed by the given ones.
+        row_scale: Factors (m,) that make their rows dimensionless.
+        weights: Weights (m, 2) of the squares of the rows in their sum: 1, and those that make it dimensionless.
+        unit: Unit (n,) of each of their own velocities.
+        factors: Factors (m, n) that make K dimensionless.
+        spread: Ratio of the largest unit of all these velocities to the smallest.
+        work: Multiplications for the smaller of A Aᵀ and Aᵀ A, and for the evaluation of A.
+        held: A direction (n,) of unit length along which no step moves, or None.
+    """
+
+    loops: LoopGroup
+    by: Indices
+    evaluator: Any
+    row_scale: Vector
+    weights: Matrix
+    unit: Vector
+    factors: Matrix
+    spread: float
+    work: float
+    held: Vector | None = None
+
+    def residual(self, q: Matrix) -> Matrix:
+        """Rows (B, m) at q (B, nq), m and rad."""
+        return np.asarray(self.evaluator.residual(self.evaluator.at(q)))
+
+    def jacobian(self, at: Any) -> Matrix:
+        """Their derivative (B, m, n) at configurations that the evaluator was given, dimensionless."""
+        K = self.evaluator.jacobian(at)
+        A: Matrix = (K[:, :, : len(self.unit)] if len(self.by) else K) * self.factors
+        return A if self.held is None else A - (A @ self.held)[:, :, None] * self.held
+
+    def jacobian_at(self, q: Matrix) -> Matrix:
+        """The same at q (B, nq)."""
+        return self.jacobian(self.evaluator.at(q))
+
+    @np.errstate(all="ignore")  # what overflows does not exist
+    def following(self, q: Matrix, driven: Matrix) -> tuple[Matrix, Mask]:
+        """Their own velocities (B, n, k) for given ones (B, g, k), and where (B,) these exist beyond doubt.
+
+        They are the least ones, in rad/s and m/s.
+        """
+        K = self.evaluator.jacobian(self.evaluator.at(q)) * self.row_scale[:, None]
+        norm = self.spread * norms(K)
+        n = len(self.unit)
+        return least_solution(K[:, :, :n], -(K[:, :, n:] @ driven), norm)
+
+    def holding(self, direction: Vector) -> Group:
+        """The same group, whose derivative is zero along a direction (n,) of unit length: no step moves along it."""
+        return replace(self, held=direction)
+
+
+class Problem:
+    """A robot, some velocities of which may be given: then only the others close the loops.
+
+    For many elements at once it is plain data, which threads share and other processes can be sent. For few it has
+    working memory, which one thread uses at a time: `borrowed` lends it.
+
+    Attributes:
+        tree: Its spanning tree.
+        spaces: Its tangent spaces, with the units of rows and velocities.
+        names: Names of its constraints.
+        given: Indices (k,) in v of the given velocities.
+        groups: Groups of its loops that share no joint that moves.
+        work: Multiplications in a step of all groups.
+        at_once: Whether all loops descend with one damping, before each group does by itself.
+        together: The loops as they descend with one damping, if they do.
+        parts: The same loops as their constraints are evaluated fastest: all at once, but in large robots by group.
+    """
+
+    def __init__(self, robot: Robot, given: Sequence[int] = (), *, few: bool = True) -> None:
+        """Take a robot and the indices in v of the given velocities."""
+        # No reference to the robot: the cache would keep it alive.
+        self.tree = few_tree(robot) if few else many_tree(robot)
+        self.spaces = derived(robot, TangentSpaces)
+        self.names = tuple(constraint.name for constraint in robot.constraints)
+        self.given = np.array(given, dtype=np.intp)
+        self._place = np.zeros(self.tree.nv, dtype=np.intp)  # of each velocity where it is among the given ones
+        self._place[self.given] = np.arange(len(given))
+        loops = independent_groups(robot, given)
+        self.groups = tuple(self._group(robot, each, few) for each in loops)
+        self.work = sum(group.work for group in self.groups)
+        small = self.tree.nv <= MOST_VELOCITIES_AT_ONCE
+        self.at_once = small and len(loops) > 1
+        self.parts = self.groups
+        if len(loops) > 1 and (small or not few):
+            self.parts = (self._group(robot, merged(loops), few),)
+        # One matrix of all loops takes less time for one element; for many, small ones do.
+        self.together = self.parts if few else self.groups
+
+    def _group(self, robot: Robot, loops: LoopGroup, few: bool) -> Group:
+        moving = moving_velocities(robot, loops.closures)
+        by = np.array([velocity for velocity in self.given.tolist() if velocity in moving], dtype=np.intp)
+        velocities = np.concatenate((loops.velocities, by))
+        rows, units = self.spaces.row_scale[loops.rows], self.spaces.scale[velocities]
+        m, n = len(loops.rows), len(loops.velocities)
+        with np.errstate(over="ignore", invalid="ignore"):
+            factors = rows[:, None] * units[:n]
+            weights = np.stack((np.ones(m), rows * rows), axis=1)
+        return Group(
+            loops,
+            by,
+            evaluator(robot, loops.closures, velocities, few=few),
+            rows,
+            weights,
+            units[:n],
+            factors,
+            float(units.max() / units.min()) if len(units) else 1.0,
+            float(m) * n * min(m, n) + _WORK_OF_A_CLOSURE * len(loops.closures),
+        )
+
+    @property
+    def numbers(self) -> int:
+        """Numbers that one element takes, roughly."""
+        return sum(int(part.evaluator.numbers) for part in self.parts) + 10 * self.tree.nq
+
+    def measured(self, q: Matrix) -> tuple[Matrix, Matrix, Matrix]:
+        """At q (B, nq) the residual (B, nc), m and rad, and how far each constraint is open (B, c), m and rad."""
+        r = np.empty((len(q), len(self.spaces.row_scale)))
+        lengths, angles = np.empty((2, len(q), len(self.names)))
+        for part in self.parts:
+            at, closures = part.evaluator.at(q), list(part.loops.closures)
+            r[:, part.loops.rows] = part.evaluator.residual(at)
+            lengths[:, closures], angles[:, closures] = part.evaluator.openings(at)
+        return r, lengths, angles
+
+    def residual(self, q: Matrix) -> Matrix:
+        """The residual (B, nc), m and rad."""
+        if len(self.parts) == 1:
+            return self.parts[0].residual(q)
+        r = np.empty((len(q), len(self.spaces.row_scale)))
+        for part in self.parts:
+            r[:, part.loops.rows] = part.residual(q)
+        return r
+
+    def jacobian(self, q: Matrix) -> Matrix:
+        """K (B, nc, nv)."""
+        K = np.zeros((len(q), len(self.spaces.row_scale), self.tree.nv))
+        for part in self.parts:
+            block = part.evaluator.jacobian(part.evaluator.at(q))
+            K[:, part.loops.rows[:, None], np.concatenate((part.loops.velocities, part.by))] = block
+        return K
+
+    def closes(self, q: Matrix, enough: float) -> Mask:
+        """Whether (B,) every constraint is open by at most ``enough``, m and rad, at q (B, nq); NaN is not closed."""
+        closes: Mask = np.ones(len(q), dtype=bool)
+        for part in self.parts:
+            for open_by in part.evaluator.openings(part.evaluator.at(q)):
+                closes &= (open_by <= enough).all(axis=1)
+        return closes
+
+    def moved(self, q: Matrix, groups: Sequence[Group], steps: Sequence[Matrix]) -> Matrix:
+        """Configurations (B, nq) after steps (B, n) of groups; lengths are in characteristic lengths."""
+        v = np.zeros((len(q), self.tree.nv))
+        for group, step in zip(groups, steps, strict=True):
+            v[:, group.loops.velocities] = group.unit * step
+        return np.asarray(self.tree.integrate(q, v))
+
+    def velocity(self, q: Matrix, driven: Matrix) -> tuple[Matrix, Mask]:
+        """The velocities (B, nv) at q (B, nq) with given ones (B, k), and where (B,) they exist beyond doubt.
+
+        Of those that keep the loops closed, they are the least ones, in rad/s and m/s.
+        """
+        v, sure = np.zeros((len(q), self.tree.nv)), np.ones(len(q), dtype=bool)
+        v[:, self.given] = driven
+        for group in self.together:
+            if len(group.by) and len(group.unit):
+                drive = driven if len(group.by) == len(self.given) else v[:, group.by]
+                if np.count_nonzero(drive):
+                    solution, is_sure = group.following(q, drive[:, :, None])
+                    v[:, group.loops.velocities] = solution[:, :, 0]
+                    if np.count_nonzero(is_sure) < len(q):
+                        sure &= is_sure | ~drive.any(axis=1)
+        return v, sure
+
+    def derivative(self, q: Matrix) -> tuple[Matrix, Mask]:
+        """Their derivatives (B, nv, k) by the given velocities, and where (B,) they exist beyond doubt."""
+        B, k = len(q), len(self.given)
+        D, sure = np.zeros((B, self.tree.nv, k)), np.ones(B, dtype=bool)
+        D[:, self.given, np.arange(k)] = 1.0
+        for group in self.together:
+            if len(group.by) and len(group.unit):
+                solution, is_sure = group.following(q, np.eye(len(group.by))[None])
+                D[:, group.loops.velocities[:, None], self._place[group.by]] = solution
+                sure &= is_sure
+        return D, sure
+
+
+def for_many(robot: Robot) -> Problem:
+    """A robot for many elements at once, with no velocity held; made once."""
+    return derived(robot, _for_many)
+
+
+def _for_many(robot: Robot) -> Problem:
+    return Problem(robot, few=False)

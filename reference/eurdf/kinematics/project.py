@@ -1,0 +1,231 @@
+"""Projections onto the closures: of a configuration, a velocity and an acceleration.
+
+Source: `configurationProjection`, `velocityProjection` and `accelerationProjection` of the toolbox of Batto, De Matteïs
+and Mansard, 2025.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
+from eurdf.kinematics.assembly import assembled, close, start
+from eurdf.kinematics.derived import borrowed, derived
+from eurdf.kinematics.exceptions import NotClosable
+from eurdf.kinematics.finite import finite, overflow_refused
+from eurdf.kinematics.metric import metric, nearest
+from eurdf.kinematics.problem import Problem
+from eurdf.kinematics.rank import are_finite
+from eurdf.kinematics.residual import acceleration_drift, residual_and_jacobian
+from eurdf.kinematics.tangent_space import TangentSpace, TangentSpaces
+from eurdf.kinematics.tolerances import RESTARTS, SOLVED
+from eurdf.pinocchio.arguments import checked_array, checked_tolerance
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
+
+_MOST_STEPS = 50
+_MOST_HALVINGS = 20
+
+# Step of the finite differences for second derivatives, which only guide the search.
+_DIFFERENCE = 1e-6
+
+
+@overflow_refused("the configuration")
+def project_configuration(
+    robot: Robot, q: Vector, weights: Vector | Matrix | None = None, *, tolerance: float = SOLVED
+) -> Vector:
+    """The closed configuration nearest to q.
+
+    It minimises ½ xᵀ W x subject to r(q ⊕ x) = 0, where x = q' ⊖ q is the velocity (nv,) that leads from q to q' in
+    unit time: W x is normal to the closed configurations. The loops are closed first; then Newton steps move q' along
+    the closed configurations to a local minimum of the distance. If W is diagonal, joints outside the loops do not
+    move.
+
+    Args:
+        robot: The robot.
+        q: Any configuration (nq,).
+        weights: The metric W: a matrix (nv, nv), or its diagonal (nv,). The default is the identity: the sum of squares
+            of all motions, in rad and m.
+        tolerance: Bound of each row of the residual for closed loops, m or rad.
+
+    Returns:
+        q' (nq,); q itself if it is closed. If rounding makes redundant rows contradict each other, it is closed as far
+        as `assemble` can close it.
+
+    Raises:
+        NotClosable: No closed configuration was found; the error lists the closures that stay open.
+        ValueError: ``q`` is not a configuration, or ``weights`` is not a metric.
+    """
+    W, tolerance = metric(weights, robot.tree.nv), checked_tolerance(tolerance)
+    q = start(robot, q, "q")
+    with borrowed(robot, Problem) as problem:
+        found, closed = nearest_closed(ProjectionTask(problem, W, tolerance), q[None])
+        if not closed[0]:
+            finite("the residual", problem.residual(q[None]))
+            assembly = assembled(problem, q, tolerance)
+            raise NotClosable("no closed configuration was found near the given one", assembly.open, assembly.q)
+    finite("the configuration", found)
+    return np.array(found[0])
+
+
+class ProjectionTask(NamedTuple):
+    """What is the same for all elements.
+
+    Attributes:
+        problem: The robot.
+        W: The metric (nv, nv).
+        tolerance: Bound of each row of the residual for closed loops, m or rad.
+    """
+
+    problem: Problem
+    W: Matrix
+    tolerance: float
+
+
+def nearest_closed(task: ProjectionTask, q: Matrix) -> tuple[Matrix, Mask]:
+    """The nearest closed configurations (B, nq) to q (B, nq), and where (B,) one was found; else the least open one."""
+    problem = task.problem
+    here, closed = np.array(q), np.ones(len(q), dtype=bool)
+    going = np.flatnonzero(~(np.abs(problem.residual(q)).max(axis=1, initial=0.0) <= task.tolerance))
+    if len(going):
+        found = close(problem, q[going], task.tolerance, RESTARTS)
+        here[going], closed[going] = found.q, found.closes
+    going = going[closed[going]]
+    cost = _distance(task, q, here)
+    for _ in range(_MOST_STEPS):
+        if not len(going):
+            break
+        v, gain = _step(task, q[going], here[going])
+        far = gain > 1e-14 * cost[going]
+        going, v, gain = going[far], v[far], gain[far]
+        waiting, moved = np.arange(len(going)), np.zeros(len(going), dtype=bool)
+        part = 1.0
+        for _ in range(_MOST_HALVINGS):
+            if not len(waiting):
+                break
+            own = going[waiting]
+            trial = close(problem, problem.tree.integrate(here[own], part * v[waiting]), task.tolerance)
+            reached = _distance(task, q[own], trial.q)
+            better = trial.closes & (reached <= cost[own] - 1e-4 * part * gain[waiting] + 1e-14 * cost[own])
+            here[own[better]], cost[own[better]] = trial.q[better], reached[better]
+            moved[waiting[better]] = True
+            waiting, part = waiting[~better], 0.5 * part
+        going = going[moved]
+    return here, closed
+
+
+def _distance(task: ProjectionTask, q: Matrix, at: Matrix) -> Vector:
+    """½ xᵀ W x (B,), x = at ⊖ q."""
+    x = task.problem.tree.difference(q, at)
+    return np.asarray(0.5 * ((x @ task.W) * x).sum(axis=1))
+
+
+def _gradient(task: ProjectionTask, q: Matrix, at: Matrix) -> Matrix:
+    """The derivative (B, nv) of `_distance` by the motion of ``at``."""
+    tree = task.problem.tree
+    slope = (tree.difference(q, at) @ task.W)[:, None]
+    return np.asarray((slope @ tree.difference_derivative(q, at))[:, 0])
+
+
+def _step(task: ProjectionTask, q: Matrix, here: Matrix) -> tuple[Matrix, Vector]:
+    """The Newton steps (B, nv) along the closed configurations, and how much they reduce the distance (B,)."""
+    problem = task.problem
+    K = problem.jacobian(here)
+    v, gain = np.zeros((len(q), problem.tree.nv)), np.zeros(len(q))
+    for space in problem.spaces.each(K):
+        own: Indices = space.which
+        slope, H = _second_derivatives(task, q[own], here[own], K[own], space)
+        step = _downhill(H, slope)
+        v[own] = (space.basis @ step[:, :, None])[:, :, 0]
+        gain[own] = -(slope * step).sum(axis=1)
+    return v, gain
+
+
+def _second_derivatives(
+    task: ProjectionTask, q: Matrix, here: Matrix, K: Matrix, space: TangentSpace
+) -> tuple[Matrix, Matrix]:
+    """Slope (b, m) and second derivative (b, m, m) of the distance along the basis Z (b, nv, m)."""
+    problem, Z = task.problem, space.basis
+    b, nv, m = Z.shape
+    g = _gradient(task, q, here)
+    multipliers = (g[:, None] @ space.inverse)[:, 0]
+    normal = g - (multipliers[:, None] @ K)[:, 0]
+    change = np.empty((b, nv, m))
+    for column in range(m):
+        beside = problem.tree.integrate(here, _DIFFERENCE * Z[:, :, column])
+        along = (multipliers[:, None] @ problem.jacobian(beside))[:, 0]
+        change[:, :, column] = (_gradient(task, q, beside) - along - normal) / _DIFFERENCE
+    return (g[:, None] @ Z)[:, 0], Z.swapaxes(1, 2) @ change
+
+
+@overflow_refused("the velocity")
+def project_velocity(robot: Robot, q: Vector, v: Vector, weights: Vector | Matrix | None = None) -> Vector:
+    """The velocity nearest to v that keeps the loops closed.
+
+    The orthogonal projection onto ker K(q): v' = Z (Zᵀ W Z)⁻¹ Zᵀ W v with K Z = 0, which minimises (v' - v)ᵀ W (v' - v)
+    subject to K v' = 0. With the mass matrix as W it is the velocity after an impulse that closes the closures.
+
+    Args:
+        robot: The robot.
+        q: Configuration (nq,), closed or open. At a singular q, motions that are free to first order count as free.
+        v: Velocity (nv,), rad/s or m/s.
+        weights: The metric W: a matrix (nv, nv), or its diagonal (nv,); the identity by default.
+
+    Returns:
+        v' (nv,).
+
+    Raises:
+        ValueError: ``q`` or ``v`` has another shape or is not finite, or ``weights`` is not a metric.
+    """
+    W = metric(weights, robot.tree.nv)
+    v = checked_array("v", v, (robot.tree.nv,))
+    _, K = residual_and_jacobian(robot, start(robot, q, "q"))
+    projected = nearest(derived(robot, TangentSpaces).at(K).basis, W, v)
+    finite("the velocity", projected)
+    return projected
+
+
+@overflow_refused("the acceleration")
+def project_acceleration(
+    robot: Robot, q: Vector, v: Vector, a: Vector, weights: Vector | Matrix | None = None
+) -> Vector:
+    """The acceleration nearest to a that keeps the loops closed.
+
+    It minimises (a' - a)ᵀ W (a' - a) subject to K(q) a' + K̇ v = 0, with K̇ v from `acceleration_drift`.
+
+    Args:
+        robot: The robot.
+        q: Configuration (nq,).
+        v: Velocity (nv,), rad/s or m/s. It should keep the loops closed, K v = 0. If it does not, redundant rows can
+            contradict each other; they are then satisfied in the least-squares sense, in units of the characteristic
+            length.
+        a: Acceleration (nv,), rad/s² or m/s².
+        weights: The metric W: a matrix (nv, nv), such as the mass matrix (Gauss' principle of least constraint), or
+            its diagonal (nv,); the identity by default.
+
+    Returns:
+        a' (nv,).
+
+    Raises:
+        ValueError: ``q``, ``v`` or ``a`` has another shape or is not finite, or ``weights`` is not a metric.
+    """
+    W = metric(weights, robot.tree.nv)
+    v, a, q = checked_array("v", v, (robot.tree.nv,)), checked_array("a", a, (robot.tree.nv,)), start(robot, q, "q")
+    _, K = residual_and_jacobian(robot, q)
+    space = derived(robot, TangentSpaces).at(K)
+    forced = -space.inverse @ acceleration_drift(robot, q, v)
+    projected = forced + nearest(space.basis, W, a - forced)
+    finite("the acceleration", projected)
+    return projected
+
+
+def _downhill(H: Matrix, slope: Matrix) -> Matrix:
+    """The Newton steps -H⁻¹ slope (b, m), with H (b, m, m) made positive definite if it is not."""
+    H = np.where(are_finite(H)[:, None, None], H, 0.0)
+    values, vectors = np.linalg.eigh(0.5 * (H + H.swapaxes(1, 2)))
+    values = np.abs(values)
+    values = np.maximum(values, np.maximum(1e-3 * values.max(axis=1, initial=0.0), 1e-300)[:, None])
+    return -np.asarray(vectors @ ((slope[:, None] @ vectors)[:, 0] / values)[:, :, None])[:, :, 0]

@@ -1,0 +1,331 @@
+"""Relative poses of pairs of frames and their Jacobians at few configurations, one after the other, by Pinocchio.
+
+A `pin.Data` takes some 8 nv³ numbers. So pairs that share joints, and several such clusters as long as they are small,
+have a model of their own, of the joints between the frames alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import pinocchio as pin
+
+from eurdf.array import Indices, Matrix, Vector
+from eurdf.closures.kind import PoseArrays, RelativeMotions, RelativePoses
+from eurdf.pinocchio.ancestry import between
+
+
+class Site(NamedTuple):
+    """Where a frame is fixed to.
+
+    Attributes:
+        joint: Index of the joint; 0 is the universe.
+        placement: Pose of the frame in the joint, `pin.SE3`.
+    """
+
+    joint: int
+    placement: Any
+
+
+Pair = tuple[Site, Site]
+
+# A model of several clusters has at most this many velocities, ...
+_BUNDLED = 40
+# ... and that of one cluster at most this many: its `pin.Data` takes 14 MB.
+_LARGEST = 60
+
+
+class FewPoses(RelativePoses):
+    """Poses of pairs as Pinocchio has them: `pin.SE3`, which are computed again if others were in their place since."""
+
+    _rotation: Matrix | None = None
+    _position: Matrix | None = None
+
+    def __init__(self, pairs: FewPairs, q: Matrix, which: slice) -> None:
+        self.q = q
+        self._pairs, self._which = pairs, which
+        self._shape = len(q), which.stop - which.start
+
+    def of(self, which: slice) -> FewPoses:
+        """Those of some of the pairs."""
+        return self if which == self._which else FewPoses(self._pairs, self.q, which)
+
+    @property
+    def rotation(self) -> Matrix:  # type: ignore[override]
+        """ᴬR_B (B, k, 3, 3)."""
+        if self._rotation is None:
+            found = np.array([aMb.rotation for aMb in self._each()])
+            self._rotation = found.reshape(*self._shape, 3, 3)
+        return self._rotation
+
+    @property
+    def position(self) -> Matrix:  # type: ignore[override]
+        """Origin p of B in A (B, k, 3), m."""
+        if self._position is None:
+            found = np.array([aMb.translation for aMb in self._each()])
+            self._position = found.reshape(*self._shape, 3)
+        return self._position
+
+    def logarithm(self) -> Matrix:
+        """log6(ᴬM_B) (B, k, 6)."""
+        if self._logarithm is None:
+            found = np.array([pin.log6(aMb).vector for aMb in self._each()])
+            self._logarithm = found.reshape(*self._shape, 6)
+        return self._logarithm
+
+    def logarithm_by_twist(self) -> Matrix:
+        """Jlog6(ᴮM_A) (B, k, 6, 6)."""
+        found = np.array([pin.Jlog6(aMb.inverse()) for aMb in self._each()])
+        return found.reshape(*self._shape, 6, 6)
+
+    def _each(self) -> Sequence[Any]:
+        pairs, q = self._pairs, self.q
+        if len(q) == 1:
+            placed = pairs.placed(q, 0)
+            return placed if self._which is pairs.all else placed[self._which]
+        return [pin.SE3(aMb) for element in range(len(q)) for aMb in pairs.placed(q, element)[self._which]]
+
+
+class FewPairs:
+    """Pairs of frames A, B, with the memory to compute in, for one thread."""
+
+    def __init__(self, model: pin.Model, parents: Sequence[int], pairs: Sequence[Pair], velocities: Indices) -> None:
+        """Take pairs of a model.
+
+        Args:
+            model: The model.
+            parents: Of each of its joints the parent.
+            pairs: The pairs.
+            velocities: Indices (n,) in v of the columns of the Jacobian.
+
+        Raises:
+            NotImplementedError: Pinocchio has no Jacobian for them, or it would take too much memory.
+        """
+        self.count, self.n = len(pairs), len(velocities)
+        self._bundles = [
+            _Bundle(model, parents, pairs, sorted(which), sorted(joints), velocities.tolist())
+            for which, joints in _bundled(model, (set(between(parents, a.joint, b.joint)) for a, b in pairs))
+        ]
+        self.all = slice(0, self.count)
+        self._at: tuple[Matrix | None, int] = None, 0  # what placements were computed of last
+        self._placements: list[Any] = []
+
+    def at(self, q: Matrix) -> FewPoses:
+        """The poses at q (B, nq), which the caller leaves as it is."""
+        return FewPoses(self, q, self.all)
+
+    def placed(self, q: Matrix, element: int) -> list[Any]:
+        """ᴬM_B of each pair at one of q (B, nq), valid until they are computed at another configuration.
+
+        They are not computed again if they were last computed of this element of this very array.
+        """
+        last, last_element = self._at
+        if q is not last or element != last_element:
+            if len(self._bundles) == 1:
+                self._placements = self._bundles[0].placements(q[element])
+            else:
+                self._placements = [None] * self.count
+                for bundle in self._bundles:
+                    for index, placement in zip(bundle.which, bundle.placements(q[element]), strict=True):
+                        self._placements[index] = placement
+            self._at = q, element
+        return self._placements
+
+    def jacobian(self, at: FewPoses, which: slice, rows: Matrix) -> Matrix:
+        """The derivative (B, k r, n) by the velocities of rows (B, k, r, 6) over the twists of some pairs."""
+        B, k, r = rows.shape[:3]
+        if B == 1 and len(self._bundles) == 1:
+            (bundle,) = self._bundles
+            self.placed(at.q, 0)
+            J = bundle.jacobian()
+            part: Matrix = (rows @ (J if k == self.count else J[which])).reshape(1, k * r, -1)
+            if bundle.is_whole:
+                return part
+            K = np.zeros((1, k * r, self.n))
+            K[..., bundle.columns] = part
+            return K
+        K = np.zeros((B, k, r, self.n))
+        for element, (of_rows, block) in enumerate(zip(rows, K, strict=True)):
+            self.placed(at.q, element)
+            for bundle in self._bundles:
+                chosen, own = bundle.within(which)
+                part = of_rows[chosen] @ bundle.jacobian()[own]
+                if isinstance(chosen, slice):
+                    block[chosen][..., bundle.columns] = part
+                else:
+                    block[chosen[:, None, None], np.arange(r)[:, None], bundle.columns] = part
+        return K.reshape(B, k * r, self.n)
+
+    def motions(self, q: Matrix, v: Matrix) -> RelativeMotions:
+        """How the pairs move at q (B, nq) while every joint keeps its velocity v (B, nv)."""
+        rotation, position = np.empty((len(q), self.count, 3, 3)), np.empty((len(q), self.count, 3))
+        twist, change = np.empty((2, len(q), self.count, 6))
+        self._at = None, 0
+        for element in range(len(q)):
+            for bundle in self._bundles:
+                for pair, aMb, xi, rate in bundle.motions(q[element], v[element]):
+                    rotation[element, pair], position[element, pair] = aMb.rotation, aMb.translation
+                    twist[element, pair], change[element, pair] = xi.vector, rate.vector
+        return RelativeMotions(PoseArrays(rotation, position), twist, change)
+
+
+def _bundled(model: pin.Model, paths: Iterable[set[int]]) -> Iterator[tuple[list[int], set[int]]]:
+    """Clusters of pairs that share joints with one another, small ones together: the pairs, and the joints."""
+    clusters: list[tuple[list[int], set[int]]] = []
+    cluster_of: dict[int, tuple[list[int], set[int]]] = {}  # by joint
+    for index, path in enumerate(paths):
+        sharing = {id(cluster): cluster for joint in path if (cluster := cluster_of.get(joint))}
+        largest = max(sharing.values(), key=lambda cluster: len(cluster[1]), default=([], set()))
+        if not sharing:
+            clusters.append(largest)
+        for cluster in sharing.values():
+            if cluster is not largest:
+                largest[0].extend(cluster[0])
+                largest[1].update(cluster[1])
+                cluster_of.update(dict.fromkeys(cluster[1], largest))
+                cluster[0].clear()
+        largest[0].append(index)
+        new = path - largest[1]
+        largest[1].update(new)
+        cluster_of.update(dict.fromkeys(new, largest))
+    open_: tuple[list[int], set[int]] = ([], set())
+    size = 0
+    for which, joints in clusters:
+        if not which:  # it is part of another
+            continue
+        own = sum(model.nvs[joint] for joint in joints)
+        if own > _LARGEST or not all(model.nvs[joint] for joint in joints):
+            raise NotImplementedError("mimic joints have columns of their own in Pinocchio's Jacobians")
+        if size and own and size + own > _BUNDLED:
+            yield open_
+            open_, size = ([], set()), 0
+        open_[0].extend(which)
+        open_[1].update(joints)
+        size += own
+    if not size:  # Jacobians of Pinocchio 4.1 without velocities read memory that is not their own
+        raise NotImplementedError("no joint is between the frames")
+    yield open_
+
+
+class _Bundle:
+    """Some of the pairs, in a model of the joints between them.
+
+    Attributes:
+        which: Their indices, ascending.
+        columns: Columns of the Jacobian that the velocities of the model are.
+        is_whole: Whether these are all of them.
+    """
+
+    def __init__(
+        self,
+        model: pin.Model,
+        parents: Sequence[int],
+        pairs: Sequence[Pair],
+        which: list[int],
+        joints: list[int],
+        velocities: list[int],
+    ) -> None:
+        small, index = pin.Model(), {0: 0}
+        for joint in joints:  # a parent comes before its children
+            above = index.get(parents[joint], 0)  # what carries both frames of a pair does not matter
+            index[joint] = small.addJoint(above, model.joints[joint], model.jointPlacements[joint], model.names[joint])
+        self.which = which
+        self._pairs = [tuple(Site(index.get(end.joint, 0), end.placement) for end in pairs[each]) for each in which]
+        self._model, self._data = small, small.createData()
+        self._coordinates = _joined(model.idx_qs, model.nqs, joints)
+        self._velocities = _joined(model.idx_vs, model.nvs, joints)
+        column = {velocity: at for at, velocity in enumerate(velocities)}
+        own = [at for at, velocity in enumerate(self._velocities.tolist()) if velocity in column]
+        own.sort(key=lambda at: column[int(self._velocities[at])])
+        columns = np.array([column[velocity] for velocity in self._velocities[own].tolist()], np.intp)
+        self.columns = as_slice(columns)
+        self._own = None if own == list(range(small.nv)) else np.array(own, np.intp)
+        self.is_whole = len(own) == len(velocities)
+        # Constraint models of all six rows, also where only positions matter: they turn with A.
+        self._models, self._datas = pin.StdVec_RigidConstraintModel(), pin.StdVec_RigidConstraintData()
+        for a, b in self._pairs:
+            constraint = pin.RigidConstraintModel(pin.ContactType.CONTACT_6D, small, *a, *b, pin.ReferenceFrame.LOCAL)
+            self._models.append(constraint)
+            self._datas.append(constraint.createData())
+        self._each = list(zip(self._models, self._datas, strict=True))
+        self._J: Matrix | None = None
+        self._within: dict[tuple[int, int], tuple[slice | Indices, slice]] = {}
+
+    def placements(self, q: Vector) -> list[Any]:
+        """ᴬM_B of each pair at q (nq,)."""
+        model, data = self._model, self._data
+        pin.computeJointJacobians(model, data, q[self._coordinates])
+        for constraint, found in self._each:
+            constraint.calc(model, data, found)
+        self._J = None
+        return [found.c1Mc2 for _, found in self._each]
+
+    def jacobian(self) -> Matrix:
+        """The twists (k, 6, own n) of B against A where `placements` last was, by the velocities."""
+        if self._J is None:
+            J = pin.getConstraintsJacobian(self._model, self._data, self._models, self._datas)
+            J = -J.reshape(len(self._each), 6, self._model.nv)  # of A against B
+            self._J = J if self._own is None else J[..., self._own]
+        return self._J
+
+    def within(self, which: slice) -> tuple[slice | Indices, slice]:
+        """Those of some adjacent pairs that are in this bundle: their indices among these, and here."""
+        key = which.start, which.stop
+        if key not in self._within:
+            first, last = np.searchsorted(self.which, key).tolist()
+            chosen = np.array(self.which[first:last], np.intp) - which.start
+            self._within[key] = as_slice(chosen), slice(first, last)
+        return self._within[key]
+
+    def motions(self, q: Vector, v: Vector) -> Iterator[tuple[int, Any, Any, Any]]:
+        """Of each pair its index, ᴬM_B, the twist ξ of B against A in the axes of B, and ξ̇.
+
+        With V and A the twists and spatial accelerations of the frames, each in its own axes, and M = ᴬM_B,
+        ξ = V_B - Ad(M⁻¹) V_A, and ξ̇ = A_B - Ad(M⁻¹) A_A + ξ × Ad(M⁻¹) V_A.
+        """
+        data = self._data
+        pin.forwardKinematics(self._model, data, q[self._coordinates], v[self._velocities], np.zeros(self._model.nv))
+        for which, ends in zip(self.which, self._pairs, strict=True):
+            (oMa, twist_a, change_a), (oMb, twist_b, change_b) = (
+                (data.oMi[joint] * jMf, jMf.actInv(data.v[joint]), jMf.actInv(data.a[joint])) for joint, jMf in ends
+            )
+            aMb = oMa.actInv(oMb)
+            carried = aMb.actInv(twist_a)
+            twist = twist_b - carried
+            yield which, aMb, twist, change_b - aMb.actInv(change_a) + twist.cross(carried)
+
+
+def as_slice(indices: Indices) -> slice | Indices:
+    """The same indices as a slice, which is faster, if they are adjacent and ascending."""
+    first = int(indices[0]) if len(indices) else 0
+    is_adjacent = np.array_equal(indices, np.arange(first, first + len(indices)))
+    return slice(first, first + len(indices)) if is_adjacent else indices
+
+
+def _joined(first: Sequence[int], count: Sequence[int], joints: Sequence[int]) -> Indices:
+    return np.array([first[joint] + k for joint in joints for k in range(count[joint])], np.intp)
+
+
+def poses_once(model: pin.Model, parents: Sequence[int], pairs: Sequence[Pair], q: Vector) -> PoseArrays:
+    """ᴬM_B of pairs at q (nq,), without memory for other configurations, which takes longer to make."""
+    needed: set[int] = set()
+    for pair in pairs:
+        for joint, _ in pair:
+            while joint and joint not in needed:
+                needed.add(joint)
+                joint = parents[joint]
+    order = sorted(needed)  # a parent has a lower index than its child
+    joints, placements = model.joints, model.jointPlacements
+    oMi = {0: pin.SE3.Identity()}
+    if all(a.joint and b.joint for a, b in pairs) and sum(not parents[joint] for joint in order) == 1:
+        oMi[order.pop(0)] = oMi[0]  # what carries all frames does not matter, however far away it moves
+    for joint in order:
+        moving = joints[joint]
+        data = moving.createData()
+        moving.calc(data, q)
+        oMi[joint] = oMi[parents[joint]] * placements[joint] * data.M
+    found = [(oMi[a] * aMf).actInv(oMi[b] * bMf) for (a, aMf), (b, bMf) in pairs]
+    rotation, position = [aMb.rotation for aMb in found], [aMb.translation for aMb in found]
+    return PoseArrays(np.array(rotation).reshape(1, -1, 3, 3), np.array(position).reshape(1, -1, 3))
