@@ -20,7 +20,8 @@ import numpy as np
 import pytest
 
 import eurdf
-from eurdf.exceptions import EurdfError, Portable
+from eurdf.errors import EurdfError, Portable
+from support.public import own_names, public_functions
 
 #: Name; root; joints of the serial side; actuator.
 ROBOTS = [
@@ -38,7 +39,15 @@ NOT_CALLED = {"reset", "write", "start_at_joints", "start_at_motors", "c_source"
 NOT_CALLED |= {"on_grid", "derived", "data", "tree", "diagnose", "no_geometry"}
 
 #: Objects of other libraries, and what a result refers to and does not own.
-NOT_OWNED = ("pinocchio", "coal", "lxml", "eurdf.pinocchio.tree", "eurdf.mechanism", "eurdf.diagnostics")
+NOT_OWNED = (
+    "pinocchio",
+    "coal",
+    "lxml",
+    "eurdf.pinocchio.tree",
+    "eurdf.mechanism",
+    "eurdf.closures",
+    "eurdf.diagnostics",
+)
 
 
 class Case:
@@ -76,7 +85,7 @@ class Case:
             "coordinates": coordinates,
         }
         self.arguments["q_actuated"], self.arguments["q_free"] = eurdf.split_configuration(robot, q)
-        self.arguments["v_actuated"], self.arguments["v_free"] = eurdf.split_velocity(robot, v)
+        self.arguments["v_actuated"], self.arguments["v_free"] = eurdf.kinematics.split_velocity(robot, v)
         written = eurdf.export(robot, "mjcf").coordinates
         self.arguments |= {"files": coordinates, "configuration": written.to_q(q), "velocity": written.to_v(q, v)}
         motors = {name: float(q[robot.slots[name].idx_q]) for name in robot.actuation.joints[:1]}
@@ -90,7 +99,7 @@ class Case:
         }
         if joints:
             at = np.array([coordinates[name][0] for name in joints])
-            of_motors = eurdf.prepare_transmission(robot, joints, q).at_joints(at).positions
+            of_motors = eurdf.transmissions.prepare_transmission(robot, joints, q).at_joints(at).positions
             self.arguments |= {"positions": at, "x": np.zeros(len(joints))}
             self.arguments |= dict.fromkeys(("v_J", "tau_J"), np.zeros(len(joints)))
             self.arguments |= dict.fromkeys(("v_m", "tau_m"), np.zeros(len(of_motors)))
@@ -113,11 +122,11 @@ class Case:
 
     def results(self) -> dict[str, Any]:
         """What each public function returns."""
-        functions = [(name, getattr(eurdf, name)) for name in eurdf.__all__ if name not in WITHOUT_DATA]
-        found = {name: self.call(each, name) for name, each in functions if inspect.isfunction(each)}
-        for name, function in inspect.getmembers(eurdf.batch, inspect.isfunction):
-            found[f"batch.{name}"] = self.call(function, name, self.batch)
-        return found
+        functions = {name: each for name, each in public_functions().items() if name not in WITHOUT_DATA}
+        return {
+            name: self.call(each, each.__name__, self.batch if name.startswith("batch.") else {})
+            for name, each in functions.items()
+        }
 
 
 def parts(value: Any, path: str, case: Case, seen: dict[int, Any] | None = None) -> Iterator[tuple[str, Any]]:
@@ -246,7 +255,7 @@ OF_EXCEPTIONS: dict[str, Any] = {
     "joint": "knee",
     "joints": ("knee", "hip"),
     "names": ("knee", "hip"),
-    "openings": (eurdf.Opening("rod", 0.1, 0.2),),
+    "openings": (eurdf.results.Opening("rod", 0.1, 0.2),),
     "tolerance": 1e-9,
     "q": np.zeros(3),
     "given": np.zeros(2),
@@ -300,13 +309,8 @@ def test_exception_survives_pickle_and_copy(kind: type[Exception]) -> None:
 
 
 def test_every_public_exception_is_portable() -> None:
-    public = [getattr(eurdf, name) for name in eurdf.__all__]
-    assert [kind for kind in public if isinstance(kind, type) and issubclass(kind, BaseException)]
-    assert not [
-        kind
-        for kind in public
-        if isinstance(kind, type) and issubclass(kind, BaseException) and not issubclass(kind, Portable)
-    ]
+    own = {name for name, kind in vars(eurdf.errors).items() if getattr(kind, "__module__", "") == "eurdf.errors"}
+    assert {name for name in own if not name.startswith("_")} - {"CannotRun"} == own_names(eurdf.errors).keys()
 
 
 def velocities(robot: str | eurdf.Robot) -> int:
@@ -318,7 +322,7 @@ def test_robots_and_exceptions_pass_between_processes(tmp_path: Path) -> None:
     broken.write_text("<robot name='r'/>")
     with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
         assert pool.submit(velocities, eurdf.load("four_bar", geometry=False)).result(60) == 3
-        for path, error in (("no_such_robot", eurdf.RobotNotFound), (str(broken), eurdf.InvalidRobot)):
+        for path, error in (("no_such_robot", eurdf.errors.RobotNotFound), (str(broken), eurdf.InvalidRobot)):
             with pytest.raises(error) as here:
                 velocities(path)
             with pytest.raises(error) as there:

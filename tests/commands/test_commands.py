@@ -20,7 +20,7 @@ from eurdf.commands.output_file import write_new
 from eurdf.commands.selection import select
 from eurdf.diagnostics import Diagnostic, Place
 from eurdf.diagnostics.report import Report
-from eurdf.exceptions import CannotRun
+from eurdf.errors import CannotRun
 from support.described import ARM as URDF
 from support.described import ARM_DESCRIPTION as DESCRIPTION
 from support.processes import on_a_terminal

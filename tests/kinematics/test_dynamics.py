@@ -13,16 +13,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-from eurdf.kinematics import independence
-from eurdf.kinematics.assembly import assemble
-from eurdf.kinematics.dynamics import achievable_acceleration, forward_dynamics, inverse_dynamics
-from eurdf.kinematics.exceptions import (
+from eurdf.errors import (
     InconsistentMotion,
     NotClosable,
     SimulationDiverged,
     UnderactuatedMotion,
     UndeterminedMotion,
 )
+from eurdf.kinematics import independence
+from eurdf.kinematics.assembly import assemble
+from eurdf.kinematics.dynamics import achievable_acceleration, forward_dynamics, inverse_dynamics
 from eurdf.kinematics.residual import residual, residual_and_jacobian
 from eurdf.kinematics.simulation import simulate
 from eurdf.pinocchio.configuration import joint_coordinates
@@ -390,7 +390,7 @@ def test_late_leader_is_named_in_errors() -> None:
     )
     robot = load(late)
     assert "c/coordinate" in list(robot.model.names)
-    with pytest.raises(eurdf.UnderactuatedMotion) as refused:
+    with pytest.raises(eurdf.errors.UnderactuatedMotion) as refused:
         inverse_dynamics(robot, np.zeros(2), np.zeros(2), np.ones(2))
     assert set(refused.value.missing) == {"a", "c"}
 

@@ -10,7 +10,7 @@ import pinocchio as pin
 import pytest
 
 import eurdf
-from eurdf.kinematics.exceptions import StepTooLongWarning
+from eurdf.errors import StepTooLongWarning
 from eurdf.kinematics.project import project_velocity
 from eurdf.kinematics.simulation import simulate
 

@@ -255,5 +255,5 @@ def test_robot_that_cannot_close_is_refused(tmp_path):
     (closure,) = robot.mechanism.closures
     far = replace(closure, a=replace(closure.a, pose=Pose((9.0, 0.0, 0.0))))
     robot = build_robot(replace(robot.mechanism, closures=(far,)), geometry=False)
-    with pytest.raises(eurdf.NotClosable):
+    with pytest.raises(eurdf.errors.NotClosable):
         eurdf.sweep(robot, "crank")

@@ -23,7 +23,7 @@ CONSTRAINTS = {"3d": 1, "6d": 3, "hinge": 2, "distance": 0}
 _DRAKE = "{http://drake.mit.edu}"
 
 
-def assert_balls_are_closed(robot: Robot, export: eurdf.Export, q: Any) -> None:
+def assert_balls_are_closed(robot: Robot, export: eurdf.convert.Export, q: Any) -> None:
     there = InDrake(robot, export)
     there.at(q)
     balls = ET.fromstring(export.main).findall(f"{_DRAKE}ball_constraint")

@@ -204,7 +204,7 @@ actuators:
 """
 
 
-def pair(**options: Any) -> tuple[eurdf.Export, Any]:
+def pair(**options: Any) -> tuple[eurdf.convert.Export, Any]:
     export = eurdf.export(DESCRIPTION, "mjcf", urdf=PAIR, **options)
     return export, mujoco.MjModel.from_xml_string(export.main.decode())
 

@@ -24,7 +24,7 @@ from support.plain_urdf import robot as robot_element
 TYPES = {"3d": "ball", "6d": "fixed", "hinge": "continuous"}
 
 
-def assert_same_loops(robot: Robot, export: eurdf.Export, q: Any) -> None:
+def assert_same_loops(robot: Robot, export: eurdf.convert.Export, q: Any) -> None:
     """At q, where the links are placed: no coordinate differs from zero, and loops are at both ends of closures."""
     there = TreeInDrake(robot, export)
     map_ = export.coordinates
@@ -107,7 +107,7 @@ extended_urdf: "2.0"
 closures: [{{name: loop, type: 3d, frames: {frames}}}]
 configurations: {{assembled: {{j: 0.1, k: 0.1}}, other: {{j: 0.3, k: 0.5}}}}
 """
-    with pytest.raises(eurdf.CannotExport, match=r"closure .loop. is open by 2\.0e-02 m or rad"):
+    with pytest.raises(eurdf.errors.CannotExport, match=r"closure .loop. is open by 2\.0e-02 m or rad"):
         eurdf.export(text, "sdf", urdf=PAIR, configuration="other")
 
 

@@ -21,7 +21,7 @@ NAMES = eurdf.collection_names()
 ROBOTS = Path(__file__).parents[2] / "robots"
 
 
-def read_back(export: eurdf.Export, robot: Robot) -> Robot:
+def read_back(export: eurdf.convert.Export, robot: Robot) -> Robot:
     return eurdf.load(export.main.decode(), root=robot.mechanism.root, geometry=False)
 
 

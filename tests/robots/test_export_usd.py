@@ -198,7 +198,7 @@ configurations:
 """
 
 
-def losses(export: eurdf.Export) -> set[tuple[str, str]]:
+def losses(export: eurdf.convert.Export) -> set[tuple[str, str]]:
     return {(loss.code, loss.name) for loss in export.losses}
 
 

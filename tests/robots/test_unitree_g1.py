@@ -36,7 +36,7 @@ def test_waist_has_the_lengths_of_the_published_parts(g1: eurdf.Robot) -> None:
 
 
 def test_motors_reach_the_ends_of_pitch_and_roll(g1: eurdf.Robot) -> None:
-    waist = eurdf.prepare_transmission(g1, WAIST)
+    waist = eurdf.transmissions.prepare_transmission(g1, WAIST)
     stops = [g1.model.upperPositionLimit[g1.slots[f"{side}_waist_joint"].idx_q] for side in ("left", "right")]
     for pose in ((0.52, 0.0), (-0.52, 0.0), (0.0, 0.52), (0.0, -0.52)):
         assert (np.abs(waist.at_joints(pose).positions) < stops).all(), pose
@@ -46,7 +46,7 @@ def test_motors_reach_the_ends_of_pitch_and_roll(g1: eurdf.Robot) -> None:
 def test_serial_twin_has_the_poses_of_the_robot(g1: eurdf.Robot) -> None:
     twin = g1
     for joints in (WAIST, *ANKLES):
-        twin = eurdf.serial_twin(twin, joints, limits="fitted", grid=5).robot
+        twin = eurdf.transmissions.serial_twin(twin, joints, limits="fitted", grid=5).robot
     assert twin.constraints == ()
     assert len(twin.actuation.joints) == twin.model.nv - 6 == 29
     random = np.random.default_rng(5)

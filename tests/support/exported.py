@@ -105,7 +105,7 @@ def near(robot: Robot, q: Any, seed: int = 0) -> tuple[Any, Any]:
     )
 
 
-def witness(robot: Robot, export: eurdf.Export) -> Any:
+def witness(robot: Robot, export: eurdf.convert.Export) -> Any:
     """An exported robot in the program that reads it, which has `names`, `at`, `pose`, `inertia_matrix` and `bias`."""
     if export.format == "mjcf":
         return InMuJoCo(robot, export)
@@ -121,7 +121,7 @@ class InPinocchio:
 
     bias = None
 
-    def __init__(self, robot: Robot, export: eurdf.Export) -> None:
+    def __init__(self, robot: Robot, export: eurdf.convert.Export) -> None:
         self.coordinates = export.coordinates
         self.model = pinocchios_own(export.main.decode(), robot.mechanism.root)
         self.data = self.model.createData()
@@ -152,7 +152,7 @@ class InPinocchio:
 class InMuJoCo:
     """An exported robot in MuJoCo."""
 
-    def __init__(self, robot: Robot, export: eurdf.Export) -> None:
+    def __init__(self, robot: Robot, export: eurdf.convert.Export) -> None:
         self.robot, self.coordinates = robot, export.coordinates
         meshes = {path.removeprefix("meshes/"): content for path, content in export.files.items()}
         self.model = mujoco.MjModel.from_xml_string(export.main.decode(), meshes)

@@ -107,7 +107,7 @@ class Beside:
         data = self.data
         rows = data.efc_id[: data.ne]
         for opening, constraint in zip(
-            eurdf.closure_openings(self.robot, q), self.robot.mechanism.constraints, strict=True
+            eurdf.kinematics.closure_openings(self.robot, q), self.robot.mechanism.constraints, strict=True
         ):
             mine = data.efc_pos[: data.ne][rows == self.model.equality(constraint.name).id]
             assert len(mine), constraint.name

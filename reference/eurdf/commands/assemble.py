@@ -11,7 +11,7 @@ from eurdf.commands.command import JSON, ROBOT, cannot_run, command, flag, optio
 from eurdf.commands.output import write_result
 from eurdf.commands.selection import NEUTRAL, named_configuration
 from eurdf.commands.terminal import cell, new_table, write_notes, write_rendered
-from eurdf.exceptions import CannotRun
+from eurdf.errors import CannotRun
 from eurdf.json_schema import Count, NullIfInfinite
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
@@ -175,9 +175,9 @@ def _assemble(robot: Robot, q0: Vector, hold: list[str], limits: bool) -> Assemb
     held = [velocity for name in hold for velocity in robot.tree.velocities_of(name)]
     # All joints but the held ones within their limits, also those outside of loops.
     within = position_limits(robot).clip(q0, np.setdiff1d(np.arange(robot.tree.nv), held))
-    assembly = assemble(robot, within if limits else q0, hold, tolerance=_TOLERANCE, limits=limits)
+    assembly = assemble(robot, within if limits else q0, hold=hold, tolerance=_TOLERANCE, limits=limits)
     if not limits and assembly.closes and beyond_limits(robot.mechanism.joints, robot.coordinates(assembly.q)):
-        limited = assemble(robot, within, hold, tolerance=_TOLERANCE, limits=True)
+        limited = assemble(robot, within, hold=hold, tolerance=_TOLERANCE, limits=True)
         if limited.closes:
             return limited
     return assembly

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from eurdf.collection import find_robot, has_urdf
 from eurdf.diagnostics import FileError
-from eurdf.exceptions import CannotRun, RobotNotFound
+from eurdf.errors import CannotRun, RobotNotFound
 from eurdf.reading.robot_source import is_stream, is_text
 from eurdf.reading.source import FILE_LIMIT, begin_of_file
 

@@ -11,7 +11,6 @@ from types import MappingProxyType
 
 from eurdf.convert.common_losses import BEYOND_LIMITS, UNKNOWN
 from eurdf.convert.coordinates import Coordinates
-from eurdf.convert.exceptions import CannotExport
 from eurdf.convert.export_format import ExportInput, Triangles, export_format
 from eurdf.convert.formats import (
     ACTUATORS,
@@ -27,7 +26,7 @@ from eurdf.convert.losses import Effect, Loss, Losses
 from eurdf.convert.parts import OwnVectors, VectorPlace
 from eurdf.convert.verification.verify import Verification, verify
 from eurdf.diagnostics import did_you_mean
-from eurdf.exceptions import InvalidRobot
+from eurdf.errors import CannotExport, InvalidRobot
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.position_limit import position_limits

@@ -14,7 +14,6 @@ from types import MappingProxyType
 
 import numpy as np
 
-from eurdf.convert.exceptions import CannotImport
 from eurdf.convert.import_format import ImportFormat, ImportInput, RobotRead, import_format, loss_kinds
 from eurdf.convert.loop_axes import allowed_axes, with_axes
 from eurdf.convert.losses import Effect, Loss, Losses, dropped, exact
@@ -22,7 +21,7 @@ from eurdf.convert.readme import licence_file, readme
 from eurdf.convert.xml_elements import places_of_names, recognized
 from eurdf.diagnostics import Diagnostic, Severity, did_you_mean
 from eurdf.diagnostics.wording import visible
-from eurdf.exceptions import RobotNotFound
+from eurdf.errors import CannotImport, RobotNotFound
 from eurdf.format.schema import FILES, SchemaVersion, json_schema, schema_text
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import assemble

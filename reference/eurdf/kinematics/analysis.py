@@ -15,6 +15,7 @@ from eurdf.kinematics.assembly import Assembly, assembled, close, start
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.finite_mobility import Evidence, FiniteMobility, MobilityTest
 from eurdf.kinematics.loop import LoopGroup
+from eurdf.kinematics.named import Named
 from eurdf.kinematics.problem import Group, Problem
 from eurdf.kinematics.rank import norms, numerical_rank
 from eurdf.kinematics.sparse_basis import sparse_basis
@@ -187,7 +188,7 @@ FIGURES = {
 }
 
 
-def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
+def analyze(robot: Robot, q: Named | None = None) -> Analysis:
     """Close the loops, compute ranks and mobility, and find uncontrolled motions and dependent actuators.
 
     rank = rank K, mobility = nv - rank, redundant = nc - rank, uncontrolled = nv - rank [K; Sᵀ], where S (nv, nu)

@@ -15,17 +15,17 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
+from eurdf.errors import NotClosable
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.descend import Descended, descend
-from eurdf.kinematics.exceptions import NotClosable
+from eurdf.kinematics.named import Named, as_names, configuration_of
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits, chosen_limits
 from eurdf.kinematics.problem import Group, Problem
 from eurdf.kinematics.rank import norms
-from eurdf.kinematics.several import several
 from eurdf.kinematics.tolerances import CLOSED, MOST_STEPS, MOST_WORK, RESTARTS, SOLVED, WELL_CLOSED
-from eurdf.pinocchio.arguments import checked_array, checked_count, checked_tolerance
+from eurdf.pinocchio.arguments import checked_count, checked_tolerance
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -84,9 +84,9 @@ class Assembly:
 
 def assemble(
     robot: Robot,
-    q0: Vector | None = None,
-    hold: str | Iterable[str] = (),
+    q0: Named | None = None,
     *,
+    hold: str | Iterable[str] = (),
     tolerance: float = SOLVED,
     limits: bool = False,
     restarts: int = RESTARTS,
@@ -119,14 +119,14 @@ def assemble(
             ``tolerance`` or ``restarts`` is negative.
     """
     q = start(robot, q0)
-    held = tuple(velocity for name in several(hold) for velocity in robot.tree.velocities_of(name))
+    held = tuple(velocity for name in as_names(hold) for velocity in robot.tree.velocities_of(name))
     tolerance, chosen = checked_tolerance(tolerance), chosen_limits(robot, limits)
     restarts = checked_count("restarts", restarts, 0)
     with borrowed(robot, Problem, *([held] if held else [])) as problem:  # others borrow one that holds none, too
         return assembled(problem, q, tolerance, restarts, chosen)
 
 
-def start(robot: Robot, q0: Vector | None = None, name: str = "q0") -> Vector:
+def start(robot: Robot, q0: Named | None = None, name: str = "q0") -> Vector:
     """The given configuration, checked and normalized; by default `assembled`, or else the neutral configuration.
 
     ``name`` is that of the argument.
@@ -139,7 +139,7 @@ def start(robot: Robot, q0: Vector | None = None, name: str = "q0") -> Vector:
     if q0 is None:
         return robot.tree.neutral()
     tree = robot.tree
-    given = checked_array(name, q0, (tree.nq,))
+    given = configuration_of(robot, q0, name)
     if tree.is_normalized(given, _ROUNDING):
         return np.array(given)
     q = tree.normalized(given)

@@ -17,15 +17,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from eurdf.errors import UnderactuatedMotion
 from eurdf.kinematics.applied_force import AppliedForce, External
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.equation_of_motion import MASSLESS, EquationOfMotion, by_joint, per_constraint
-from eurdf.kinematics.exceptions import UnderactuatedMotion
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.forward_solver import SOLVED, ForwardSolver
 from eurdf.kinematics.inverse_solver import InverseSolver
+from eurdf.kinematics.named import Named, velocity_of
 from eurdf.pinocchio.arguments import checked_array, checked_tolerance
 
 if TYPE_CHECKING:
@@ -58,11 +59,11 @@ class InverseDynamics(NamedTuple):
 
 def forward_dynamics(
     robot: Robot,
-    q: Vector,
-    v: Vector,
-    u: Vector | None = None,
+    q: Named,
+    v: Named,
+    u: Named | None = None,
     *,
-    tau: Vector | None = None,
+    tau: Named | None = None,
     external: External | None = None,
     dissipation: bool = False,
     gains: tuple[float, float] | None = None,
@@ -102,7 +103,7 @@ def forward_dynamics(
         NumericalOverflow: The result is not finite.
     """
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"), borrowed(robot, ForwardSolver) as solver:
-        q, v = start(robot, q, "q"), checked_array("v", v, (robot.tree.nv,))
+        q, v = start(robot, q, "q"), velocity_of(robot, v)
         data = None if data is None else solver.checked(data)
         force = AppliedForce(robot, external, dissipation).total(q, v, u, tau)
         if gains is None:
@@ -117,11 +118,11 @@ def forward_dynamics(
 
 def inverse_dynamics(
     robot: Robot,
-    q: Vector,
-    v: Vector,
-    a: Vector,
+    q: Named,
+    v: Named,
+    a: Named,
     *,
-    tau: Vector | None = None,
+    tau: Named | None = None,
     external: External | None = None,
     dissipation: bool = False,
     weights: Vector | None = None,
@@ -190,11 +191,11 @@ def inverse_dynamics(
 
 def achievable_acceleration(
     robot: Robot,
-    q: Vector,
-    v: Vector,
-    a: Vector,
+    q: Named,
+    v: Named,
+    a: Named,
     *,
-    tau: Vector | None = None,
+    tau: Named | None = None,
     external: External | None = None,
     dissipation: bool = False,
     tolerance: float = 1e-6,
@@ -240,11 +241,11 @@ def achievable_acceleration(
 
 
 def _state(
-    robot: Robot, q: Vector, v: Vector, a: Vector, solver: ForwardSolver, data: Any
+    robot: Robot, q: Named, v: Named, a: Named, solver: ForwardSolver, data: Any
 ) -> tuple[Vector, Vector, Vector, Any]:
     """Configuration, velocity, acceleration and memory, all checked."""
-    nv, data = (robot.tree.nv,), None if data is None else solver.checked(data)
-    return start(robot, q, "q"), checked_array("v", v, nv), checked_array("a", a, nv), data
+    data = None if data is None else solver.checked(data)
+    return start(robot, q, "q"), velocity_of(robot, v), velocity_of(robot, a, "a"), data
 
 
 def _uncontrolled(motion: EquationOfMotion, inertial: Vector, force: Vector) -> tuple[Vector, Vector]:

@@ -9,8 +9,8 @@ from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 
+from eurdf.errors import NumericalOverflow
 from eurdf.kinematics.array import Matrix
-from eurdf.kinematics.exceptions import NumericalOverflow
 
 _P = ParamSpec("_P")
 _R = TypeVar("_R")

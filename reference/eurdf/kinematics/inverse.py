@@ -16,6 +16,7 @@ from eurdf.kinematics.blocks import checked_rows, shape_of
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.frame_jacobian import frames_of
 from eurdf.kinematics.inverse_search import InverseKinematicsReason, InverseTask, Target, search
+from eurdf.kinematics.named import Named
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.position_limit import JointAtLimit, chosen_limits
 from eurdf.kinematics.problem import Problem
@@ -93,9 +94,9 @@ class InverseKinematics:
 def inverse_kinematics(
     robot: Robot,
     targets: Mapping[str, Any],
-    q0: Vector | None = None,
-    limits: bool = True,
+    q0: Named | None = None,
     *,
+    limits: bool = True,
     tolerance: float = 1e-8,
     restarts: int = 10,
 ) -> InverseKinematics:

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from eurdf.errors import CannotLock, LockedOpen
 from eurdf.kinematics.array import Indices, Vector
 from eurdf.kinematics.assembly import start
-from eurdf.kinematics.exceptions import CannotLock, LockedOpen
 from eurdf.kinematics.locked_mechanism import lock_joints
 from eurdf.kinematics.loop import find_loops
+from eurdf.kinematics.named import Named, as_names
 from eurdf.kinematics.residual import all_openings, residual
-from eurdf.kinematics.several import several
 from eurdf.kinematics.tolerances import CLOSED
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_tolerance
@@ -46,7 +46,7 @@ class LockedRobot(Robot):
 
 
 def lock(
-    robot: Robot, joints: str | Iterable[str], q: Vector | None = None, *, tolerance: float = CLOSED
+    robot: Robot, joints: str | Iterable[str], q: Named | None = None, *, tolerance: float = CLOSED
 ) -> LockedRobot:
     """Lock joints of a robot at a configuration.
 
@@ -75,7 +75,7 @@ def lock(
         LockedOpen: A closure that would be dropped is open at q.
         ValueError: ``q`` is not a configuration.
     """
-    names = set(several(joints))
+    names = set(as_names(joints))
     if ROOT_JOINT in names and robot.mechanism.root == "floating":
         raise CannotLock(ROOT_JOINT, "it is the floating root; load the robot with root='fixed' instead")
     q, tolerance = start(robot, q, "q"), checked_tolerance(tolerance)

@@ -6,16 +6,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eurdf.kinematics.array import Matrix, Vector
+from eurdf.kinematics.array import Matrix
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.finite import finite, overflow_refused
+from eurdf.kinematics.named import Named
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 
 @overflow_refused("the mass matrix")
-def mass_matrix(robot: Robot, q: Vector, *, data: Any = None) -> Matrix:
+def mass_matrix(robot: Robot, q: Named, *, data: Any = None) -> Matrix:
     """Mass matrix M(q) of the spanning tree, the armature included: its kinetic energy is ½ vᵀ M v.
 
     It is computed by `pin.crba`, except for robots with mimic joints: up to Pinocchio 4.1, `pin.crba` has wrong entries

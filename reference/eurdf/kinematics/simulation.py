@@ -9,22 +9,22 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from eurdf.errors import NotClosable, SimulationDiverged, StepTooLongWarning
 from eurdf.kinematics.applied_force import AppliedForce, External
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import assemble, start
 from eurdf.kinematics.derived import borrowed, derived
-from eurdf.kinematics.exceptions import NotClosable, SimulationDiverged, StepTooLongWarning
 from eurdf.kinematics.finite import overflow_refused
 from eurdf.kinematics.forward_solver import ForwardSolver
 from eurdf.kinematics.independence import norm
+from eurdf.kinematics.named import Named, velocity_of
 from eurdf.kinematics.tangent_space import TangentSpaces
-from eurdf.pinocchio.arguments import checked_array
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 #: Motor torques (nu,) at a time (s), a configuration (nq,) and a velocity (nv,).
-Control = Callable[[float, Vector, Vector], Vector]
+Control = Callable[[float, Vector, Vector], Named]
 
 
 # Velocities above this, rad/s or m/s, count as divergence.
@@ -76,8 +76,8 @@ class Simulation(NamedTuple):
 
 def simulate(
     robot: Robot,
-    q: Vector,
-    v: Vector | None = None,
+    q: Named,
+    v: Named | None = None,
     *,
     duration: float,
     step: float = 1e-3,
@@ -124,7 +124,7 @@ def simulate(
     callers = np.geterr()
     with borrowed(robot, ForwardSolver) as solver, np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         motion = _Motion(robot, solver, _heeding(control, callers), AppliedForce(robot, external, dissipation), step)
-        initial = checked_array("v", np.zeros(tree.nv) if v is None else v, (tree.nv,))
+        initial = velocity_of(robot, {} if v is None else v)
         qs[0], vs[0] = motion.closed(0.0, assembly.q, initial, 0)
         kinetic[0], potential[0] = motion.energies(qs[0], vs[0])
         for n in range(count):
@@ -201,7 +201,7 @@ def _heeding(control: Control | None, errors: Mapping[str, Any]) -> Control | No
     if control is None:
         return None
 
-    def heeding(t: float, q: Vector, v: Vector) -> Vector:
+    def heeding(t: float, q: Vector, v: Vector) -> Named:
         with np.errstate(**errors):
             return control(t, q, v)
 

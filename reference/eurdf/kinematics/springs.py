@@ -1,21 +1,17 @@
-"""Force and energy of the springs of a robot's joints.
-
-Pinocchio's model has no springs. To use its algorithms on a robot with springs, add `spring_force` to the generalized
-force; the functions of this package include it.
-"""
+"""Force and energy of the springs of a robot's joints; the public names are those of `eurdf.springs`."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from eurdf.kinematics.array import Vector
-from eurdf.pinocchio.arguments import checked_array
+from eurdf.kinematics.named import Named, configuration_of
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 
-def spring_force(robot: Robot, q: Vector) -> Vector:
+def spring_force(robot: Robot, q: Named) -> Vector:
     """Generalized force of the springs (EU-JNT-035).
 
     A spring with the stiffness k on a coordinate c has the force -k (c - rest). That of a mimic joint acts on its
@@ -31,10 +27,10 @@ def spring_force(robot: Robot, q: Vector) -> Vector:
     Raises:
         ValueError: ``q`` has a wrong shape or is not finite.
     """
-    return robot.tree.springs.force(checked_array("q", q, (robot.tree.nq,)), robot.tree.nv)
+    return robot.tree.springs.force(configuration_of(robot, q), robot.tree.nv)
 
 
-def spring_energy(robot: Robot, q: Vector) -> float:
+def spring_energy(robot: Robot, q: Named) -> float:
     """Energy that the springs store, Σ ½ k (c - rest)², J.
 
     Args:
@@ -44,4 +40,4 @@ def spring_energy(robot: Robot, q: Vector) -> float:
     Raises:
         ValueError: ``q`` has a wrong shape or is not finite.
     """
-    return robot.tree.springs.energy(checked_array("q", q, (robot.tree.nq,)))
+    return robot.tree.springs.energy(configuration_of(robot, q))

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from eurdf.errors import NotClosable
 from eurdf.kinematics.array import Mask, Matrix, Vector
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.branch import Branch, Point
-from eurdf.kinematics.exceptions import NotClosable
+from eurdf.kinematics.named import Named
 from eurdf.kinematics.path import Elements, follow
 from eurdf.kinematics.position_limit import PositionLimits, chosen_limits
 from eurdf.kinematics.scale import characteristic_length
@@ -77,7 +78,7 @@ class Sweep:
 def sweep(
     robot: Robot,
     actuator: str,
-    q0: Vector | None = None,
+    q0: Named | None = None,
     *,
     steps: int = 200,
     limits: bool = True,

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from eurdf.exceptions import EurdfError
+from eurdf.errors import EurdfError
 from eurdf.mechanism.body import Shape
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.frames import body_frame_ids, placement_of

@@ -149,7 +149,7 @@ class Robot:
         """Each joint that has coordinates of its own, by name, with the indices of these and of its velocities."""
         return MappingProxyType(slots(self.mechanism))
 
-    def configuration(self, coordinates: Mapping[str, Sequence[float]]) -> Vector:
+    def configuration(self, coordinates: Mapping[str, float | Sequence[float]]) -> Vector:
         """The configuration (nq,) in which joints have the given coordinates: the inverse of `coordinates`.
 
         Args:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Mapping, Sequence
 from functools import cached_property
@@ -13,6 +12,7 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from eurdf.array import Matrix, Vector
+from eurdf.diagnostics.wording import meant
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.pinocchio.arguments import checked_data
@@ -171,8 +171,7 @@ class PinocchioTree:
         if count:
             return range(first, first + count)
         if not model.existJointName(joint):
-            near = difflib.get_close_matches(joint, list(model.names), n=1)
-            raise ValueError(f"the model has no joint '{joint}'" + (f"; did you mean '{near[0]}'?" if near else ""))
+            raise ValueError(f"the model has no joint '{joint}'{meant(joint, model.names)}")
         index: int = model.getJointId(joint)
         return self.moving_velocities[index]
 

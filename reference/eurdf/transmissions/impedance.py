@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from eurdf.errors import NoTransmission
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import start
+from eurdf.kinematics.named import Named, vector_of
+from eurdf.loading import of_any_robot
 from eurdf.pinocchio.arguments import checked_array
-from eurdf.transmissions.exceptions import NoTransmission
 from eurdf.transmissions.motors import motors_of
 from eurdf.transmissions.selection import selection
 from eurdf.transmissions.transmission import at_one
@@ -60,14 +62,15 @@ class Impedance:
     joint_damping_of_drives: Matrix
 
 
+@of_any_robot
 def impedance_map(
     robot: Robot,
     joints: str | Iterable[str],
-    q: Vector | None,
+    q: Named | None,
     stiffness: ArrayLike,
-    damping: ArrayLike | None = None,
-    tau: ArrayLike | None = None,
     *,
+    damping: ArrayLike | None = None,
+    tau: Named | None = None,
     side: Side = "joints",
     motors: str | Iterable[str] | None = None,
 ) -> Impedance:
@@ -103,7 +106,7 @@ def impedance_map(
     at = at_one(robot, chosen, start(robot, q, "q"), by)
     n = len(at.joints if side == "joints" else at.motors)
     K, C = _symmetric("stiffness", stiffness, n), _symmetric("damping", np.zeros(n) if damping is None else damping, n)
-    torque = np.zeros(n) if tau is None else checked_array("tau", tau, (n,))
+    torque = np.zeros(n) if tau is None else vector_of(tau, at.joints if side == "joints" else at.motors, "tau")
     if at.G is None or at.B_J is None:
         which, reason = ("G", at.reason) if at.G is None else ("B_J", at.inverse_reason)
         raise NoTransmission(which, reason or "")

@@ -8,17 +8,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from eurdf.errors import NoTransmission
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.blocks import checked_configurations, shape_of
 from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.equation_of_motion import MASSLESS
 from eurdf.kinematics.finite import finite, overflow_refused
+from eurdf.kinematics.named import Named
 from eurdf.kinematics.tolerances import FLOOR
+from eurdf.loading import of_any_robot
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.pinocchio.robot import build_robot
-from eurdf.transmissions.exceptions import NoTransmission
 from eurdf.transmissions.linkage_bodies import linkage_bodies
 from eurdf.transmissions.motors import motors_of
 from eurdf.transmissions.selection import Selection, selection
@@ -68,13 +70,14 @@ class ReflectedInertia:
         return np.asarray(self.rotors + self.linkage)
 
 
+@of_any_robot
 @overflow_refused("the inertia")
 def reflected_inertia(
     robot: Robot,
     joints: str | Iterable[str],
-    q: Vector | Matrix | None = None,
-    motors: str | Iterable[str] | None = None,
+    q: Named | Matrix | None = None,
     *,
+    motors: str | Iterable[str] | None = None,
     armature: Mapping[str, float] | None = None,
 ) -> ReflectedInertia:
     """The inertia that joints feel, by constraint embedding: M_J = Nᵀ M N with N = dq/dq_J.

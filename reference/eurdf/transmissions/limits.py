@@ -11,15 +11,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from eurdf.errors import NoTransmission
 from eurdf.kinematics.array import Indices, Matrix, Vector
-from eurdf.kinematics.several import several
+from eurdf.kinematics.named import Named, as_names
+from eurdf.loading import of_any_robot
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.transmissions.box import box_along, largest_box
-from eurdf.transmissions.exceptions import NoTransmission
 from eurdf.transmissions.polytope import Polytope, image_of_box, preimage_of_box
+from eurdf.transmissions.reachable_set import Workspace
 from eurdf.transmissions.selection import Selection, selection
 from eurdf.transmissions.transmission import Transmission, Transmissions, transmission
-from eurdf.transmissions.workspace import Workspace
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -112,12 +113,13 @@ class CommonLimits:
     velocity_margin: float | None = None
 
 
+@of_any_robot
 def serial_limits(
     robot: Robot,
     joints: str | Iterable[str],
-    q: Vector | Matrix | Workspace | None = None,
-    motors: str | Iterable[str] | None = None,
+    q: Named | Matrix | Workspace | None = None,
     *,
+    motors: str | Iterable[str] | None = None,
     torque_ratio: ArrayLike | None = None,
     velocity_ratio: ArrayLike | None = None,
 ) -> SerialLimits | CommonLimits:
@@ -144,8 +146,8 @@ def serial_limits(
         ValueError: A motor has no limit, or cannot be without torque; or an argument is wrong, as in `transmission`.
     """
     if isinstance(q, Workspace):
-        return _everywhere(q, robot, several(joints), torque_ratio, velocity_ratio)
-    at = transmission(robot, joints, q, motors)
+        return _everywhere(q, robot, as_names(joints), torque_ratio, velocity_ratio)
+    at = transmission(robot, joints, q, motors=motors)
     task = _task(robot, at, torque_ratio, velocity_ratio)
     if isinstance(at, Transmission):
         return task.limits(_complete(at, None))

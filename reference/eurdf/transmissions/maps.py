@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from eurdf.errors import NotClosable
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.derived import derived
-from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import numerical_ranks
 from eurdf.kinematics.residual import all_openings, residual_and_jacobian

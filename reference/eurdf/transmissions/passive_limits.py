@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from eurdf.errors import NoTransmission
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.scale import characteristic_length, velocity_scale
 from eurdf.kinematics.tolerances import MOVES
-from eurdf.transmissions.exceptions import NoTransmission
 from eurdf.transmissions.limits import motor_ranges
 from eurdf.transmissions.selection import selectable, selection
 from eurdf.transmissions.transmission import at_one
@@ -66,7 +66,7 @@ def passive_limits(robot: Robot, q: Vector) -> tuple[PassiveLimit, ...]:
     if at.rank_motors < len(at.motors):
         reason = f"only {at.rank_motors} of {len(at.motors)} actuator velocities are independent here"
         raise NoTransmission(
-            "a limit of each passive joint", f"{reason}; name joints and motors in eurdf.serial_limits"
+            "a limit of each passive joint", f"{reason}; name joints and motors in eurdf.transmissions.serial_limits"
         )
     determined = [name for name in joints if not any(_is_of(label, name) for label in at.undetermined)]
     if len(determined) < len(joints):

@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 
 from eurdf.diagnostics.extras import install_command
-from eurdf.exceptions import MissingExtra
+from eurdf.errors import MissingExtra
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.transmissions.inertia import reflected_inertia
 from eurdf.transmissions.limits import CommonLimits, serial_limits, unlimited_motors
 from eurdf.transmissions.reach import Stop
+from eurdf.transmissions.reachable_set import Workspace
 from eurdf.transmissions.transmission import at_many
-from eurdf.transmissions.workspace import Workspace
 from eurdf.writing.atomic_file import write_atomically
 
 #: Kinds of file that a figure can be.
@@ -183,7 +183,7 @@ def _fields(found: Workspace, q: Matrix, armature: Mapping[str, float] | None) -
         for row in rows:
             row.append(_Field("condition number of G", condition))
     else:
-        at = serial_limits(robot, joints.joints, q, motors.joints)
+        at = serial_limits(robot, joints.joints, q, motors=motors.joints)
         assert isinstance(at, CommonLimits)
         for row, name, turns, torque, velocity in zip(
             rows,
@@ -195,7 +195,7 @@ def _fields(found: Workspace, q: Matrix, armature: Mapping[str, float] | None) -
         ):
             row.append(_Field(f"{name}: torque [{'N·m' if turns else 'N'}]", torque))
             row.append(_Field(f"{name}: velocity [{'rad/s' if turns else 'm/s'}]", velocity))
-    inertia = reflected_inertia(robot, joints.joints, q, motors.joints, armature=armature).equivalent_armature
+    inertia = reflected_inertia(robot, joints.joints, q, motors=motors.joints, armature=armature).equivalent_armature
     for index, (row, name, turns) in enumerate(zip(rows, joints.names, turning, strict=True)):
         unit, scale = ("10⁻³ kg·m²", 1e3) if turns else ("kg", 1.0)
         row.append(_Field(f"{name}: inertia [{unit}]", scale * inertia[:, index, index]))

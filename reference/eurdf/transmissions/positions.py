@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from eurdf.errors import NotClosable, NoTransmission, OutOfReach
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import assemble, start
-from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.forward import farthest
+from eurdf.kinematics.named import Named
 from eurdf.kinematics.position_limit import position_limits
+from eurdf.loading import of_any_robot
 from eurdf.mechanism.joint import LIMIT_TOLERANCE
 from eurdf.pinocchio.arguments import checked_array
-from eurdf.transmissions.exceptions import NoTransmission, OutOfReach
 from eurdf.transmissions.motors import motors_of, passive_joints_of
 from eurdf.transmissions.selection import Selection, selection
 from eurdf.transmissions.transmission import Transmission, at_one
@@ -37,7 +38,8 @@ class Positions(NamedTuple):
     beyond: tuple[str, ...]
 
 
-def actuator_values(robot: Robot, joints: Mapping[str, float], q0: Vector | None = None) -> Positions:
+@of_any_robot
+def actuator_values(robot: Robot, joints: Mapping[str, float], q0: Named | None = None) -> Positions:
     """Positions of the motors at which joints have the given positions.
 
     The joints move from q0 along a straight path, and the motors follow on the branch of q0; other actuators stay where
@@ -64,11 +66,9 @@ def actuator_values(robot: Robot, joints: Mapping[str, float], q0: Vector | None
     return _positions(robot, motors.joints, q)
 
 
+@of_any_robot
 def joint_values(
-    robot: Robot,
-    motors: Mapping[str, float],
-    q0: Vector | None = None,
-    joints: str | Iterable[str] | None = None,
+    robot: Robot, motors: Mapping[str, float], q0: Named | None = None, *, joints: str | Iterable[str] | None = None
 ) -> Positions:
     """Positions of joints at which the motors have the given positions; the inverse of `actuator_values`.
 
@@ -118,7 +118,7 @@ def _all_motors(robot: Robot) -> Selection:
     return selection(robot, single, "motors")
 
 
-def _moved(robot: Robot, given: Selection, motors: Selection, values: Mapping[str, float], q0: Vector | None) -> Vector:
+def _moved(robot: Robot, given: Selection, motors: Selection, values: Mapping[str, float], q0: Named | None) -> Vector:
     """The configuration (nq,) with these values, and the actuators that are not ``motors`` where they are at q0."""
     wanted = {name: checked_array(f"the value of '{name}'", values[name], (), (1,)).item() for name in given.joints}
     closed = assemble(robot, start(robot, q0))
@@ -131,7 +131,7 @@ def _moved(robot: Robot, given: Selection, motors: Selection, values: Mapping[st
     q, part = farthest(robot, {**still, **wanted}, closed.q)
     if part < 1.0:
         reached = {name: robot.coordinates(q)[name][0] for name in wanted}
-        least = assemble(robot, robot.configuration({**robot.coordinates(q), **still, **_lists(wanted)}), wanted)
+        least = assemble(robot, robot.configuration({**robot.coordinates(q), **still, **_lists(wanted)}), hold=wanted)
         raise OutOfReach(wanted, reached, part, least.open, least.q)
     return q
 

@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from eurdf.errors import NoTransmission
 from eurdf.kinematics.array import Matrix, Vector
+from eurdf.kinematics.named import Named
+from eurdf.loading import of_any_robot
 from eurdf.transmissions.c_source import CSource, c_source
 from eurdf.transmissions.drive import STEPS, Drive, closed_pose
-from eurdf.transmissions.exceptions import NoTransmission
 from eurdf.transmissions.joint_coordinates import JointCoordinates, coordinates_of
 from eurdf.transmissions.motors import motors_of
 from eurdf.transmissions.selection import selection
@@ -208,8 +210,9 @@ class PreparedTransmission:
         self._q = q
 
 
+@of_any_robot
 def prepare_transmission(
-    robot: Robot, joints: str | Iterable[str], q: Vector | None = None, motors: str | Iterable[str] | None = None
+    robot: Robot, joints: str | Iterable[str], q: Named | None = None, *, motors: str | Iterable[str] | None = None
 ) -> PreparedTransmission:
     """Prepare the transmission between serial joints and motors for a control loop.
 

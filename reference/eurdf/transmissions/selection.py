@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -10,8 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eurdf.kinematics.array import Indices
-from eurdf.kinematics.several import several
-from eurdf.mechanism.joint import drivers
+from eurdf.kinematics.named import as_names, unknown_joint
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.configuration import Slot
@@ -53,7 +51,7 @@ def selection(robot: Robot, joints: str | Iterable[str], argument: str = "joints
         ValueError: A name is unknown or given twice, or its joint has no coordinate of its own whose rate is its
             velocity.
     """
-    given = several(joints)
+    given = as_names(joints)
     if not given:
         raise ValueError(f"{argument} is empty; name at least one joint")
     twice = next((name for name in given if given.count(name) > 1), None)
@@ -84,10 +82,4 @@ def _slot(robot: Robot, name: str) -> Slot:
             return slot
         kind = slot.joint.type.value
         raise ValueError(f"joint '{name}' is {kind}; a transmission is between joints whose coordinates have rates")
-    mimics = drivers({joint.name: joint.mimic for joint in robot.mechanism.joints if joint.mimic is not None})
-    if name in mimics:
-        raise ValueError(f"joint '{name}' is a mimic joint; give its leader '{mimics[name].joint}' instead")
-    if any(joint.name == name for joint in robot.mechanism.joints):
-        raise ValueError(f"joint '{name}' is fixed")
-    near = difflib.get_close_matches(name, robot.slots, n=1)
-    raise ValueError(f"the robot has no joint '{name}'" + (f"; did you mean '{near[0]}'?" if near else ""))
+    raise unknown_joint(robot, name)

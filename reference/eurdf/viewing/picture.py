@@ -13,7 +13,7 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from eurdf.diagnostics.extras import install_command
-from eurdf.exceptions import MissingExtra
+from eurdf.errors import MissingExtra
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.residual import openings_once
 from eurdf.pinocchio.robot import Robot

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pinocchio as pin
 
+from eurdf.errors import NotClosable, SimulationDiverged
 from eurdf.kinematics.array import Vector
-from eurdf.kinematics.exceptions import NotClosable, SimulationDiverged
 from eurdf.kinematics.forward import forward_kinematics
 from eurdf.kinematics.residual import residual
 from eurdf.kinematics.simulation import Simulation, simulate

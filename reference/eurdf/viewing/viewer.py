@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from eurdf.exceptions import EurdfError
+from eurdf.errors import EurdfError
 from eurdf.kinematics.array import Vector
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.pinocchio.robot import Robot

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from eurdf.diagnostics import Diagnostics
-from eurdf.exceptions import EurdfError
+from eurdf.errors import EurdfError
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.residual import residual
 from eurdf.linking.rereading import reread

@@ -14,14 +14,17 @@ import numpy as np
 
 from eurdf.convert.export import export, files_of_meshes
 from eurdf.diagnostics import enumerated
+from eurdf.errors import NoTransmission
 from eurdf.json_schema import PAIRS, ROW, ROWS, Keywords
 from eurdf.kinematics.array import Mask, Matrix, Vector
+from eurdf.kinematics.named import Named
 from eurdf.kinematics.problem import Problem
+from eurdf.loading import as_robot
 from eurdf.mechanism.joint import JointProperties
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.robot import build_robot
+from eurdf.reading.robot_source import RobotSource
 from eurdf.transmissions.drive import closed_pose
-from eurdf.transmissions.exceptions import NoTransmission
 from eurdf.transmissions.inertia import reflected_inertia
 from eurdf.transmissions.joint_coordinates import coordinates_of
 from eurdf.transmissions.limits import CommonLimits, serial_limits, unlimited_motors
@@ -29,10 +32,10 @@ from eurdf.transmissions.linkage_bodies import linkage_bodies
 from eurdf.transmissions.motors import motors_of
 from eurdf.transmissions.polynomial_map import PolynomialMap, fitted, scaled
 from eurdf.transmissions.reach import Reach
+from eurdf.transmissions.reachable_set import Workspace, workspace
 from eurdf.transmissions.selection import Selection, selection
 from eurdf.transmissions.serial_mechanism import serial_mechanism, with_properties
 from eurdf.transmissions.transmission import Transmission, at_many, at_one
-from eurdf.transmissions.workspace import Workspace, workspace
 from eurdf.writing.output_folder import write_files
 
 if TYPE_CHECKING:
@@ -166,11 +169,11 @@ class SerialTwin:
 
 
 def serial_twin(
-    robot: Robot,
+    robot: Robot | RobotSource,
     joints: str | Iterable[str],
-    q: Vector | None = None,
-    motors: str | Iterable[str] | None = None,
+    q: Named | None = None,
     *,
+    motors: str | Iterable[str] | None = None,
     limits: Choice = "conservative",
     armature: Mapping[str, float] | None = None,
     grid: int | None = None,
@@ -205,6 +208,7 @@ def serial_twin(
             linkage has other motors.
         ValueError: An argument is wrong, as in `workspace`; or the grid is too coarse to find a range of a joint.
     """
+    robot = as_robot(robot, geometry=True)
     if limits not in ("conservative", "fitted"):
         raise ValueError(f"limits is {limits!r}; it must be 'conservative' or 'fitted'")
     if not 1 <= degree <= 30:
@@ -215,7 +219,7 @@ def serial_twin(
     grid = max(5, min(_MOST_ALONG, round(_POINTS ** (1.0 / len(serial))))) if grid is None else grid
     bodies = linkage_bodies(robot, serial.joints, by.joints)
     _refuse_other_motors(robot, bodies, serial, by)
-    found = workspace(robot, serial.joints, pose, by.joints, grid=grid, ranges=ranges)
+    found = workspace(robot, serial.joints, pose, motors=by.joints, grid=grid, ranges=ranges)
     plain = _without_linkage(robot, pose, bodies, serial, by)
     inside = _box(found, coordinates_of(robot, serial).read(pose))
     chosen = inside if limits == "conservative" else np.ones(len(found.q), dtype=bool)
@@ -228,9 +232,9 @@ def serial_twin(
                 "reached with the other joints; use a finer grid"
             )
     most, notes = _limits(robot, found, serial, by, chosen, limits)
-    terms = reflected_inertia(robot, serial.joints, found.q, by.joints, armature=armature)
+    terms = reflected_inertia(robot, serial.joints, found.q, motors=by.joints, armature=armature)
     own = np.array([_of_twin(robot, plain, each) for each in found.q])
-    lumped = reflected_inertia(plain, serial.joints, own, serial.joints).total
+    lumped = reflected_inertia(plain, serial.joints, own, motors=serial.joints).total
     needed = terms.total - lumped
     diagonal = np.maximum(np.diagonal(needed, axis1=1, axis2=2), 0.0)
     added = diagonal[chosen].max(axis=0) if limits == "conservative" else diagonal.mean(axis=0)
@@ -348,14 +352,14 @@ def _limits(
         listed = ", ".join(f"'{name}'" for name in unlimited)
         note = f"torque and velocity limits are left out: {listed} have no effort or no velocity limit"
         return _Limits(none, none, None, None), (note,)
-    at = cast(CommonLimits, serial_limits(robot, joints.joints, found.q, motors.joints))
+    at = cast(CommonLimits, serial_limits(robot, joints.joints, found.q, motors=motors.joints))
     alone = _extent(np.abs(at.torque_axes).min(axis=2)), _extent(np.abs(at.velocity_axes).min(axis=2))
     if choice == "fitted":
         torques, velocities = (
             np.array([getattr(each, box) for each in at.each]) for box in ("torque_box", "velocity_box")
         )
         return _Limits(torques.mean(axis=0), velocities.mean(axis=0), *alone), ()
-    within = cast(CommonLimits, serial_limits(robot, joints.joints, found.q[chosen], motors.joints))
+    within = cast(CommonLimits, serial_limits(robot, joints.joints, found.q[chosen], motors=motors.joints))
     return _Limits(within.torque_box, within.velocity_box, *alone), ()
 
 
