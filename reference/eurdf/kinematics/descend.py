@@ -100,6 +100,8 @@ def descend(
     at = [group.evaluator.at(q) for group in groups]
     r = [group.evaluator.residual(each) for group, each in zip(groups, at, strict=True)]
     error, square = before, expected = _measured(groups, r)
+    if not np.count_nonzero(error > enough):
+        return Descended(q, r, error, square, np.zeros(B, dtype=np.intp), np.zeros(B, dtype=bool))
     A: list[Matrix] = []
     damping, more, idle = np.full(B, FIRST_DAMPING), np.full(B, MORE_DAMPING), np.zeros(B, dtype=np.intp)
     stale: Mask | None = None  # whose A is not that at q; None for all of them, with the states `at`

@@ -130,22 +130,24 @@ class _Search:
     def run(self, start: Matrix) -> Found:
         """The configurations found from start (B, nq)."""
         task, B = self._task, len(start)
-        everything = np.arange(B)
         reason: list[InverseKinematicsReason | None] = [None] * B
         at_limits: list[tuple[JointAtLimit, ...]] = [()] * B
-        clipped = self._clipped(start)
-        done = (clipped == start).all(axis=1)
-        done[done] = self._reached(self._error(start[done], everything[done])[0])
-        done[done] = self._problem.closes(start[done], CLOSED)
+        clipped, best = self._clipped(start), np.array(start)
+        errors, _ = self._error(start, np.arange(B))
+        done = (clipped == start).all(axis=1) & self._reached(errors)
+        if np.count_nonzero(done):
+            done[done] = self._problem.closes(start[done], CLOSED)
         going = np.flatnonzero(~done)
-        best, cost = np.array(start), np.full(B, np.inf)
         first = self._close(clipped[going], RESTARTS)
         best[going] = first.q
-        for element in going[~first.closes].tolist():
+        is_open = going[~first.closes]
+        if len(is_open):
+            errors[is_open], _ = self._error(best[is_open], is_open)
+        for element in is_open.tolist():
             reason[element] = "closures open"
         place, going = first.q[first.closes], going[first.closes]
-        best[going], cost[going] = self._descend(place, going, IDLE)
-        off = self._off_target(best, going)
+        best[going], errors[going] = self._descend(place, going, IDLE)
+        off = going[~self._reached(errors[going])]
         random = np.random.default_rng(0)
         for attempt in range(task.restarts):
             if not len(off):
@@ -154,59 +156,49 @@ class _Search:
             away = self._spaces.scale * random.uniform(-spread, spread, self._problem.tree.nv)
             again = self._close(self._moved(place[np.searchsorted(going, off)], np.tile(away, (len(off), 1))))
             own = off[again.closes]
-            end, reached = self._descend(again.q[again.closes], own, IDLE)
-            better = reached < cost[own]
-            best[own[better]], cost[own[better]] = end[better], reached[better]
-            off = self._off_target(best, off)
+            end, e = self._descend(again.q[again.closes], own, IDLE)
+            better = squares(e) < squares(errors[own])
+            best[own[better]], errors[own[better]] = end[better], e[better]
+            off = off[~self._reached(errors[off])]
         if len(off):
-            best[off], cost[off] = self._descend(best[off], off, _IDLE_AT_LAST)
-            for element in self._off_target(best, off).tolist():
+            best[off], errors[off] = self._descend(best[off], off, _IDLE_AT_LAST)
+            for element in off[~self._reached(errors[off])].tolist():
                 reason[element], at_limits[element] = self._why_off_target(best[[element]], element)
-        e, _ = self._error(best, everything)
-        return Found(best, *self._distances(e), self._iterations, reason, at_limits)
+        return Found(best, *self._distances(errors), self._iterations, reason, at_limits)
 
     def _close(self, q: Matrix, restarts: int = 0) -> Closed:
         return close(self._problem, q, SOLVED, restarts, self._task.limits)
 
-    def _off_target(self, q: Matrix, which: Indices) -> Indices:
-        """Those of some elements whose frames are not at their targets at q (B, nq)."""
-        return which[~self._reached(self._error(q[which], which)[0])] if len(which) else which
-
-    def _descend(self, q: Matrix, which: Indices, idle_below: float) -> tuple[Matrix, Vector]:
-        """Where descents of some elements from closed configurations (b, nq) end, and the squared errors (b,) there.
+    def _descend(self, q: Matrix, which: Indices, idle_below: float) -> tuple[Matrix, Matrix]:
+        """Where descents of some elements from closed configurations (b, nq) end, and the errors (b, k) there.
 
         Args:
             q: Where to start (b, nq).
             which: The elements (b,).
             idle_below: A step that reduces the squared error by less than this fraction is idle.
         """
-        end, squared = np.array(q), np.zeros(len(q))
         e, at = self._error(q, which)
+        end, errors = np.array(q), np.array(e)
         on, cost = np.arange(len(q)), squares(e)
         damping, idle = np.full(len(q), FIRST_DAMPING), np.zeros(len(q), dtype=np.intp)
         E: Matrix | None = None
-        going = ~self._reached(e)
-        begun = which[going]
-        if len(begun):
-            self._begun.append((begun, np.array(q[going])))
         for step in range(MOST_STEPS + 1):
-            if step:
-                going = ~self._reached(e) & (idle <= MOST_IDLE_STEPS)
-            if step == MOST_STEPS or not going.all() or not len(on):
-                stays = ~going if step < MOST_STEPS else np.ones(len(on), dtype=bool)
-                end[on[stays]], squared[on[stays]] = q[stays], cost[stays]
-                if stays.all():
+            going = ~self._reached(e) & (idle <= MOST_IDLE_STEPS)
+            if not step and np.count_nonzero(going):
+                self._begun.append((which[going], q[going]))
+            if step == MOST_STEPS or np.count_nonzero(going) < len(on) or not len(on):
+                end[on], errors[on] = q, e
+                if step == MOST_STEPS or not np.count_nonzero(going):
                     break
                 on, q, e, cost, damping, idle = on[going], q[going], e[going], cost[going], damping[going], idle[going]
-                E = None if E is None else E[going]
-                at = None
+                E, at = None if E is None else E[going], None
             if E is None:
-                E = self._jacobian(self._task.frames.at(q) if at is None else at, which[on])
+                E = self._jacobian(self._task.frames.at(q) if at is None else at, e)
             v = self._steps(q, e, E, damping * cost)
             expected = cost - squares(e + (E @ v[:, :, None])[:, :, 0])
             worth = expected > LEAST_GAIN * cost
-            if not worth.all():
-                end[on[~worth]], squared[on[~worth]] = q[~worth], cost[~worth]
+            if np.count_nonzero(worth) < len(on):
+                end[on], errors[on] = q, e
                 on, q, e, cost, damping, idle = on[worth], q[worth], e[worth], cost[worth], damping[worth], idle[worth]
                 E, v, expected = E[worth], v[worth], expected[worth]
                 if not len(on):
@@ -219,14 +211,14 @@ class _Search:
             idle = np.where(closed.closes & (reached < (1.0 - idle_below) * cost), 0, idle + 1)
             accepted = gain > LEAST_SHARE
             damping = np.where(accepted, next_damping(damping, gain), MORE_DAMPING * damping)
-            if accepted.all():
+            if np.count_nonzero(accepted) == len(on):
                 q, e, cost, E = closed.q, e_there, reached, None
                 continue
             q, e = np.where(accepted[:, None], closed.q, q), np.where(accepted[:, None], e_there, e)
             cost, at = np.where(accepted, reached, cost), None
             if accepted.any():
-                E[accepted] = self._jacobian(self._task.frames.at(q[accepted]), which[on[accepted]])
-        return end, squared
+                E[accepted] = self._jacobian(self._task.frames.at(q[accepted]), e[accepted])
+        return end, errors
 
     def _steps(self, q: Matrix, e: Matrix, E: Matrix, damping: Vector) -> Matrix:
         """The v (b, nv) with K v = 0 that minimise |E v + e|² + λ|v|² within the limits; at most 1 rad or length."""
@@ -297,10 +289,11 @@ class _Search:
         for elements, begun in self._begun:
             own = np.flatnonzero(elements == element)
             if len(own):
-                E = self._jacobian(self._task.frames.at(begun[own]), which)
+                e, at = self._error(begun[own], which)
+                E = self._jacobian(at, e)
                 self._look_at_rank(begun[own], E, element)
-        (e,), at = self._error(q, which)
-        E = self._jacobian(at, which)
+        errors, at = self._error(q, which)
+        E, e = self._jacobian(at, errors), errors[0]
         values = self._look_at_rank(q, E, element)
         Z = self._spaces.at(self._problem.jacobian(q)[0]).free
         _, rank, smallest = self._farthest[element]
@@ -348,21 +341,27 @@ class _Search:
             errors[:, self._poses, 3:] = log3(self._inverse[which] @ R[:, self._poses])
         return errors.reshape(len(q), len(self._used))[:, self._used], at
 
-    def _jacobian(self, at: Any, which: Indices) -> Matrix:
-        """Derivatives (b, k, nv) of the errors by v, where the frames are."""
+    def _jacobian(self, at: Any, e: Matrix) -> Matrix:
+        """Derivatives (b, k, nv) of the errors by v, where the frames are, and the errors (b, k) are these."""
         J = np.array(self._task.frames.jacobians(at))
         J[:, :, :3] /= self._spaces.length
         if len(self._poses):
             R = self._task.frames.poses(at)[0][:, self._poses]
-            turn = log3(self._inverse[which] @ R)
+            turn = self._by_frame(e)[:, self._poses, 1]
             J[:, self._poses, 3:] = log3_derivative(turn) @ R.swapaxes(2, 3) @ J[:, self._poses, 3:]
         return J.reshape(len(J), len(self._used), self._problem.tree.nv)[:, self._used]
 
+    def _by_frame(self, e: Matrix) -> Matrix:
+        """The errors of each frame (b, F, 2, 3): of its position, and of its rotation, zero if that is free."""
+        errors = e
+        if len(self._poses) < len(self._task.poses):
+            errors = np.zeros((len(e), len(self._used)))
+            errors[:, self._used] = e
+        return errors.reshape(len(e), len(self._task.poses), 2, 3)
+
     def _distances(self, e: Matrix) -> tuple[Matrix, Matrix]:
         """How far each frame is from its target (b, F), m and rad, by the errors."""
-        errors = np.zeros((len(e), len(self._used)))
-        errors[:, self._used] = e
-        both = np.sqrt((errors.reshape(len(e), len(self._task.poses), 2, 3) ** 2).sum(axis=3))
+        both = np.sqrt((self._by_frame(e) ** 2).sum(axis=3))
         return self._spaces.length * both[:, :, 0], both[:, :, 1]
 
     def _reached(self, e: Matrix) -> Mask:

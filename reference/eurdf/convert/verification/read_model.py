@@ -14,8 +14,8 @@ import pinocchio as pin
 from eurdf.convert.conventions import opening_of
 from eurdf.convert.coordinates import Coordinates, Matrix, Vector
 from eurdf.kinematics.opening import Opening
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Closure
-from eurdf.mechanism.frame import Anchor
 from eurdf.pinocchio.robot import Robot, build_robot
 
 
