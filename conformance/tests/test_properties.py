@@ -41,43 +41,43 @@ KINEMATICS, DYNAMICS, STRUCTURE = Level.KINEMATICS, Level.DYNAMICS, Level.STRUCT
 
 FAMILIES = [prop for prop in PROPERTIES if prop.family is not None]
 
-#: For each property and level a parser that violates it: a mutant, by its name, or one of `relations`.
+#: For each property and level a parser that violates it: a mutant, by what it breaks, or one of `relations`.
 BROKEN: list[tuple[str, Level, str | type[wrong.WrongParser]]] = [
-    ("accepted", Level.ACCEPT, "continuous_joints_need_limits"),
-    ("redundant-rows", Level.ACCEPT, "redundant_closures_are_refused"),
-    ("structure-agreement", STRUCTURE, "damping_is_0"),
-    ("agreement", KINEMATICS, "poses_of_six_decimals"),
-    ("inertia-agreement", DYNAMICS, "mass_matrix_of_single_precision"),
+    ("accepted", Level.ACCEPT, "A continuous joint must have a limit."),
+    ("redundant-rows", Level.ACCEPT, "More rows of closures than velocities are refused."),
+    ("structure-agreement", STRUCTURE, "Damping is not read."),
+    ("agreement", KINEMATICS, "Poses are rounded to six decimals."),
+    ("inertia-agreement", DYNAMICS, "M is computed in single precision."),
     ("columns", KINEMATICS, wrong.ForgetsAColumn),
     ("columns", DYNAMICS, wrong.ForgetsAColumn),
-    ("inertia", DYNAMICS, "root_weighs_nothing"),
+    ("inertia", DYNAMICS, "The mass does not count the root."),
     ("inertia", DYNAMICS, wrong.Weightless),
-    ("derivative", KINEMATICS, "k_is_the_twist"),
-    ("mobility", KINEMATICS, "k_forgets_the_branch_of_a"),
-    ("planar-polygon", KINEMATICS, "axes_in_the_parents_frame"),
-    ("planar-polygon-6d", KINEMATICS, "axes_in_the_parents_frame"),
-    ("parallelograms", KINEMATICS, "k_forgets_the_branch_of_a"),
-    ("spherical-polygon", KINEMATICS, "axes_in_the_parents_frame"),
-    ("ball-ring", KINEMATICS, "k_forgets_the_branch_of_a"),
+    ("derivative", KINEMATICS, "K of a 6d closure is the twist of B relative to A, as if the closure were closed."),
+    ("mobility", KINEMATICS, "K leaves out the joints that move A."),
+    ("planar-polygon", KINEMATICS, "An axis is a direction in the frame of the parent link."),
+    ("planar-polygon-6d", KINEMATICS, "An axis is a direction in the frame of the parent link."),
+    ("parallelograms", KINEMATICS, "K leaves out the joints that move A."),
+    ("spherical-polygon", KINEMATICS, "An axis is a direction in the frame of the parent link."),
+    ("ball-ring", KINEMATICS, "K leaves out the joints that move A."),
     ("ball-chain", KINEMATICS, wrong.ForgetsAColumn),
-    ("platform-ups", KINEMATICS, "k_forgets_the_branch_of_a"),
-    ("platform-sps", KINEMATICS, "k_forgets_the_branch_of_a"),
-    ("sarrus", KINEMATICS, "axes_in_the_parents_frame"),
-    ("bennett", KINEMATICS, "axes_in_the_parents_frame"),
-    ("renaming", STRUCTURE, "slashes_in_names_are_refused"),
+    ("platform-ups", KINEMATICS, "K leaves out the joints that move A."),
+    ("platform-sps", KINEMATICS, "K leaves out the joints that move A."),
+    ("sarrus", KINEMATICS, "An axis is a direction in the frame of the parent link."),
+    ("bennett", KINEMATICS, "An axis is a direction in the frame of the parent link."),
+    ("renaming", STRUCTURE, "A name may not have slashes, which are for namespaces of ROS."),
     ("renaming", KINEMATICS, wrong.OrderOfNames),
     ("renaming", DYNAMICS, wrong.OrderOfNames),
     ("reordering", STRUCTURE, wrong.OrderOfFile),
     ("reordering", KINEMATICS, wrong.OrderOfFile),
     ("reordering", DYNAMICS, wrong.OrderOfFile),
-    ("yaml-style", STRUCTURE, "yaml_as_pyyaml_reads_it"),
-    ("yaml-style", KINEMATICS, "yaml_as_pyyaml_reads_it"),
-    ("versions", STRUCTURE, "types_left_out_are_3d"),
-    ("versions", KINEMATICS, "types_left_out_are_3d"),
+    ("yaml-style", STRUCTURE, "The description is read by PyYAML's `safe_load`, which is YAML 1.1."),
+    ("yaml-style", KINEMATICS, "The description is read by PyYAML's `safe_load`, which is YAML 1.1."),
+    ("versions", STRUCTURE, "Where the types are left out, closures are 3d."),
+    ("versions", KINEMATICS, "Where the types are left out, closures are 3d."),
     ("versions", DYNAMICS, wrong.OffWhereLocked1),
     ("frames", KINEMATICS, wrong.ForgetsInlineAngles),
     ("frames", DYNAMICS, wrong.OffByLinks),
-    ("swapping", KINEMATICS, "k_along_the_world"),
+    ("swapping", KINEMATICS, "The rows of K are along the axes of the world, Pinocchio's LOCAL_WORLD_ALIGNED."),
     ("ball-closure", KINEMATICS, wrong.LosesARowOf3d),
     ("moving-base", KINEMATICS, wrong.SeenFromTheWorld),
     ("moving-base", DYNAMICS, wrong.SeenFromTheWorld),
@@ -91,23 +91,23 @@ BROKEN: list[tuple[str, Level, str | type[wrong.WrongParser]]] = [
     ("locking", DYNAMICS, wrong.OffWhereLocked),
     ("elementary-joints", KINEMATICS, wrong.UniversalBackwards),
     ("elementary-joints", DYNAMICS, wrong.UniversalBackwards),
-    ("merging", KINEMATICS, "balls_at_the_last_origin"),
-    ("merging", DYNAMICS, "balls_at_the_last_origin"),
-    ("following", KINEMATICS, "mimic_offset_is_dropped"),
-    ("following", DYNAMICS, "mimic_is_inverted"),
-    ("mimics-ignored", STRUCTURE, "mimics_of_version_1_are_followed"),
-    ("mimics-ignored", KINEMATICS, "mimics_of_version_1_are_followed"),
-    ("mimics-ignored", DYNAMICS, "mimics_of_version_1_are_followed"),
-    ("freeing", STRUCTURE, "freed_joints_mimic"),
-    ("freeing", KINEMATICS, "freed_joints_mimic"),
-    ("freeing", DYNAMICS, "freed_joints_mimic"),
-    ("hinges", KINEMATICS, "hinges_have_sines"),
-    ("distances", KINEMATICS, "distances_are_squared"),
-    ("couplings", KINEMATICS, "couplings_have_no_offset"),
-    ("springs", STRUCTURE, "springs_rest_at_zero"),
+    ("merging", KINEMATICS, "Merged joints turn about the origin of the last one, wherever their axes meet."),
+    ("merging", DYNAMICS, "Merged joints turn about the origin of the last one, wherever their axes meet."),
+    ("following", KINEMATICS, "A mimic joint is at multiplier · q."),
+    ("following", DYNAMICS, "A mimic joint is at (q − offset) / multiplier."),
+    ("mimics-ignored", STRUCTURE, "In version 1 a mimic joint depends on its leader, as in version 2."),
+    ("mimics-ignored", KINEMATICS, "In version 1 a mimic joint depends on its leader, as in version 2."),
+    ("mimics-ignored", DYNAMICS, "In version 1 a mimic joint depends on its leader, as in version 2."),
+    ("freeing", STRUCTURE, "A joint that the description frees mimics its leader all the same."),
+    ("freeing", KINEMATICS, "A joint that the description frees mimics its leader all the same."),
+    ("freeing", DYNAMICS, "A joint that the description frees mimics its leader all the same."),
+    ("hinges", KINEMATICS, "The angular rows of a hinge are components of a cross product, zero at opposite axes too."),
+    ("distances", KINEMATICS, "The residual of a distance is a difference of squares."),
+    ("couplings", KINEMATICS, "The offset of a coupling is left out."),
+    ("springs", STRUCTURE, "The rest position of a spring is 0, whatever the description states."),
     ("springs", KINEMATICS, wrong.OffWhereSprung),
     ("springs", DYNAMICS, wrong.OffWhereSprung),
-    ("lumping", DYNAMICS, "links_behind_fixed_joints_weigh_nothing"),
+    ("lumping", DYNAMICS, "A link behind a fixed joint weighs nothing."),
     ("leaving-out", KINEMATICS, wrong.OffWhereLeftOut),
     ("leaving-out", DYNAMICS, wrong.OffWhereLeftOut),
     ("turning", KINEMATICS, wrong.MindsTheSign),
@@ -180,7 +180,7 @@ def test_a_parser_of_version_1_alone_passes_the_versions_property(tmp_path: Path
 
 
 def test_answer_of_another_kind_is_a_difference(tmp_path: Path) -> None:
-    parser = MUTANTS["continuous_joints_need_limits"].parser()
+    parser = MUTANTS["A continuous joint must have a limit."].parser()
     (wrong_answer,) = tried(property_of("accepted"), Level.ACCEPT, "2", parser, tmp_path).differences
     assert (wrong_answer.pointer, wrong_answer.expected, wrong_answer.given) == ("/outcome", "accepted", "rejected")
 
@@ -213,7 +213,13 @@ def test_an_open_3d_closure_hides_no_wrong_6d_jacobian(tmp_path: Path) -> None:
     assert len(prop.frozen("2")) >= 3
     assert tried(prop, KINEMATICS, "2", OracleParser(), tmp_path).verdict == Verdict.PASSED
     (tmp_path / "twist").mkdir()
-    judgement = tried(prop, KINEMATICS, "2", MUTANTS["k_is_the_twist"].parser(), tmp_path / "twist")
+    judgement = tried(
+        prop,
+        KINEMATICS,
+        "2",
+        MUTANTS["K of a 6d closure is the twist of B relative to A, as if the closure were closed."].parser(),
+        tmp_path / "twist",
+    )
     assert judgement.verdict == Verdict.FAILED
     assert {each.pointer.split("/")[3] for each in judgement.differences} == {"jacobian"}
 

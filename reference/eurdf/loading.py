@@ -157,19 +157,7 @@ def check(
 
     It also gives advice (EU-DIA-006): warnings without a clause, whose codes begin with ``x-``.
 
-    Args:
-        path: A folder, a YAML file, a bare URDF or xacro, the name of a robot of the collection, ``-`` for standard
-            input, a pipe, or a text: one that begins with ``<`` is a URDF, any other a description.
-        urdf: A URDF in place of the one that the description names: a file, ``-``, a pipe or a text.
-        package_dirs: Folders to look for the packages of meshes in, before ``ROS_PACKAGE_PATH`` and
-            ``AMENT_PREFIX_PATH``.
-        xacro_args: Values of the arguments of a xacro: the one that is given, or that the description names. The latter
-            may only read files of the robot and of packages.
-        confined: Whether it is an error if the description names a URDF outside its own folder or a xacro, or the URDF
-            a mesh outside the robot's folder and the packages, symbolic links followed. The file is then not opened.
-        allow_outside: Whether meshes, and files that they name, are read that are neither in the robot's folder nor in
-            a package. If not, they are left out, with a warning. The robot's folder is the nearest one, from that of
-            the URDF upwards, with a ``package.xml``; without one, that of the URDF.
+    The arguments are those of `load`.
 
     Returns:
         The findings of all phases, in the order of the phases.

@@ -8,8 +8,8 @@ import sys
 import pytest
 
 from eurdf.diagnostics import Diagnostic, Diagnostics
-from eurdf.format.extension import Extension
-from eurdf.format.read_extension import read_extension
+from eurdf.format.model import Description
+from eurdf.format.read import read_description
 from eurdf.reading.source import Source
 from eurdf.reading.yaml_reader import read_yaml
 
@@ -17,16 +17,16 @@ ROOT = 'extended_urdf: "2.0"\n'
 LATER = 'extended_urdf: "2.1"\n'
 
 
-def read(text: str) -> tuple[Extension | None, list[Diagnostic]]:
+def read(text: str) -> tuple[Description | None, list[Diagnostic]]:
     diagnostics = Diagnostics()
     document = read_yaml(Source("robot.yaml", text, text.encode()))
-    return read_extension(document, diagnostics), list(diagnostics)
+    return read_description(document, diagnostics), list(diagnostics)
 
 
 def said(text: str) -> str:
     """The message and hint of the one error of a text."""
-    extension, (found,) = read(text)
-    assert extension is None
+    description, (found,) = read(text)
+    assert description is None
     assert not found.message.endswith(".")
     return f"{found.code}: {found.message} ({found.hint})"
 
@@ -179,9 +179,9 @@ def test_version_2_without_version_is_not_version_1(text: str, key: str) -> None
     ],
 )
 def test_near_miss_key_of_version_1_is_warned_and_kept(key: str, words: str) -> None:
-    extension, (warning,) = read(f"closed_loop: [[a, b]]\n{key}: [1]\n")
-    assert extension is not None
-    assert extension.own_data == {(key,): [1]}
+    description, (warning,) = read(f"closed_loop: [[a, b]]\n{key}: [1]\n")
+    assert description is not None
+    assert description.own_data == {(key,): [1]}
     assert words in f"{warning.message} {warning.hint}"
 
 
@@ -244,12 +244,12 @@ def test_long_or_unprintable_name_is_escaped() -> None:
 SOUND = f"{ROOT}joints: {{knee: {{damping: 2}}}}\nclosures: [{{name: pin, type: 3d, frames: [a, b]}}]\n"
 
 
-def test_reading_loads_neither_simulator_nor_models() -> None:
+def test_reading_loads_neither_simulator_nor_pydantic() -> None:
     code = (
-        "import sys; from eurdf.format.read_extension import *; from eurdf.reading.yaml_reader import read_yaml;"
+        "import sys; from eurdf.format.read import *; from eurdf.reading.yaml_reader import read_yaml;"
         "from eurdf.reading.source import Source; from eurdf.diagnostics import Diagnostics;"
         "text = open(0).read(); source = Source('robot.yaml', text, text.encode());"
-        "assert read_extension(read_yaml(source), Diagnostics());"
+        "assert read_description(read_yaml(source), Diagnostics());"
         "sys.exit(not sys.modules.keys().isdisjoint({'pinocchio', 'numpy', 'pydantic', 'rich'}))"
     )
     for text in (SOUND, "name_mot: [knee]\n"):

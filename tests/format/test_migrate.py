@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 
 from eurdf.commands.main import main
 from eurdf.diagnostics import Diagnostics, FileError
-from eurdf.format.read_extension import read_extension
+from eurdf.format.read import read_description
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.urdf.read import read_urdf
 from eurdf.kinematics.residual import residual
@@ -63,7 +63,7 @@ URDF = workbench()
 def read(text: str) -> ReadRobot | None:
     """The workbench with a description; None if that has an error."""
     diagnostics = Diagnostics()
-    extension = read_extension(read_yaml(Source("robot.yaml", text, text.encode())), diagnostics)
+    extension = read_description(read_yaml(Source("robot.yaml", text, text.encode())), diagnostics)
     mechanism = None if extension is None else link(URDF, extension, diagnostics)
     if extension is None or mechanism is None:
         return None
@@ -588,7 +588,7 @@ def with_mimics(text: str, urdf: str = MIMICKING) -> ReadRobot:
     given = read_urdf(
         read_xml(Source("robot.urdf", urdf, urdf.encode())), Diagnostics(), mimic_diagnostics=Diagnostics()
     )
-    extension = read_extension(read_yaml(Source("robot.yaml", text, text.encode())), diagnostics)
+    extension = read_description(read_yaml(Source("robot.yaml", text, text.encode())), diagnostics)
     assert given is not None
     assert extension is not None
     mechanism = link(given, extension, diagnostics)

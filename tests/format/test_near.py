@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eurdf.format.near import edits, near
+from eurdf.format.wording import edits, near
 from eurdf_conformance.oracle.near import is_near
 
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from eurdf import check
 from eurdf.diagnostics import Diagnostic, Diagnostics, FileError
 from eurdf.diagnostics.lines import Lines
-from eurdf.format.read_extension import read_extension
+from eurdf.format.read import read_description
 from eurdf.reading.indentation import first_line_hint, indentation_hint
 from eurdf.reading.source import Source
 from eurdf.reading.yaml_reader import read_yaml
@@ -25,7 +25,7 @@ HEAD = 'extended_urdf: "2.0"\nurdf: robot.urdf\n'
 def found_in(text: str) -> list[Diagnostic]:
     diagnostics = Diagnostics()
     try:
-        read_extension(read_yaml(Source("robot.yaml", text, text.encode())), diagnostics)
+        read_description(read_yaml(Source("robot.yaml", text, text.encode())), diagnostics)
     except FileError as error:
         diagnostics.add(error.diagnostic)
     return list(diagnostics)

@@ -7,14 +7,13 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 import pinocchio as pin
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
 from eurdf.pinocchio.robot import Robot
 from support.drake_witness import InDrake
-from support.exported import hanging, random_robot
+from support.exported import random_robot
 from support.plain_urdf import inertial, joint_element, link_element
 from support.plain_urdf import robot as robot_element
 
@@ -40,13 +39,6 @@ def assert_balls_are_closed(robot: Robot, export: eurdf.Export, q: Any) -> None:
     assert len(balls) == sum(CONSTRAINTS[each.type] for each in robot.mechanism.closures)
     relations = len(robot.mechanism.couplings) + sum(joint.mimic is not None for joint in robot.mechanism.joints)
     assert there.plant.num_constraints() == len(balls) + relations
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", eurdf.collection_names())
-def test_points_of_closures_of_the_collection_are_closed(name: str) -> None:
-    robot = eurdf.load(name, geometry=False)
-    assert_balls_are_closed(robot, eurdf.export(robot, "drake"), robot.configurations["assembled"])
 
 
 @given(seed=st.integers(0, 2**32 - 1), root=st.sampled_from(["fixed", "floating"]))
@@ -121,52 +113,3 @@ def test_missing_distance_is_a_loss_with_its_points() -> None:
     (loss,) = (loss for loss in eurdf.export(robot, "drake").losses if loss.code == "export-distance-closure")
     assert loss.name == closure.name
     assert str(closure.length) in loss.message
-
-
-def assert_stays_closed_and_moves(robot: Robot, export: eurdf.Export, q: Any) -> None:
-    """One second of simulation, in which mimic joints follow, too."""
-    from pydrake.systems.analysis import Simulator
-
-    there, map_ = InDrake(robot, export), export.coordinates
-    simulator = Simulator(there.plant)
-    context = there.plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
-    start = map_.to_q(q)
-    there.plant.SetPositions(context, start)
-    opening = moved = 0.0
-    for time in np.linspace(0.02, 1.0, 50):
-        simulator.AdvanceTo(time)
-        positions = there.plant.GetPositions(context)
-        q = map_.from_q(positions)
-        followers = 2.0 * np.sin((map_.to_q(q) - positions) / 2.0)  # less full turns
-        opening = max([opening, *np.abs(eurdf.residual(robot, q)), *np.abs(followers)])
-        moved = max(moved, np.abs(positions - start).max())
-    assert opening < 1e-3
-    assert moved > 1e-3
-
-
-@pytest.mark.parametrize(
-    ("name", "closures"), [("four_bar", "stated"), ("four_bar", "hinge"), ("delta", "stated"), ("digit_leg", "stated")]
-)
-def test_loops_stay_closed_in_drake(name: str, closures: Any) -> None:
-    robot = eurdf.load(name, geometry=False)
-    export = eurdf.export(name, "drake", closures=closures)
-    assert_stays_closed_and_moves(robot, export, robot.configurations["assembled"])
-
-
-def test_link_without_mass_follows_its_leader_in_drake() -> None:
-    robot = eurdf.load(hanging('<mimic joint="j" multiplier="0.5"/>', massless="b"), geometry=False)
-    assert_stays_closed_and_moves(robot, eurdf.export(robot, "drake"), pin.neutral(robot.model))
-
-
-@pytest.mark.parametrize(
-    ("mimic", "description"),
-    [
-        ('<mimic joint="j" multiplier="0.5" offset="0.1"/>', "root: fixed"),
-        ("", "couplings: [{name: gear, joints: {j: 1, k: -2}, offset: 0.2}]"),
-    ],
-    ids=["mimic", "coupling"],
-)
-def test_relations_of_joints_hold_in_drake(mimic: str, description: str) -> None:
-    urdf, text = hanging(mimic), f'extended_urdf: "2.1"\n{description}\n'
-    robot = eurdf.load(text, urdf=urdf)
-    assert_stays_closed_and_moves(robot, eurdf.export(text, "drake", urdf=urdf), eurdf.assemble(robot).q)

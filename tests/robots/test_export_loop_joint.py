@@ -67,12 +67,6 @@ def test_random_robot_has_its_loops(seed: int, root: Any) -> None:
     assert_same_loops(*random_robot(seed, root))
 
 
-def test_what_no_loop_joint_says_is_a_loss() -> None:
-    robot, _ = random_robot(3)
-    lost = {loss.name for loss in eurdf.export(robot, "loop-joint").losses if loss.code.endswith("-dropped")}
-    assert lost == {each.name for each in robot.mechanism.constraints if each.type in ("distance", "coupling")}
-
-
 @pytest.mark.parametrize("axis", [(1, 0, 0), (-1, 0, 0), (0, 2, 0), (-1, 1e-9, 1e-12), (-0.3, 0.4, -5.0)])
 def test_rotation_from_x_takes_x_to_the_axis(axis: Any) -> None:
     found = Pose(quaternion=turn_from_x(axis)).rotate((1.0, 0.0, 0.0))

@@ -192,6 +192,22 @@ def test_every_type_of_joint_and_closure_is_stated_or_lost(name: str) -> None:
     assert {f"{kind} joint" for kind in JointType} | {f"{kind} closure" for kind in REGISTRY} <= known
 
 
+@pytest.mark.parametrize(
+    ("name", "kinds"),
+    [
+        ("urdf", {"3d", "6d", "hinge", "distance", "coupling"}),
+        ("loop-joint", {"distance", "coupling"}),
+        ("sdf", {"distance"}),
+        ("drake", {"distance"}),
+    ],
+)
+def test_constraint_that_is_left_out_is_a_loss(name: str, kinds: set[str]) -> None:
+    robot, _ = random_robot(3)
+    lost = {loss.name for loss in eurdf.export(robot, name).losses if loss.effect == "dropped"}
+    constraints = robot.mechanism.constraints
+    assert lost & {each.name for each in constraints} == {each.name for each in constraints if each.type in kinds}
+
+
 class InPlane(Closure):
     """A closure of a type that no format knows."""
 

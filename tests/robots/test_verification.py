@@ -19,7 +19,7 @@ from eurdf.convert.verification import verify as module
 from eurdf.exceptions import MissingExtra
 from eurdf.mechanism.body import Inertia
 from eurdf.pinocchio.robot import Robot, build_robot
-from support.exported import random_robot
+from support.exported import hanging, random_robot
 from support.plain_urdf import inertial, joint_element, link_element
 from support.plain_urdf import robot as robot_element
 from support.processes import on_a_terminal
@@ -49,15 +49,48 @@ def test_file_of_every_joint_and_closure_is_read_back(to: str) -> None:
         assert found.mass[0] == pytest.approx(found.mass[1], rel=1e-5)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("to", [to for to in EXPORTS if to != "mjcf"])  # that of MJCF is in `test_export_mjcf`
-@pytest.mark.parametrize("name", eurdf.collection_names())
-def test_robot_of_the_collection_is_read_back(name: str, to: str) -> None:
-    installed(to)
-    found = eurdf.export(name, to).verify()
+def assert_stays_closed(export: eurdf.Export) -> None:
+    """At the start, and in the fall if the reader simulates it."""
+    found = export.verify()
     assert found.findings == ()
     openings = found.openings if found.fall is None else found.fall.openings
     assert max((max(each.position, each.angle) for each in openings), default=0.0) < 1e-3
+
+
+@pytest.mark.parametrize("to", [pytest.param(to, marks=pytest.mark.slow) if to != "mjcf" else to for to in EXPORTS])
+@pytest.mark.parametrize("name", eurdf.collection_names())
+def test_robot_of_the_collection_stays_closed(name: str, to: str) -> None:
+    installed(to)
+    assert_stays_closed(eurdf.export(name, to))
+
+
+@pytest.mark.parametrize("to", ["mjcf", "drake"])
+@pytest.mark.parametrize(
+    ("mimic", "massless", "description"),
+    [
+        ("", "", "joints: {screw: {type: helical, pitch: 0.05}}"),
+        ('<mimic joint="j" multiplier="0.5" offset="0.1"/>', "", "root: fixed"),
+        ('<mimic joint="j" multiplier="0.5"/>', "b", "root: fixed"),
+        ("", "", "couplings: [{name: gear, joints: {j: 1, k: -2}, offset: 0.2}]"),
+        (
+            "",
+            "",
+            "closures: [{name: rod, type: distance, length: 0.3,"
+            " frames: [{link: a, xyz: [0, 0, -0.5]}, {link: b, xyz: [0, 0, -0.5]}]}]",
+        ),
+    ],
+    ids=["helical", "mimic", "without mass", "coupling", "distance"],
+)
+def test_soft_relations_hold_in_the_fall(to: str, mimic: str, massless: str, description: str) -> None:
+    installed(to)
+    text = f'extended_urdf: "2.1"\n{description}\n'
+    assert_stays_closed(eurdf.export(text, to, urdf=hanging(mimic, massless)))
+
+
+@pytest.mark.parametrize("to", ["mjcf", "drake"])
+def test_hinges_hold_in_the_fall(to: str) -> None:
+    installed(to)
+    assert_stays_closed(eurdf.export("four_bar", to, closures="hinge"))
 
 
 @pytest.mark.parametrize("to", EXPORTS)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import TYPE_CHECKING
 
-from eurdf.format.extension import Extension
+from eurdf.format.model import Description
 from eurdf.linking.robot_files import ReadRobot
 from eurdf.mechanism.joint_types import JointType
 from eurdf.reading.yaml_node import Pointer
@@ -94,7 +94,7 @@ def _in_urdf(urdf: Urdf) -> Iterator[_Found]:
         yield from open_ended
 
 
-def _in_extension(extension: Extension, mechanism: Mechanism) -> Iterator[_Found]:
+def _in_extension(extension: Description, mechanism: Mechanism) -> Iterator[_Found]:
     place_at = extension.document.place
 
     def found(value: float, what: str, pointer: Pointer) -> _Found:
@@ -110,7 +110,7 @@ def _in_extension(extension: Extension, mechanism: Mechanism) -> Iterator[_Found
     }
     for entry in extension.joints:
         for side in ("lower", "upper"):
-            given = getattr(entry, side)
+            given = entry.properties.get(("limits", side))
             for value in given if isinstance(given, tuple) else () if given is None else (given,):
                 if angles.get(entry.name) and _position_in_degrees(value):
                     yield found(value, f"limit '{side}' of joint '{entry.name}'", (*entry.pointer, "limits", side))
@@ -119,12 +119,12 @@ def _in_extension(extension: Extension, mechanism: Mechanism) -> Iterator[_Found
             if rest is not None and _position_in_degrees(rest):
                 yield found(rest, f"'rest' of joint '{entry.name}'", (*entry.pointer, "rest"))
                 break
-    for configuration in extension.configurations:
-        for name, values in configuration.joints.items():
+    for key, configuration in extension.configurations.items():
+        for name, values in configuration.items():
             for index in angles.get(name, ()):
                 if _position_in_degrees(values[index]):
-                    what = f"joint '{name}' in configuration '{configuration.name}'"
-                    yield found(values[index], what, (*configuration.pointer, name))
+                    what = f"joint '{name}' in configuration '{key}'"
+                    yield found(values[index], what, ("configurations", key, name))
 
 
 def _orientation_in_degrees(value: float) -> bool:

@@ -30,8 +30,7 @@ def advise_on_quaternions(read: ReadRobot, robot: Robot | None, diagnostics: Dia
         robot: The robot built from it, where it has closures.
         diagnostics: Gets what is found.
     """
-    mechanism, extension = read.mechanism, read.description
-    entries = {entry.name: entry for entry in extension.configurations}
+    mechanism, description = read.mechanism, read.description
     for name, coordinates in mechanism.configurations.items():
         turned = w_first(mechanism, coordinates)
         if not turned:
@@ -51,7 +50,7 @@ def advise_on_quaternions(read: ReadRobot, robot: Robot | None, diagnostics: Dia
                     "x-quaternion-order",
                     f"the quaternion of joint '{joint}' in configuration '{name}' "
                     f"is probably in the order w, x, y, z: {why} only then",
-                    extension.document.place((*entries[name].pointer, joint)),
+                    description.document.place(("configurations", name, joint)),
                     f"the order is x, y, z, w: {quaternion}",
                 )
 

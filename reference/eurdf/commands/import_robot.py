@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eurdf.commands.command import FORCE, FORMAT, OUTPUT_FOLDER, command, flag, option
-from eurdf.commands.conversion_info import ImportInfo, loss_infos
 from eurdf.commands.conversion_lines import loss_lines
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import writing
@@ -56,6 +55,7 @@ def import_robot(
 ) -> int:
     """Import, and show the losses."""
     import eurdf
+    from eurdf.commands.conversion_info import ImportInfo, loss_infos
     from eurdf.convert.exceptions import CannotImport
     from eurdf.diagnostics.report import Report
 

@@ -21,23 +21,14 @@ from eurdf.commands.command import Command
 from eurdf.exceptions import CannotExpand, CannotRun, MissingExtra
 from eurdf.sandbox import BOUNDS_MEMORY
 
-#: The commands, in the order in which the help shows them, and the module and name of each in `eurdf.commands`.
-COMMANDS = {
-    "check": "check",
-    "info": "info",
-    "view": "view",
-    "picture": "picture",
-    "assemble": "assemble",
-    "export": "export",
-    "import": "import_robot",  # `import` cannot be the name of a module
-    "transmission": "transmission",
-    "serial": "serial",
-    "robots": "robots",
-    "migrate": "migrate",
-    "generate": "generate",
-    "schema": "schema",
-    "certify": "certify",
-}
+#: The commands, in the order in which the help shows them. Each is in the module of its name.
+COMMANDS = (
+    *("check", "info", "view", "picture", "assemble", "export", "import"),
+    *("transmission", "serial", "robots", "migrate", "generate", "schema", "certify"),
+)
+
+# `import` cannot be the name of a module.
+_MODULES = {"import": "import_robot"}
 
 _UNBOUNDED = " (this system does not bound the memory that reading a mesh, a xacro or an MJCF file takes)"
 
@@ -113,7 +104,8 @@ def _parser(command: str) -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=version, help="show the version and exit")
     subparsers = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
     for name in [command] if command in COMMANDS else COMMANDS:
-        added: Command = getattr(importlib.import_module(f"eurdf.commands.{COMMANDS[name]}"), COMMANDS[name])
+        module = _MODULES.get(name, name)
+        added: Command = getattr(importlib.import_module(f"eurdf.commands.{module}"), module)
         added.register(subparsers, name)
     return parser
 

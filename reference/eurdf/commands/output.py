@@ -28,7 +28,7 @@ RESULTS = {
     "import": ("conversion_info", "ImportInfo"),
     "info": ("robot_info", "RobotInfo"),
     "robots": ("robots", "Collection"),
-    "serial": ("serial_info", "SerialInfo"),
+    "serial": ("transmission_info", "SerialInfo"),
     "transmission": ("transmission_info", "TransmissionInfo"),
 }
 

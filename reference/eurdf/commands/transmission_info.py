@@ -1,27 +1,28 @@
-"""The output of ``eurdf transmission --json``."""
+"""The output of ``eurdf transmission --json``, and the ``transmission.json`` that ``eurdf serial`` writes."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 
-from eurdf.json_schema import Count
+from eurdf.json_schema import PAIRS, ROW, Count
+from eurdf.kinematics.array import Matrix, Vector
 from eurdf.transmissions.inertia import reflected_inertia
 from eurdf.transmissions.limits import CommonLimits, SerialLimits, serial_limits
 from eurdf.transmissions.linkage_bodies import linkage_bodies
+from eurdf.transmissions.polynomial_map import PolynomialMap
 from eurdf.transmissions.positions import beyond_limits
 from eurdf.transmissions.selection import Selection
+from eurdf.transmissions.serial_twin import Choice, Neglected
 from eurdf.transmissions.transmission import at_one
 
 if TYPE_CHECKING:
-    from eurdf.kinematics.array import Matrix as Array
-    from eurdf.kinematics.array import Vector
     from eurdf.pinocchio.robot import Robot
 
-Matrix = tuple[tuple[float, ...], ...]
+Rows = tuple[tuple[float, ...], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,10 +55,10 @@ class InertiaInfo:
 
     LIKE: ClassVar = "eurdf.transmissions.inertia:ReflectedInertia"
 
-    rotors: Matrix
-    linkage: Matrix
-    serial: Matrix
-    other_armature: Matrix
+    rotors: Rows
+    linkage: Rows
+    serial: Rows
+    other_armature: Rows
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,8 +75,8 @@ class PoseInfo:
     """Positions of the motors."""
     beyond: tuple[str, ...] = ()
     """Joints beyond their position limits there; none at the poses of a grid."""
-    G: Matrix | None = None
-    B_J: Matrix | None = None
+    G: Rows | None = None
+    B_J: Rows | None = None
     rank_motors: Count | None = None
     rank_joints: Count | None = None
     condition: float | None = None
@@ -190,5 +191,31 @@ def _axes(robot: Robot, chosen: Selection) -> tuple[AxisInfo, ...]:
     return tuple(AxisInfo(name, unit) for name, unit in zip(chosen.names, units, strict=True))
 
 
-def _rows(matrix: Array) -> Matrix:
+def _rows(matrix: Matrix) -> Rows:
     return tuple(tuple(row) for row in matrix.tolist())
+
+
+@dataclass(frozen=True, slots=True)
+class SerialInfo:
+    """The transmission.json that 'eurdf serial' writes."""
+
+    LIKE: ClassVar = "eurdf.transmissions.serial_twin:SerialTwin"
+
+    joints: tuple[str, ...]
+    motors: tuple[str, ...]
+    lumped: tuple[str, ...]
+    """Bodies left out; their masses are lumped onto those that carry them."""
+    lumped_at: dict[str, Annotated[Vector, ROW]]
+    """Coordinates of the joints of the parallel robot at which they are lumped, as in files."""
+    chosen: Choice
+    position: Annotated[Matrix, PAIRS]
+    torque: tuple[float | None, ...]
+    velocity: tuple[float | None, ...]
+    armature: Annotated[Vector, ROW]
+    damping: Annotated[Vector, ROW]
+    friction: Annotated[Vector, ROW]
+    neglected: Neglected
+    stops: dict[str, int]
+    """Number of points at the edge of the workspace, by what ends the motion there."""
+    map: PolynomialMap
+    notes: tuple[str, ...]

@@ -201,7 +201,7 @@ def driven(what_to_set: str) -> tuple[LossKind, ...]:
             f"set {what_to_set}",
             code="export-position-gain",
             error="gain and damping are this export's choice",
-            actuators="position",
+            actuators=("position",),
             where=by_writer,
         ),
         dropped(
@@ -210,6 +210,6 @@ def driven(what_to_set: str) -> tuple[LossKind, ...]:
             "export with actuators 'motor' or 'position'",
             code="export-no-actuator",
             sayable=True,
-            actuators="none",
+            actuators=("none",),
         ),
     )

@@ -24,6 +24,7 @@ from eurdf.diagnostics import Diagnostic, Severity, did_you_mean
 from eurdf.diagnostics.wording import visible
 from eurdf.exceptions import RobotNotFound
 from eurdf.format.schema import FILES, SchemaVersion, json_schema, schema_text
+from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.position_limit import position_limits
@@ -34,7 +35,7 @@ from eurdf.linking.robot_files import read_robot
 from eurdf.loading import check
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.spanning_tree import rigid_poses
-from eurdf.pinocchio.robot import build_robot
+from eurdf.pinocchio.robot import Robot, build_robot
 from eurdf.reading.other_formats import IMPORTED
 from eurdf.reading.resource import FileFinder
 from eurdf.writing.description import DescriptionFiles, NotWritable, describe_mechanism, version_needed
@@ -215,23 +216,7 @@ def _import(chosen: ImportFormat, given: ImportInput) -> Import:
     robot = build_robot(mechanism, geometry=False)
     q = robot.configuration(coordinates)
     opened = closure_openings(robot, q)
-    mechanism = _without_open_assembled(mechanism, losses)
-    closes = True
-    if mechanism.constraints and ASSEMBLED not in mechanism.configurations:
-        # Joints outside of loops too are within their limits in a file.
-        starts = ((position_limits(robot).clip(q), True), (q, False))
-        found = next((each for at, limits in starts if (each := assemble(robot, at, limits=limits)).closes), None)
-        closes = found is not None
-        exact = {} if found is None else robot.coordinates(found.q)
-        beyond = beyond_limits(mechanism.joints, exact)
-        if found is None:
-            losses.add("import-not-assembled", ASSEMBLED, "no configuration was found that closes the loops")
-        elif beyond:
-            losses.add("import-not-assembled", ASSEMBLED, f"the loops close beyond limits only: {beyond[0]}")
-        else:
-            mechanism = replace(
-                mechanism, configurations=MappingProxyType({ASSEMBLED: exact, **mechanism.configurations})
-            )
+    mechanism, closes = _assembled(_without_open_assembled(mechanism, losses), robot, q, losses)
     mechanism = replace(
         mechanism,
         version=version_needed(mechanism),
@@ -295,6 +280,24 @@ def _without_open_assembled(mechanism: Mechanism, losses: Losses) -> Mechanism:
     losses.add("import-open-assembled", ASSEMBLED, f"its loops are open: it is renamed to '{name}'")
     renamed = {name if key == ASSEMBLED else key: value for key, value in configurations.items()}
     return replace(mechanism, configurations=MappingProxyType(renamed))
+
+
+def _assembled(mechanism: Mechanism, robot: Robot, q: Vector, losses: Losses) -> tuple[Mechanism, bool]:
+    """The mechanism with a configuration ``assembled``, if one is found from q; and whether its loops close."""
+    if not mechanism.constraints or ASSEMBLED in mechanism.configurations:
+        return mechanism, True
+    # Joints outside of loops too are within their limits in a file.
+    starts = ((position_limits(robot).clip(q), True), (q, False))
+    found = next((each for at, limits in starts if (each := assemble(robot, at, limits=limits)).closes), None)
+    if found is None:
+        losses.add("import-not-assembled", ASSEMBLED, "no configuration was found that closes the loops")
+        return mechanism, False
+    coordinates = robot.coordinates(found.q)
+    if beyond := beyond_limits(mechanism.joints, coordinates):
+        losses.add("import-not-assembled", ASSEMBLED, f"the loops close beyond limits only: {beyond[0]}")
+        return mechanism, True
+    configurations = MappingProxyType({ASSEMBLED: coordinates, **mechanism.configurations})
+    return replace(mechanism, configurations=configurations), True
 
 
 def _description(

@@ -7,7 +7,7 @@ and `Losses.find` applies them to a mechanism before anything is written. What o
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass
 from enum import Enum
 from functools import partial
@@ -146,68 +146,52 @@ def _of_all(element: object) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class LossKind:
-    """A way in which an export or an import cannot say what it is given.
+    """A way in which an export or an import cannot say what it is given: by default, it cannot say a concept at all.
 
     Attributes:
-        code: Its permanent name, ``export-`` or ``import-`` and a few words.
-        concept: Of an export: one of `ELEMENTS`.
         effect: What is left.
+        concept: Of an export: one of `ELEMENTS`.
         title: What happens, as one sentence.
         hint: What the user can do.
+        code: Its permanent name, ``export-`` or ``import-`` and a few words; by default, ``export-`` and the concept.
         error: Of an approximate one: how large the error is.
-        only: Which elements of the concept it is about, or with which option; empty if it is about all.
-        sayable: Whether the format could say it: it is dropped because of an option or of the robot's files.
-        where: Whether an element has it.
-        message: What happened to an element, if the title does not say it.
+        types: The joint types that it is about; empty for all.
         actuators: The choices of actuators with which it occurs; empty for all.
+        where: Which elements of these have it.
+        only: Which elements these are, or with which option they have it; by default, what ``types`` and ``actuators``
+            say; empty if it is about all.
+        sayable: Whether the format could say it: it is dropped because of an option or of the robot's files.
+        message: What happened to an element, if the title does not say it.
     """
 
-    code: str
-    concept: str
     effect: Effect
+    concept: str
     title: str
     hint: str
+    code: str = ""
     error: str = ""
+    types: tuple[str, ...] = ()
+    actuators: tuple[str, ...] = ()
+    where: Callable[[Any], bool] = _of_all
     only: str = ""
     sayable: bool = False
-    where: Callable[[Any], bool] = by_writer
     message: Callable[[Any], str] | None = None
-    actuators: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        only = f"--actuators {self.actuators[0]}" if len(self.actuators) == 1 else ""
+        if self.types:
+            only = f"{', '.join(self.types[:-1])} and {self.types[-1]} joints".removeprefix(" and ")
+        object.__setattr__(self, "only", self.only or only)
+        object.__setattr__(self, "code", self.code or f"export-{self.concept.replace(' ', '-')}")
+
+    def applies(self, element: Any, actuators: str) -> bool:
+        """Whether an element of the concept has it, with a choice of actuators."""
+        if (self.actuators and actuators not in self.actuators) or (self.types and element.type not in self.types):
+            return False
+        return self.where(element)
 
 
-def _row(
-    effect: Effect,
-    concept: str,
-    title: str,
-    hint: str,
-    *,
-    code: str = "",
-    error: str = "",
-    types: Sequence[str] = (),
-    only: str = "",
-    actuators: str | tuple[str, ...] = (),
-    sayable: bool = False,
-    where: Callable[[Any], bool] = _of_all,
-    message: Callable[[Any], str] | None = None,
-) -> LossKind:
-    """A kind of loss of an export: by default, of all elements of a concept, and under its name.
-
-    ``types`` are the joint types that it is about, if not all; ``only`` says so by itself, and also of one choice of
-    ``actuators``.
-    """
-    if types:
-        only = only or f"{', '.join(types[:-1])} and {types[-1]} joints".removeprefix(" and ")
-    if isinstance(actuators, str):
-        only, actuators = f"--actuators {actuators}", (actuators,)
-    code = code or f"export-{concept.replace(' ', '-')}"
-
-    def applies(element: Any) -> bool:
-        return (not types or element.type in types) and where(element)
-
-    return LossKind(code, concept, effect, title, hint, error, only, sayable, applies, message, actuators)
-
-
-exact, approximate, dropped = (partial(_row, effect) for effect in Effect)
+exact, approximate, dropped = (partial(LossKind, effect) for effect in Effect)
 
 
 # -- losses ------------------------------------------------------------------------------------------------------------
@@ -267,10 +251,8 @@ class Losses:
         """
         known = {*stated, *(kind.concept for kind in self._kinds.values())}
         for kind in self._kinds.values():
-            if kind.actuators and actuators not in kind.actuators:
-                continue
             for element in ELEMENTS.get(kind.concept, _nothing)(mechanism):
-                if kind.where(element):
+                if kind.applies(element, actuators):
                     self._record(kind, element)
         for what, elements in (("joint", mechanism.joints), ("closure", mechanism.closures)):
             for element in elements:

@@ -78,31 +78,6 @@ class Part:
     orientation_first: bool = False
     circular: tuple[int, ...] = ()
 
-    @classmethod
-    def of(
-        cls,
-        joint: Joint,
-        names: Sequence[str],
-        ratios: Iterable[tuple[int, float, float]],
-        mimic: Mimic | None = None,
-        **more: Any,
-    ) -> Part:
-        """A joint in the exported model.
-
-        Args:
-            joint: The joint.
-            names: As for the part.
-            ratios: As for the part, if its velocities are the rates of its coordinates.
-            mimic: The leader of a mimic joint.
-            **more: Other attributes of the part, if they are not.
-        """
-        if mimic is not None:
-            ratio = (0, mimic.multiplier, mimic.offset)
-            return cls(tuple(names), mimic.joint, joint.type, (ratio,), mimics=True)
-        if joint.type.moving_frame:
-            return cls(tuple(names), joint.name, joint.type, **more)
-        return cls(tuple(names), joint.name, joint.type, tuple(ratios))
-
     @property
     def nq(self) -> int:
         """Number of coordinates in the model."""
@@ -113,3 +88,27 @@ class Part:
     def nv(self) -> int:
         """Number of velocities in the model."""
         return len(self.ratios) or self.type.nv
+
+
+def part_of(
+    joint: Joint,
+    names: Sequence[str],
+    ratios: Iterable[tuple[int, float, float]],
+    mimic: Mimic | None = None,
+    **more: Any,
+) -> Part:
+    """A joint in the exported model.
+
+    Args:
+        joint: The joint.
+        names: As for `Part`.
+        ratios: As for `Part`, if the velocities of the joint are the rates of its coordinates.
+        mimic: The leader of a mimic joint.
+        **more: Other attributes of `Part`, if they are not.
+    """
+    if mimic is not None:
+        ratio = (0, mimic.multiplier, mimic.offset)
+        return Part(tuple(names), mimic.joint, joint.type, (ratio,), mimics=True)
+    if joint.type.moving_frame:
+        return Part(tuple(names), joint.name, joint.type, **more)
+    return Part(tuple(names), joint.name, joint.type, tuple(ratios))

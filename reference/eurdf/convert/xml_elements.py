@@ -11,7 +11,7 @@ from lxml import etree
 
 from eurdf.convert.exceptions import CannotImport
 from eurdf.diagnostics import Diagnostic, FileError, Place, did_you_mean
-from eurdf.format.version import VERSION_KEY
+from eurdf.format.conventions import VERSION_KEY
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 from eurdf.mesh_files.folders import Folders
 from eurdf.reading.other_formats import ROOTS, OtherFormat, of_element, of_mapping, of_root

@@ -47,6 +47,9 @@ class Place:
     pointer: str = ""
     lines: Lines | None = field(default=None, compare=False, repr=False)
 
+    def __str__(self) -> str:
+        return ":".join(str(part) for part in (self.file, self.line, self.column) if part is not None)
+
 
 class Diagnostic:
     """One diagnostic: a code of the registry, what is wrong, where, and what to do (EU-DIA-008).
@@ -113,9 +116,8 @@ class Diagnostic:
         return self.place.pointer
 
     def __str__(self) -> str:
-        where = ":".join(str(part) for part in (self.file, self.line, self.column) if part is not None)
         hint = f" ({self.hint})" if self.hint else ""
-        return no_command(visible(f"{where}: {self.severity}: {self.message}{hint} [{self.code}]"))
+        return no_command(visible(f"{self.place}: {self.severity}: {self.message}{hint} [{self.code}]"))
 
     def __repr__(self) -> str:
         return f"<Diagnostic {self}>"

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from eurdf.diagnostics.diagnostic import Diagnostic
 from eurdf.diagnostics.registry import Severity
@@ -79,7 +80,7 @@ def _by_position(diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:
 
 
 def _headline(found: Diagnostic, path: str) -> Line:
-    where = ":".join(str(part) for part in (found.file or path, found.line, found.column) if part is not None)
+    where = str(found.place if found.file else replace(found.place, file=path))
     message = visible(found.message)
     if len(message) > _LONGEST_MESSAGE:
         message = message[:_LONGEST_MESSAGE] + _ELLIPSIS

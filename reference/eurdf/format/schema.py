@@ -9,13 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import BaseModel
-
-from eurdf.format.own_key import OWN_KEY, is_own_key
+from eurdf.format.conventions import OWN_KEY, Version, is_own_key
+from eurdf.format.model import MODELS
 from eurdf.format.urdf.data import Urdf
-from eurdf.format.version1 import Version1
-from eurdf.format.version2 import Version2
-from eurdf.format.version2_1 import Version2_1
+from eurdf.format.value_types import Schema, Schemas
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
@@ -28,14 +25,8 @@ FILES: dict[SchemaVersion, str] = {
     "2": "extended-urdf-2.0.schema.json",
     "2.1": "extended-urdf-2.1.schema.json",
 }
-_IDS = {
-    "1": "urn:extended-urdf:schema:1",
-    "2": "urn:extended-urdf:schema:2.0",
-    "2.1": "urn:extended-urdf:schema:2.1",
-}
-_MODELS: dict[SchemaVersion, type[BaseModel]] = {"1": Version1, "2": Version2, "2.1": Version2_1}
-
-Schema = dict[str, Any]
+#: Versions of the format, as files name them.
+NUMBERS: dict[SchemaVersion, Version] = {"1": "1", "2": "2.0", "2.1": "2.1"}
 
 #: Next to an enumeration of names: a value that is not a name is reported elsewhere.
 _OTHER_THAN_TEXT = {"not": {"type": "string"}}
@@ -74,11 +65,23 @@ def json_schema(version: SchemaVersion, names: Names | None = None) -> Schema:
         version: Version of the format.
         names: Names of one robot, or None for the schema of any.
     """
-    schema = {"$schema": DIALECT, "$id": _IDS[version], **_MODELS[version].model_json_schema()}
+    number = NUMBERS[version]
+    schemas = Schemas(number)
+    described = MODELS[number].schema(schemas)
+    head = {"$schema": DIALECT, "$id": f"urn:extended-urdf:schema:{number}"}
+    schema = {**head, **_sorted({**described, "$defs": schemas.definitions})}
     if names is not None:
         del schema["$id"]  # that of the schema of any robot
         _put_names(schema, version, names)
     return schema
+
+
+def _sorted(value: Any, key: str = "") -> Any:
+    """The same schema, with its keywords and definitions in alphabetical order, and the keys of files in theirs."""
+    if isinstance(value, dict):
+        keys = value if key == "properties" else sorted(value)
+        return {name: _sorted(value[name], name) for name in keys}
+    return [_sorted(item) for item in value] if isinstance(value, list) else value
 
 
 def _put_names(schema: Schema, version: SchemaVersion, names: Names) -> None:

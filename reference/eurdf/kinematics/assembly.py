@@ -17,7 +17,7 @@ import numpy as np
 
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.derived import borrowed
-from eurdf.kinematics.descend import Descended, descend
+from eurdf.kinematics.descend import Descended, descend, measured
 from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits, chosen_limits
@@ -304,12 +304,10 @@ def _well_closed(problem: Problem, found: Descended) -> Mask:
 @np.errstate(all="ignore")
 def is_closed(problem: Problem, q: Matrix, tolerance: float) -> Mask:
     """Whether (B,) `close` would leave configurations (B, nq) as they are."""
-    sums = np.zeros((len(q), 2))
-    for part in problem.parts:
-        r = part.residual(q)
-        sums = sums + (r * r) @ part.weights
-    bound = tolerance**2, (WELL_CLOSED / problem.spaces.length) ** 2
-    return np.asarray((sums <= bound).all(axis=1))
+    if not problem.parts:
+        return np.ones(len(q), dtype=bool)
+    error, scaled = measured(problem.parts, [part.residual(q) for part in problem.parts])
+    return np.asarray((error <= tolerance**2) & (scaled <= (WELL_CLOSED / problem.spaces.length) ** 2))
 
 
 def assembled(

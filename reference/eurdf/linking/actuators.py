@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any
 
 from eurdf.diagnostics import Hint, did_you_mean
-from eurdf.format.extension import ActuatorEntry
+from eurdf.format.joint_model import Geared
 from eurdf.format.urdf.data import Urdf
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.reading.reporter import YamlReporter
@@ -16,7 +16,7 @@ from eurdf.reading.yaml_reader import YamlDocument
 
 
 def link_actuators(
-    entries: Iterable[ActuatorEntry],
+    entries: Iterable[Geared],
     urdf: Urdf,
     joints: Mapping[str, Joint],
     merged: Mapping[str, str],
@@ -78,7 +78,7 @@ def link_actuators(
     return tuple(listed)
 
 
-def _has_motor(entry: ActuatorEntry, named: Mapping[str, str], reporter: YamlReporter) -> bool:
+def _has_motor(entry: Geared, named: Mapping[str, str], reporter: YamlReporter) -> bool:
     """EU-ACT-008, EU-ACT-009: the name of an actuator is unique, and its control range is in order."""
     name = entry.name or entry.joint
     if name in named:
@@ -102,7 +102,7 @@ def _has_motor(entry: ActuatorEntry, named: Mapping[str, str], reporter: YamlRep
     return True
 
 
-def with_motor(joint: Joint, entry: ActuatorEntry, *, armature_given: bool) -> Joint:
+def with_motor(joint: Joint, entry: Geared, *, armature_given: bool) -> Joint:
     """The joint with the motor's gear ratio and rotor inertia.
 
     EU-ACT-006: the armature of an actuated joint, where it is not given, is gear_ratio² · rotor_inertia, the rotor's
@@ -133,7 +133,7 @@ def with_motor(joint: Joint, entry: ActuatorEntry, *, armature_given: bool) -> J
     return joint.with_properties(motor)
 
 
-def _pointer_of_name(entry: ActuatorEntry, document: YamlDocument) -> Pointer:
+def _pointer_of_name(entry: Geared, document: YamlDocument) -> Pointer:
     value: Any = document.data
     for key in entry.pointer:
         value = value[key]

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import fields
 
 from eurdf.closures.kind import REGISTRY
-from eurdf.format.extension import ClosureEntry
+from eurdf.format.closure_model import AnyClosure, Hinge, HingeAboutTwo
 from eurdf.linking.frame_names import FrameNames
 from eurdf.mechanism.constraint import RIGID, Closure, Compliance
 from eurdf.mechanism.frame import Anchor
-from eurdf.mechanism.pose import Pose, Vector3
+from eurdf.mechanism.pose import Pose
 from eurdf.reading.reporter import YamlReporter
+
+#: Fields of all kinds of closure.
+_COMMON = frozenset(each.name for each in fields(Closure))
 
 
 def link_closures(
-    entries: Iterable[ClosureEntry],
+    entries: Iterable[AnyClosure],
     names: FrameNames,
     rigid: Mapping[str, str],
     reporter: YamlReporter,
@@ -30,7 +34,7 @@ def link_closures(
         reporter: Gets what is found.
     """
     closures: list[Closure] = []
-    taken: dict[str, ClosureEntry] = {}
+    taken: dict[str, AnyClosure] = {}
     joined: dict[frozenset[tuple[str, Pose]], str] = {}
     for entry in entries:
         if entry.name in taken:
@@ -42,7 +46,7 @@ def link_closures(
             )
             continue
         taken[entry.name] = entry
-        a, b = names.find(entry.a), names.find(entry.b)
+        a, b = map(names.find, entry.frames)
         if a is None or b is None or not _movable(entry, a, b, rigid, reporter):
             continue
         pair = frozenset({(a.body, a.pose), (b.body, b.pose)})
@@ -63,20 +67,23 @@ def link_closures(
                 (*entry.pointer, "type"),
             )
             continue
-        compliance = entry.compliance or RIGID
-        if not _fits(compliance, kind, entry, reporter):
+        if not _fits(kind, entry, reporter) or not _have_directions(entry, reporter):
             continue
-        if entry.axes is None or _have_directions(entry, entry.axes, reporter):
-            keys = {"length": entry.length, "axes": entry.axes}
-            own = {name: value for name, value in keys.items() if value is not None}
-            closures.append(kind(entry.name, a, b, compliance=compliance, **own))
+        # What a kind has besides, an entry of this kind has by the same name.
+        own = {each.name: getattr(entry, each.name) for each in fields(kind) if each.name not in _COMMON}
+        closures.append(kind(entry.name, a, b, compliance=_compliance(entry), **own))
     return tuple(closures)
 
 
-def _fits(compliance: Compliance, kind: type[Closure], entry: ClosureEntry, reporter: YamlReporter) -> bool:
+def _compliance(entry: AnyClosure) -> Compliance:
+    stated = entry.compliance
+    return RIGID if stated is None else Compliance(stated.linear or 0.0, stated.angular or 0.0)
+
+
+def _fits(kind: type[Closure], entry: AnyClosure, reporter: YamlReporter) -> bool:
     """EU-CLO-020, EU-CLO-021: only a closure that holds an orientation has an angular compliance."""
     pointer = (*entry.pointer, "compliance", "angular")
-    if not compliance.angular or "rad" in kind.units:
+    if not _compliance(entry).angular or "rad" in kind.units:
         return True
     reporter.report(
         "closure-compliance",
@@ -87,19 +94,20 @@ def _fits(compliance: Compliance, kind: type[Closure], entry: ClosureEntry, repo
     return False
 
 
-def _have_directions(entry: ClosureEntry, axes: tuple[Vector3, Vector3], reporter: YamlReporter) -> bool:
+def _have_directions(entry: AnyClosure, reporter: YamlReporter) -> bool:
     """EU-CLO-013: no axis of a hinge is zero."""
+    axes = entry.axes if isinstance(entry, Hinge | HingeAboutTwo) else ()
     zero = next((index for index, axis in enumerate(axes) if not any(axis)), None)
     if zero is None:
         return True
-    pointer = entry.axes_pointer if entry.axes_pointer[-1] == "axis" else (*entry.axes_pointer, zero)
+    pointer = (*entry.pointer, "axis") if isinstance(entry, Hinge) else (*entry.pointer, "axes", zero)
     hint = "write the direction of the pin in the frame; it may have any length"
     reporter.report("closure-axis-zero", f"an axis of hinge '{entry.name}' is zero", pointer, hint)
     return False
 
 
 def _movable(
-    entry: ClosureEntry,
+    entry: AnyClosure,
     a: Anchor,
     b: Anchor,
     rigid: Mapping[str, str],
@@ -113,7 +121,7 @@ def _movable(
         reporter.report(
             "closure-same-frame",
             f"closure '{entry.name}' connects {message}",
-            entry.b.pointer,
+            entry.frames[1].pointer,
             "name the frame on the other side of the cut",
         )
         return False

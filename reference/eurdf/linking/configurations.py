@@ -8,7 +8,6 @@ from functools import partial
 from typing import NamedTuple
 
 from eurdf.diagnostics import Hint, did_you_mean
-from eurdf.format.extension import ConfigurationEntry
 from eurdf.format.yaml_text import Value, flow
 from eurdf.mechanism.joint import LIMIT_TOLERANCE, Joint
 from eurdf.reading.reporter import YamlReporter
@@ -48,7 +47,7 @@ class BeyondLimit(NamedTuple):
 
 
 def link_configurations(
-    entries: Iterable[ConfigurationEntry],
+    stated: Mapping[str, Mapping[str, tuple[float, ...]]],
     joints: Mapping[str, Joint],
     merged: Mapping[str, str],
     skip: Collection[str],
@@ -57,28 +56,28 @@ def link_configurations(
     """Check every configuration against the joints of the mechanism; EU-CFG-006: quaternions come back of unit length.
 
     Args:
-        entries: As written.
+        stated: As written, by name.
         joints: Joints of the mechanism, and that of a floating root.
         merged: For each joint that was merged away, the joint it became part of.
         skip: Joints that are not checked, since their own entry is invalid.
         reporter: Gets what is found.
     """
     configurations = {}
-    for entry in entries:
-        configuration = {}
+    for configuration, written in stated.items():
+        checked = {}
         all_known = True
-        for name, values in entry.joints.items():
+        for name, values in written.items():
             if name in skip:
                 continue
-            joint = _joint(name, joints, merged, entry, reporter)
+            joint = _joint(name, joints, merged, configuration, reporter)
             all_known &= joint is not None
-            checked = None if joint is None else _coordinates(joint, values, entry, reporter)
-            if checked is not None:
-                configuration[name] = checked
+            coordinates = None if joint is None else _coordinates(joint, values, configuration, reporter)
+            if coordinates is not None:
+                checked[name] = coordinates
         if all_known:  # else a joint that seems to be left out may be one whose name is misspelt
-            left_out = [joint for name, joint in joints.items() if name not in entry.joints and name not in skip]
-            _check_left_out(left_out, entry, reporter)
-        configurations[entry.name] = configuration
+            left_out = [joint for name, joint in joints.items() if name not in written and name not in skip]
+            _check_left_out(left_out, configuration, reporter)
+        configurations[configuration] = checked
     return configurations
 
 
@@ -86,7 +85,7 @@ def _joint(
     name: str,
     joints: Mapping[str, Joint],
     merged: Mapping[str, str],
-    entry: ConfigurationEntry,
+    configuration: str,
     reporter: YamlReporter,
 ) -> Joint | None:
     """EU-CFG-001: a configuration names joints that have coordinates of their own."""
@@ -107,8 +106,8 @@ def _joint(
         why = "is fixed and has no coordinate"
     reporter.report(
         "configuration-joint",
-        f"'{name}' in configuration '{entry.name}' {why}",
-        (*entry.pointer, name),
+        f"'{name}' in configuration '{configuration}' {why}",
+        ("configurations", configuration, name),
         hint,
         key=True,
     )
@@ -141,7 +140,7 @@ def beyond_limits(joints: Iterable[Joint], coordinates: Mapping[str, Sequence[fl
     ]
 
 
-def _check_left_out(joints: Sequence[Joint], entry: ConfigurationEntry, reporter: YamlReporter) -> None:
+def _check_left_out(joints: Sequence[Joint], configuration: str, reporter: YamlReporter) -> None:
     """EU-CFG-004: joints that a configuration leaves out are within their limits at neutral."""
     beyond = beyond_limits(joints, {})
     if not beyond:
@@ -152,8 +151,8 @@ def _check_left_out(joints: Sequence[Joint], entry: ConfigurationEntry, reporter
     more = f", and {len(beyond) - _MOST_TOLD} more" if len(beyond) > _MOST_TOLD else ""
     reporter.report(
         "configuration-limits",
-        f"configuration '{entry.name}' leaves out joints, which are then at 0, outside their limits: {told}{more}",
-        entry.pointer,
+        f"configuration '{configuration}' leaves out joints, which are then at 0, outside their limits: {told}{more}",
+        ("configurations", configuration),
         f"add coordinates within the limits, for example {flow(example)}",
         key=True,
     )
@@ -169,16 +168,16 @@ def _nearest(joint: Joint) -> float | list[float]:
 def _coordinates(
     joint: Joint,
     values: tuple[float, ...],
-    entry: ConfigurationEntry,
+    configuration: str,
     reporter: YamlReporter,
 ) -> tuple[float, ...] | None:
     names, start = joint.type.coordinates, joint.type.quaternion
     if len(values) != len(names):
         reporter.report(
             "configuration-length",
-            f"{joint.type} joint '{joint.name}' has {len(values)} coordinates in configuration '{entry.name}'; "
+            f"{joint.type} joint '{joint.name}' has {len(values)} coordinates in configuration '{configuration}'; "
             f"it must have {len(names)}: {', '.join(names)}",
-            (*entry.pointer, joint.name),
+            ("configurations", configuration, joint.name),
         )
         return None
     if start is not None:
@@ -187,8 +186,9 @@ def _coordinates(
             unit = [round(value / norm, 6) for value in values[start : start + 4]] if norm > 1e-9 else [0, 0, 0, 1]
             reporter.report(
                 "configuration-quaternion",
-                f"the quaternion of joint '{joint.name}' in configuration '{entry.name}' has length {norm:.9g}, not 1",
-                (*entry.pointer, joint.name),
+                f"the quaternion of joint '{joint.name}' in configuration '{configuration}' has length {norm:.9g}, "
+                "not 1",
+                ("configurations", configuration, joint.name),
                 f"write a unit quaternion x, y, z, w: {unit}",
             )
             return None
@@ -196,9 +196,9 @@ def _coordinates(
     for found in beyond_limits([joint], {joint.name: values}):
         reporter.report(
             "configuration-limits",
-            f"{found.coordinate} {found.value:.12g} of joint '{joint.name}' in configuration '{entry.name}' is outside "
-            f"its limits {found.lower:.12g} to {found.upper:.12g}",
-            (*entry.pointer, joint.name),
+            f"{found.coordinate} {found.value:.12g} of joint '{joint.name}' in configuration '{configuration}' is "
+            f"outside its limits {found.lower:.12g} to {found.upper:.12g}",
+            ("configurations", configuration, joint.name),
         )
         return None
     return values

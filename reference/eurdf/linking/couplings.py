@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Mapping
 from functools import partial
 
 from eurdf.diagnostics import did_you_mean
-from eurdf.format.extension import CouplingEntry
+from eurdf.format.closure_model import Coupling as CouplingEntry
 from eurdf.format.urdf.data import Urdf
 from eurdf.mechanism.constraint import Coupling
 from eurdf.mechanism.joint import Joint

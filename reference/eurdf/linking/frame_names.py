@@ -7,7 +7,8 @@ from functools import partial
 from itertools import chain
 
 from eurdf.diagnostics import did_you_mean
-from eurdf.format.extension import FrameEntry, FrameReference
+from eurdf.format.closure_model import Frame as FrameEntry
+from eurdf.format.closure_model import FrameReference, NamedFrame
 from eurdf.format.urdf.data import Urdf
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint
@@ -46,7 +47,7 @@ class FrameNames:
                     "give the frame another name",
                 )
                 continue
-            anchor = self.find(entry.reference)
+            anchor = self.find(entry)
             if anchor is None:
                 self._frames[entry.name] = None
             else:
@@ -56,8 +57,8 @@ class FrameNames:
 
     def find(self, reference: FrameReference) -> Anchor | None:
         """The body and pose that a reference means; None, and a diagnostic, where it means none or two."""
-        if reference.kind == "frame":
-            return self._by_name(reference.name, reference)
+        if isinstance(reference, NamedFrame):
+            return self._by_name(reference.target, reference)
         body = self._body(reference)
         if body is None:
             return None
@@ -105,7 +106,7 @@ class FrameNames:
         return None
 
     def _body(self, reference: FrameReference) -> str | None:
-        name = reference.name
+        name = reference.target
         if reference.kind == "link":
             if name in self._urdf.links:
                 return name

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from eurdf.format.extension import JointEntry
+from eurdf.format.joint_model import Joint
 from eurdf.format.urdf.data import Urdf
 from eurdf.reading.reporter import YamlReporter
 
 
-def freed_joints(entries: Iterable[JointEntry], urdf: Urdf, reporter: YamlReporter) -> set[str]:
+def freed_joints(entries: Iterable[Joint], urdf: Urdf, reporter: YamlReporter) -> set[str]:
     """EU-JNT-033, EU-JNT-034: the joints whose ``<mimic>`` has no effect, because their entry states ``mimic: false``.
 
     An entry that merges joints frees those of them that mimic.
@@ -21,7 +21,7 @@ def freed_joints(entries: Iterable[JointEntry], urdf: Urdf, reporter: YamlReport
     """
     freed: set[str] = set()
     for entry in entries:
-        if not entry.freed:
+        if entry.mimic is not False:
             continue
         named = entry.merges or (entry.name,)
         mimicking = {name for name in named if name in urdf.joints and urdf.joints[name].mimic}

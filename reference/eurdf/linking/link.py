@@ -7,7 +7,8 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from eurdf.diagnostics import Diagnostics
-from eurdf.format.extension import Extension, FrameReference
+from eurdf.format.closure_model import FrameReference, NamedFrame
+from eurdf.format.model import Description
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.urdf.read import JOINT_LIMIT
 from eurdf.linking.actuators import link_actuators, with_motor
@@ -38,7 +39,7 @@ ROW_LIMIT = 20_000
 
 def link(
     urdf: Urdf,
-    extension: Extension | None,
+    description: Description | None,
     diagnostics: Diagnostics,
     root: Root | None = None,
     *,
@@ -50,7 +51,7 @@ def link(
 
     Args:
         urdf: The URDF, sound by itself.
-        extension: The description; None for a bare URDF.
+        description: The description; None for a bare URDF.
         diagnostics: Gets what is found.
         root: In place of the root that the description states.
         mimic: Whether a mimic joint depends on its leader; if not, it is free, as if the URDF had no ``<mimic>``. In a
@@ -60,28 +61,30 @@ def link(
         The mechanism, or None where an error was found.
     """
     before = diagnostics.error_count
-    if extension is not None:
-        reporter = YamlReporter(extension.document, diagnostics)
-        urdf = urdf.without_mimics(freed_joints(extension.joints, urdf, reporter))
+    if description is not None:
+        reporter = YamlReporter(description.document, diagnostics)
+        urdf = urdf.without_mimics(freed_joints(description.joints, urdf, reporter))
     mimics = {} if mimic else {joint.name: joint.mimic for joint in urdf.joints.values() if joint.mimic}
-    if not mimic or (extension is not None and extension.version == "1"):
+    if not mimic or (description is not None and description.version == "1"):
         urdf = urdf.without_mimics()
-    if extension is None:
+    if description is None:
         mechanism = _bare(urdf, diagnostics, root or "fixed")
     else:
-        mechanism = _described(urdf, extension, reporter, root or extension.root)
+        mechanism = _described(urdf, description, reporter, root or description.root)
         if mimics:
             mechanism = replace(mechanism, configurations=_led(mechanism, drivers(mimics)))
-        _reserve_names(extension, reporter, mechanism.root)
+        _reserve_names(description, reporter, mechanism.root)
     if mechanism.root == "floating":
         _reserve_root_joint(urdf, diagnostics)
-    _refuse_too_large(mechanism, urdf, extension, diagnostics)
+    _refuse_too_large(mechanism, urdf, description, diagnostics)
     if diagnostics.error_count == before:
         check_chains(mechanism, urdf, diagnostics)
     return None if diagnostics.error_count > before else mechanism
 
 
-def _refuse_too_large(mechanism: Mechanism, urdf: Urdf, extension: Extension | None, diagnostics: Diagnostics) -> None:
+def _refuse_too_large(
+    mechanism: Mechanism, urdf: Urdf, description: Description | None, diagnostics: Diagnostics
+) -> None:
     """EU-FIL-002: a robot is not so large that its model takes more memory than a machine has."""
     joints = len(mechanism.joints)
     velocities = sum(joint.type.nv for joint in mechanism.joints)
@@ -91,11 +94,11 @@ def _refuse_too_large(mechanism: Mechanism, urdf: Urdf, extension: Extension | N
     elif velocities > VELOCITY_LIMIT:
         message = f"the joints of the robot have {velocities:,} velocities; the maximum is {VELOCITY_LIMIT:,}"
         diagnostics.report("file-too-large", message, urdf.document.place(urdf.document.root))
-    elif mechanism.nc > ROW_LIMIT and extension is not None:
+    elif mechanism.nc > ROW_LIMIT and description is not None:
         largest = "closures" if mechanism.closures else "couplings"
         message = f"the {largest} of the robot have {mechanism.nc:,} constraint rows; the maximum is {ROW_LIMIT:,}"
         key = "closed_loop" if mechanism.version == "1" else largest
-        diagnostics.report("file-too-large", message, extension.document.place((key,)))
+        diagnostics.report("file-too-large", message, description.document.place((key,)))
 
 
 def _bare(urdf: Urdf, diagnostics: Diagnostics, root: Root) -> Mechanism:
@@ -105,32 +108,32 @@ def _bare(urdf: Urdf, diagnostics: Diagnostics, root: Root) -> Mechanism:
     return Mechanism(urdf.name, "", root, (bodies[urdf.root], *(bodies[joint.child] for joint in ordered)), ordered)
 
 
-def _described(urdf: Urdf, extension: Extension, reporter: YamlReporter, root: Root) -> Mechanism:
+def _described(urdf: Urdf, description: Description, reporter: YamlReporter, root: Root) -> Mechanism:
     joints = Joints({joint.name: joint_of(joint) for joint in urdf.joints.values()})
     faulty = replace_joints(
         joints,
-        extension.joints,
+        description.joints,
         urdf,
-        _closure_links(extension, urdf),
+        _closure_links(description, urdf),
         reporter,
-        version=extension.version,
+        version=description.version,
     )
     check_ranges(urdf, joints.by_name, reporter.diagnostics)
-    _own_keys(extension, urdf, reporter)
+    _own_keys(description, urdf, reporter)
     names = FrameNames(urdf, joints.by_name, faulty, reporter)
-    frames = names.add(extension.frames)
+    frames = names.add(description.frames)
     order = depth_first(urdf.root, joints.by_name.values())
     rigid = rigid_roots(urdf.root, order)
-    closures = link_closures(extension.closures, names, rigid, reporter)
-    stated = [entry.name for entry in extension.closures]
-    couplings = link_couplings(extension.couplings, stated, urdf, joints.by_name, joints.merged, faulty, reporter)
+    closures = link_closures(description.closures, names, rigid, reporter)
+    stated = [entry.name for entry in description.closures]
+    couplings = link_couplings(description.couplings, stated, urdf, joints.by_name, joints.merged, faulty, reporter)
     # Errors about a joint whose own entry is invalid would only repeat that error.
-    entries = [entry for entry in extension.actuators if entry.joint not in faulty]
+    entries = [entry for entry in description.actuators if entry.joint not in faulty]
     actuators = link_actuators(entries, urdf, joints.by_name, joints.merged, joints.split, reporter)
     named = joints.by_name
-    if extension.root == "floating":
+    if description.root == "floating":
         named = {**named, ROOT_JOINT: root_joint(urdf.root)}
-    configurations = link_configurations(extension.configurations, named, joints.merged, faulty, reporter)
+    configurations = link_configurations(description.configurations, named, joints.merged, faulty, reporter)
     if root == "fixed":  # whatever the description says
         for coordinates in configurations.values():
             coordinates.pop(ROOT_JOINT, None)
@@ -143,7 +146,7 @@ def _described(urdf: Urdf, extension: Extension, reporter: YamlReporter, root: R
     bodies = bodies_of(urdf) | {body.name: body for body in joints.bodies}
     return Mechanism(
         urdf.name,
-        extension.version,
+        description.version,
         root,
         (bodies[urdf.root], *(bodies[joint.child] for joint in ordered)),
         tuple(ordered),
@@ -151,8 +154,8 @@ def _described(urdf: Urdf, extension: Extension, reporter: YamlReporter, root: R
         closures,
         actuators,
         MappingProxyType({name: MappingProxyType(of) for name, of in configurations.items()}),
-        MappingProxyType(dict(extension.metadata)),
-        MappingProxyType({json_pointer(pointer): value for pointer, value in extension.own_data.items()}),
+        MappingProxyType(dict(description.metadata)),
+        MappingProxyType({json_pointer(pointer): value for pointer, value in description.own_data.items()}),
         couplings,
         motors=MappingProxyType(
             {
@@ -183,9 +186,9 @@ def _led(mechanism: Mechanism, mimics: Mapping[str, Mimic]) -> Mapping[str, Mapp
     return MappingProxyType(configurations)
 
 
-def _own_keys(extension: Extension, urdf: Urdf, reporter: YamlReporter) -> None:
+def _own_keys(description: Description, urdf: Urdf, reporter: YamlReporter) -> None:
     """EU-EXT-003: where joints are named, a key that begins with ``x-`` does not name one."""
-    for pointer in extension.own_data:
+    for pointer in description.own_data:
         among_joints = (pointer[0], len(pointer)) in (("joints", 2), ("configurations", 3))
         coupled = len(pointer) == 4 and pointer[::2] == ("couplings", "joints")
         if (among_joints or coupled) and pointer[-1] in urdf.joints:
@@ -205,27 +208,27 @@ def _vanished(urdf: Urdf, joints: dict[str, Joint]) -> tuple[Frame, ...]:
     return tuple(Frame(joint.name, joint.child, kind="joint") for joint in urdf.walk() if joint.name not in joints)
 
 
-def _closure_links(extension: Extension, urdf: Urdf) -> set[str]:
+def _closure_links(description: Description, urdf: Urdf) -> set[str]:
     """Names of the links that the closures' frames are fixed to; names that mean nothing are left to `FrameNames`."""
-    references = {entry.name: entry.reference for entry in extension.frames}
+    frames = {entry.name: entry for entry in description.frames}
 
     def link_of(reference: FrameReference) -> str | None:
-        if reference.kind == "frame" and reference.name in references and reference.name not in urdf.links:
-            reference = references[reference.name]
-        name = reference.name
+        if isinstance(reference, NamedFrame) and reference.target not in urdf.links:
+            reference = frames.get(reference.target, reference)
+        name = reference.target
         if name in urdf.links and reference.kind != "joint":
             return name
         return urdf.joints[name].child if name in urdf.joints else None
 
-    sides = (link_of(side) for closure in extension.closures for side in (closure.a, closure.b))
+    sides = (link_of(side) for closure in description.closures for side in closure.frames)
     return {side for side in sides if side is not None}
 
 
-def _reserve_names(extension: Extension, reporter: YamlReporter, root: Root) -> None:
+def _reserve_names(description: Description, reporter: YamlReporter, root: Root) -> None:
     """EU-URD-011: what the description names anew takes no name that the model needs for itself."""
     reserved = ("universe", ROOT_JOINT) if root == "floating" else ("universe",)
-    named = [("joint", entry.name, entry.pointer, True) for entry in extension.joints if entry.merges]
-    named += [("frame", entry.name, (*entry.pointer, "name"), False) for entry in extension.frames]
+    named = [("joint", entry.name, entry.pointer, True) for entry in description.joints if entry.merges]
+    named += [("frame", entry.name, (*entry.pointer, "name"), False) for entry in description.frames]
     for kind, name, pointer, key in named:
         if name in reserved:
             reporter.report(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from eurdf.diagnostics import Diagnostics
-from eurdf.format.numbers import HINT, LARGEST, is_too_small, too_large, too_small
+from eurdf.format.conventions import HINT, LARGEST, is_too_small, too_large, too_small
 from eurdf.format.urdf.data import Urdf
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.mimic import drivers

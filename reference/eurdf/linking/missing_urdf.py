@@ -8,12 +8,12 @@ import shlex
 from pathlib import Path
 
 from eurdf.diagnostics import Diagnostics
-from eurdf.format.extension import Extension
+from eurdf.format.model import Description
 from eurdf.format.yaml_text import scalar
 from eurdf.reading.xacro import is_xacro
 
 
-def report_missing_urdf(path: Path, extension: Extension, diagnostics: Diagnostics) -> None:
+def report_missing_urdf(path: Path, extension: Description, diagnostics: Diagnostics) -> None:
     """EU-FIL-004: the URDF that the description names exists."""
     document = extension.document
     home = document.source.folder
@@ -23,7 +23,7 @@ def report_missing_urdf(path: Path, extension: Extension, diagnostics: Diagnosti
     diagnostics.report("urdf-not-found", message, document.place(("urdf",)), _urdf_hint(path, home, extension))
 
 
-def _urdf_hint(path: Path, home: Path, extension: Extension) -> str:
+def _urdf_hint(path: Path, home: Path, extension: Description) -> str:
     """A hint with the paths of nearby URDFs from the description."""
     near = _files_near(path, home, ".urdf") or _files_near(path, home, ".xacro")
     likely = near[0] if len(near) == 1 else None

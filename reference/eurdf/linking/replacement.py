@@ -6,11 +6,10 @@ import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
-from operator import attrgetter
 
 from eurdf.diagnostics import Hint, did_you_mean
-from eurdf.format.extension import JointEntry, NewType
-from eurdf.format.numbers import HINT, is_too_small, too_small
+from eurdf.format.conventions import HINT, is_too_small, too_small
+from eurdf.format.joint_model import Joint as JointEntry
 from eurdf.format.urdf.data import Urdf
 from eurdf.linking.merging import PARALLEL, NotMergeable, check_chain, find_chains, fixed, merge
 from eurdf.mechanism.body import Body
@@ -161,7 +160,7 @@ class _Replacement:
         """
         stays = self.entry.type is None and not self.entry.merges
         if joint.name in self.mimicking and stays and self.version == "2.1":
-            if all(getattr(self.entry, key) is None for key in ("lower", "upper", "velocity", "effort")):
+            if self.entry.limits is None:
                 return False
             leader = self.mimicking[joint.name]
             self.reporter.report(
@@ -239,7 +238,7 @@ class _Replacement:
 
     # -- new types ------------------------------------------------------------------------------------------------
 
-    def retype(self, joint: Joint, new: NewType) -> Joint | None:
+    def retype(self, joint: Joint, new: str) -> Joint | None:
         """EU-JNT-005: each new type replaces a joint that moves like a part of it; fixed, every joint that moves."""
         replaces = JointType(new).replaces
         if joint.type.is_fixed if new == "fixed" else joint.type not in replaces:
@@ -391,17 +390,16 @@ class _Replacement:
     def override(self, joint: Joint) -> Joint | None:
         """EU-JNT-009, EU-JNT-010, EU-JNT-031: properties in the description replace those of the URDF."""
         entry = self.entry
-        if _stated(entry) == _NOTHING:
+        stated = entry.properties
+        if not stated:
             return joint
         if joint.type.is_fixed:
-            keys = next(keys for attribute, keys in _PROPERTIES.items() if getattr(entry, attribute) is not None)
+            keys = next(iter(stated))
             self.report("joint-property", f"fixed joint '{joint.name}' cannot have the property '{keys[-1]}'", *keys)
             return None
         changes: dict[str, tuple[float, ...]] = {}
-        for attribute, keys in _PROPERTIES.items():
-            stated = getattr(entry, attribute)
-            if stated is None:
-                continue
+        for keys, numbers in stated.items():
+            attribute = keys[-1]
             bounds_position = attribute in ("lower", "upper")
             if bounds_position and not joint.type.limited:
                 self.report("joint-property", f"{joint.type} joint '{joint.name}' cannot have position limits", *keys)
@@ -410,7 +408,7 @@ class _Replacement:
                 self.report("joint-property", f"{joint.type} joint '{joint.name}' cannot have a spring", *keys)
                 return None
             n = joint.type.nv
-            values = stated if isinstance(stated, tuple) else (stated,) * n
+            values = numbers if isinstance(numbers, tuple) else (numbers,) * n
             if len(values) != n:
                 wanted = "be one number" if n == 1 else f"have {n}, or be one number for all"
                 self.report(
@@ -440,20 +438,3 @@ class _Replacement:
                 )
                 return None
         return joint.with_properties(properties)
-
-
-_PROPERTIES: dict[str, tuple[str, ...]] = {
-    "lower": ("limits", "lower"),
-    "upper": ("limits", "upper"),
-    "velocity": ("limits", "velocity"),
-    "effort": ("limits", "effort"),
-    "damping": ("damping",),
-    "friction": ("friction",),
-    "armature": ("armature",),
-    "stiffness": ("stiffness",),
-    "rest": ("rest",),
-}
-
-#: What an entry states of these, None for what it does not.
-_stated = attrgetter(*_PROPERTIES)
-_NOTHING = (None,) * len(_PROPERTIES)

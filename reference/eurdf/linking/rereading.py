@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from eurdf.diagnostics import Diagnostics, FileError
-from eurdf.format.read_extension import read_extension
+from eurdf.format.read import read_description
 from eurdf.format.urdf.data import Urdf
 from eurdf.linking.link import link
 from eurdf.mechanism.mechanism import Mechanism
@@ -28,7 +28,7 @@ def reread(text: str, urdf: Urdf, file: str) -> tuple[Mechanism | None, Diagnost
     except FileError as error:
         diagnostics.add(error.diagnostic)
         return None, diagnostics
-    extension = read_extension(document, diagnostics)
-    if extension is None:
+    description = read_description(document, diagnostics)
+    if description is None:
         return None, diagnostics
-    return link(urdf, extension, diagnostics), diagnostics
+    return link(urdf, description, diagnostics), diagnostics

@@ -12,8 +12,8 @@ from typing import Any, Literal, TypeVar
 from eurdf.collection import find_robot
 from eurdf.diagnostics import Diagnostics, FileError, Place
 from eurdf.exceptions import CannotExpand, InvalidRobot
-from eurdf.format.extension import ClosureEntry, CouplingEntry, Extension
-from eurdf.format.read_extension import read_extension, version_of
+from eurdf.format.model import Description
+from eurdf.format.read import read_description, version_of
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.urdf.read import read_urdf
 from eurdf.linking.inertia import check_inertias, check_leaves
@@ -52,7 +52,7 @@ class ReadRobot:
     diagnostics: Diagnostics
     tree: Urdf | None = None
     linked: Mechanism | None = None
-    yaml: Extension | None = None
+    yaml: Description | None = None
 
     @property
     def urdf(self) -> Urdf:
@@ -65,7 +65,7 @@ class ReadRobot:
         return self._of_valid(self.linked)
 
     @property
-    def description(self) -> Extension:
+    def description(self) -> Description:
         """The content of the description of a robot that has one."""
         return self._of_valid(self.yaml)
 
@@ -76,8 +76,8 @@ class ReadRobot:
 
     def place_of_constraint(self, name: str) -> Place:
         """Where a closure or a coupling is stated."""
-        entries: tuple[ClosureEntry | CouplingEntry, ...] = (*self.description.closures, *self.description.couplings)
-        return self.description.document.place(next(entry for entry in entries if entry.name == name).pointer)
+        stated = (*self.description.closures, *self.description.couplings)
+        return self.description.document.place(next(entry.pointer for entry in stated if entry.name == name))
 
     def place_of_configuration(self, name: str) -> Place:
         """Where a configuration is stated."""
@@ -148,7 +148,7 @@ def read_robot(
         mimic_errors: _MimicErrors = "refused" if mimic else "kept"
     else:
         document = _read_description(files.description, diagnostics, confined)
-        extension = None if document is None else read_extension(document, diagnostics)
+        extension = None if document is None else read_description(document, diagnostics)
         if given is not None:
             read = partial(_own_source, given)
         else:
@@ -248,7 +248,7 @@ def _expanded(
 
 def _named_xacro(
     urdf: Path,
-    extension: Extension,
+    extension: Description,
     diagnostics: Diagnostics,
     package_dirs: Sequence[str | os.PathLike[str]],
     xacro_args: Mapping[str, str] | None,
@@ -306,7 +306,7 @@ def _read_urdf(
     return urdf
 
 
-def _named_urdf(folder: Path, extension: Extension | None, document: YamlDocument | None) -> Path:
+def _named_urdf(folder: Path, extension: Description | None, document: YamlDocument | None) -> Path:
     name = "robot.urdf"
     if extension is not None:
         name = extension.urdf
@@ -359,7 +359,7 @@ def _may_read(
     path: Path,
     is_inside: bool,
     description: Path | Source,
-    extension: Extension | None,
+    extension: Description | None,
     diagnostics: Diagnostics,
     confined: bool,
 ) -> bool:

@@ -106,10 +106,10 @@ def diagnostics(found: Sequence[Diagnostic]) -> str:
     first = sorted(found, key=lambda each: each.severity is not Severity.ERROR)
     shown = []
     for each in first:
-        place = each.place
-        where = ":".join(str(part) for part in (place.file, place.line, place.column) if part is not None)
         hint = f"<br>hint: {escaped(each.hint)}" if each.hint else ""
-        text = f"{escaped(where)}: {each.severity.value}: {escaped(each.message)} [{escaped(each.code)}]{hint}"
+        text = (
+            f"{escaped(str(each.place))}: {each.severity.value}: {escaped(each.message)} [{escaped(each.code)}]{hint}"
+        )
         shown.append(box(text, color=_RED if each.severity is Severity.ERROR else _ORANGE))
     return "".join(shown)
 

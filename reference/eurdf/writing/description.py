@@ -9,24 +9,36 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, Literal
 
 from lxml import etree
 
 from eurdf.diagnostics.wording import visible
-from eurdf.format.own_key import is_own_key
-from eurdf.format.yaml_text import Value, entries_of, modeline, text_of
+from eurdf.format.closure_model import (
+    CLOSURE,
+    AnyClosure,
+    Compliance,
+    FrameOnLink,
+    FrameReference,
+    NamedFrame,
+    PoseOnLink,
+)
+from eurdf.format.closure_model import Coupling as CouplingEntry
+from eurdf.format.conventions import VERSION2_1, VERSION_KEY, is_own_key
+from eurdf.format.joint_model import JOINT, Geared, Limits
+from eurdf.format.joint_model import Joint as JointEntry
+from eurdf.format.model import VERSION2, Version2, lowest_version
+from eurdf.format.yaml_text import entries_of, modeline, text_of
 from eurdf.mechanism.body import Body
-from eurdf.mechanism.constraint import Closure, Coupling
+from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
+from eurdf.mechanism.pose import IDENTITY, Vector3
 from eurdf.mechanism.same_model import with_universal_joints
 from eurdf.writing.urdf_elements import (
-    UNLIMITED,
     Color,
     add_dynamics,
     add_inertial,
@@ -43,7 +55,9 @@ from eurdf.writing.xml_text import file_content, representable, rpy_of
 _TWO_HYPHENS = re.compile("-(?=-)")
 
 _Z: Vector3 = (0.0, 0.0, 1.0)
-_LETTERS = {(1.0, 0.0, 0.0): "x", (0.0, 1.0, 0.0): "y", _Z: "z"}
+
+#: Fields of all kinds of closure.
+_COMMON = frozenset(each.name for each in fields(Closure))
 
 
 class NotWritable(ValueError):  # noqa: N818 - named as the other refusals are
@@ -67,17 +81,10 @@ class DescriptionFiles:
 
 def version_needed(mechanism: Mechanism) -> Literal["2.0", "2.1"]:
     """The lowest version that can describe a mechanism."""
-    later = bool(
-        mechanism.couplings
-        or mechanism.motors
-        or any(closure.type not in ("3d", "6d") or _compliance(closure) for closure in mechanism.closures)
-        or any(
-            any(joint.properties.stiffness)
-            or (joint.mimic and (any(joint.properties.armature) or any(joint.properties.rest)))
-            for joint in mechanism.joints
-        )
-    )
-    return "2.1" if later else "2.0"
+    content = _content(mechanism)
+    # EU-JNT-030: an earlier version has no entries of mimic joints.
+    later = any(joint.mimic and joint.name in content.get("joints", ()) for joint in mechanism.joints)
+    return VERSION2_1 if later else lowest_version(content)
 
 
 def describe_mechanism(
@@ -109,7 +116,25 @@ def describe_mechanism(
     joined = with_universal_joints(mechanism)
     if {joint.name for joint in joined.joints}.issuperset(joined.actuators):
         mechanism = joined
+    _refuse_unwritable(mechanism)
     version = version_needed(mechanism)
+    content = {VERSION_KEY: version, "urdf": urdf_path, **_content(mechanism)}
+    for name in content.get("joints", ()):
+        if is_own_key(name):
+            raise NotWritable(f"joint '{name}' needs an entry in the YAML file, where x- begins user data; rename it")
+    _place_own_data(content, mechanism)
+    head = [modeline(schema)] if schema is not None else []
+    head += [f"# {visible(line)}".rstrip() for line in comments]
+    text = "".join(f"{line}\n" for line in head) + text_of(entries_of(content))
+    return DescriptionFiles(_Urdf(mechanism, materials or {}).content(comments), text, version)
+
+
+def _refuse_unwritable(mechanism: Mechanism) -> None:
+    """Refuse what neither file can say.
+
+    Raises:
+        NotWritable: A name cannot be in XML, or the axes of a joint have different gears.
+    """
     for kind, names in (
         ("link", [body.name for body in mechanism.bodies]),
         ("joint", [joint.name for joint in mechanism.joints]),
@@ -118,18 +143,11 @@ def describe_mechanism(
         for name in names:
             if representable(name) != name or not name:
                 raise NotWritable(f"the {kind} {name!r} has a name that XML cannot contain; give it another one")
-    urdf = _Urdf(mechanism, materials or {})
-    content = {
-        "extended_urdf": version,
-        "urdf": urdf_path,
-        **({"root": "floating"} if mechanism.root == "floating" else {}),
-        **_content(mechanism),
-    }
-    _place_own_data(content, mechanism)
-    head = [modeline(schema)] if schema is not None else []
-    head += [f"# {visible(line)}".rstrip() for line in comments]
-    text = "".join(f"{line}\n" for line in head) + text_of(entries_of(content))
-    return DescriptionFiles(urdf.content(comments), text, version)
+    for joint in mechanism.joints:
+        properties = joint.properties
+        is_unequal = len(set(properties.gear_ratio)) > 1 or len(set(properties.rotor_inertia)) > 1
+        if is_unequal and joint.name in mechanism.actuators and _is_geared(joint):
+            raise NotWritable(f"the axes of joint '{joint.name}' have different gears; a joint has one")
 
 
 class _Urdf:
@@ -239,68 +257,64 @@ def _limited(properties: JointProperties) -> list[int]:
 def _content(mechanism: Mechanism) -> dict[str, Any]:
     """The keys of the YAML file behind its head, without those that have nothing to say."""
     anchors = _Anchors(mechanism)
-    joints = {joint.name: entry for joint in mechanism.joints if (entry := _joint(joint, mechanism))}
-    for name in joints:
-        if is_own_key(name):
-            raise NotWritable(f"joint '{name}' needs an entry in the YAML file, where x- begins user data; rename it")
-    content: dict[str, Any] = {
-        "closures": [_closure(closure, anchors) for closure in mechanism.closures],
-        "couplings": [_coupling(coupling) for coupling in mechanism.couplings],
-        "joints": joints,
-        "actuators": [_actuator(name, mechanism) for name in mechanism.actuators],
-        "frames": [{"name": frame.name, **_placed(frame.body, frame.pose)} for frame in mechanism.frames],
-        "configurations": {
-            name: {joint: list(values) if len(values) != 1 else values[0] for joint, values in coordinates.items()}
-            for name, coordinates in mechanism.configurations.items()
-        },
-        "metadata": dict(mechanism.metadata),
-    }
-    return {key: value if key == "metadata" else _short(value) for key, value in content.items() if value}
+    joints = (_joint(joint, mechanism) for joint in mechanism.joints)
+    file = Version2(
+        extended_urdf=VERSION2_1,
+        root=mechanism.root,
+        closures=tuple(_closure(closure, anchors) for closure in mechanism.closures),
+        joints=tuple(joint for joint in joints if joint is not None),
+        actuators=tuple(_actuator(joint, mechanism) for joint in mechanism.actuators),
+        frames=tuple(
+            FrameOnLink(name=frame.name, link=frame.body, xyz=frame.pose.xyz, rpy=rpy_of(frame.pose))
+            for frame in mechanism.frames
+        ),
+        configurations=mechanism.configurations,
+        metadata=mechanism.metadata,
+        couplings=tuple(
+            CouplingEntry(name=each.name, joints=dict(each.coefficients), offset=each.offset)
+            for each in mechanism.couplings
+        ),
+    )
+    written = VERSION2.write(file)
+    del written[VERSION_KEY]
+    # Closures and couplings, which are alike, are beside each other.
+    return {key: written[key] for key in dict.fromkeys(("root", "closures", "couplings", *written)) if key in written}
 
 
-def _short(value: Any) -> Any:
-    """The same values, with whole numbers as integers."""
-    if isinstance(value, dict):
-        return {key: _short(inner) for key, inner in value.items()}
-    if isinstance(value, list):
-        return [_short(inner) for inner in value]
-    return int(value) if isinstance(value, float) and value.is_integer() and abs(value) < 1e15 else value
-
-
-def _joint(joint: Joint, mechanism: Mechanism) -> Value:
-    """What the URDF does not say of a joint; empty where it says all."""
+def _joint(joint: Joint, mechanism: Mechanism) -> JointEntry | None:
+    """What the URDF does not say of a joint; None where it says all."""
     kind, properties = joint.type, joint.properties
-    entry: dict[str, Any] = {}
+    stated: dict[str, Any] = {}
     if kind.replaces:
-        entry["type"] = str(kind)
+        stated["type"] = str(kind)
     if len(joint.axes) == 2:
-        letters = "".join(_LETTERS.get(axis, "") for axis in joint.axes)
-        entry["axes"] = letters if len(letters) == 2 else [list(axis) for axis in joint.axes]
+        stated["axes"] = joint.axes
     if joint.pitch:
-        entry["pitch"] = joint.pitch
-    if kind.is_fixed:
-        return entry
-    in_urdf = bool(kind.replaces) or kind.is_axial
-    limits: dict[str, Any] = {}
-    if not kind.is_axial and _limited(properties) and _limited_in_urdf(joint) is None:
-        limits = {"lower": _each(properties.lower), "upper": _each(properties.upper)}
-    for key in ("velocity", "effort"):
-        values = getattr(properties, key)
-        if any(map(math.isfinite, values)) and not (in_urdf and len(set(values)) == 1):
-            limits[key] = _each(values)
-    if limits:
-        entry["limits"] = limits
-    for key in ("damping", "friction"):
-        values = getattr(properties, key)
-        if any(values) and not (in_urdf and len(set(values)) == 1):
-            entry[key] = _each(values)
-    if properties.armature != _armature_of_motor(joint, mechanism):
-        entry["armature"] = _each(properties.armature)
-    if any(properties.stiffness):
-        entry["stiffness"] = _each(properties.stiffness)
-        if any(properties.rest):
-            entry["rest"] = _each(properties.rest)
-    return str(kind) if list(entry) == ["type"] else entry
+        stated["pitch"] = joint.pitch
+    if not kind.is_fixed:
+        in_urdf = bool(kind.replaces) or kind.is_axial
+        limits: dict[str, Any] = {}
+        if not kind.is_axial and _limited(properties) and _limited_in_urdf(joint) is None:
+            limits = {"lower": properties.lower, "upper": properties.upper}
+        for key in ("velocity", "effort"):
+            values = getattr(properties, key)
+            if any(map(math.isfinite, values)) and not (in_urdf and len(set(values)) == 1):
+                limits[key] = values
+        if limits:
+            stated["limits"] = Limits(**limits)
+        for key in ("damping", "friction"):
+            values = getattr(properties, key)
+            if any(values) and not (in_urdf and len(set(values)) == 1):
+                stated[key] = values
+        if properties.armature != _armature_of_motor(joint, mechanism):
+            stated["armature"] = properties.armature
+        if any(properties.stiffness):
+            stated["stiffness"] = properties.stiffness
+            if any(properties.rest):
+                stated["rest"] = properties.rest
+    kinds = (stated["type"],) if "type" in stated else ()
+    model = next(record.model for record in JOINT.records if record.values_of_type() == kinds)
+    return model(name=joint.name, **stated) if stated else None
 
 
 def _armature_of_motor(joint: Joint, mechanism: Mechanism) -> tuple[float, ...]:
@@ -317,52 +331,35 @@ def _is_geared(joint: Joint) -> bool:
     return any(ratio != 1.0 for ratio in joint.properties.gear_ratio) or any(joint.properties.rotor_inertia)
 
 
-def _each(values: Sequence[float]) -> Any:
-    """One number if all are equal, else a list; infinite ones are the largest double."""
-    finite = [min(max(value, -UNLIMITED), UNLIMITED) for value in values]
-    return finite[0] if len(set(finite)) == 1 else finite
-
-
-def _actuator(name: str, mechanism: Mechanism) -> Value:
+def _actuator(name: str, mechanism: Mechanism) -> Geared:
     (joint,) = (joint for joint in mechanism.joints if joint.name == name)
-    entry: dict[str, Any] = {"joint": name}
     motor = mechanism.motors.get(name)
-    if motor is not None and motor.name != name:
-        entry["name"] = motor.name
-    if motor is not None and motor.control is not None:
-        entry["control"] = list(motor.control)
+    stated: dict[str, Any] = {}
+    if motor is not None:
+        stated = {"name": None if motor.name == name else motor.name, "control": motor.control}
     if _is_geared(joint):
-        if len(set(joint.properties.gear_ratio)) > 1 or len(set(joint.properties.rotor_inertia)) > 1:
-            raise NotWritable(f"the axes of joint '{name}' have different gears; a joint has one")
-        entry["gear_ratio"] = joint.properties.gear_ratio[0]
-        if joint.properties.rotor_inertia[0]:
-            entry["rotor_inertia"] = joint.properties.rotor_inertia[0]
-    return entry if len(entry) > 1 else name
+        stated["gear_ratio"] = joint.properties.gear_ratio[0]
+        stated["rotor_inertia"] = joint.properties.rotor_inertia[0] or None
+    return Geared(joint=name, **stated)
 
 
-def _coupling(coupling: Coupling) -> Value:
-    entry: dict[str, Any] = {"name": coupling.name, "joints": dict(coupling.coefficients)}
-    if coupling.offset:
-        entry["offset"] = coupling.offset
-    return entry
-
-
-def _compliance(closure: Closure) -> dict[str, Any]:
-    stated = {"linear": closure.compliance.linear, "angular": closure.compliance.angular}
-    return {key: value for key, value in stated.items() if value}
-
-
-def _closure(closure: Closure, anchors: _Anchors) -> Value:
-    entry: dict[str, Any] = {
-        "name": closure.name,
-        "type": closure.type,
-        "frames": [anchors.reference(closure.a), anchors.reference(closure.b)],
-    }
-    entry |= closure.stated()
-    compliance = _compliance(closure)
-    if compliance:
-        entry["compliance"] = compliance
-    return entry
+def _closure(closure: Closure, anchors: _Anchors) -> AnyClosure:
+    # What a kind has besides, one of its entries has by the same name.
+    own = {each.name: getattr(closure, each.name) for each in fields(closure)}
+    own = {key: value for key, value in own.items() if key not in _COMMON}
+    if "axes" in own and len(set(own["axes"])) == 1:
+        own = {"axis": own["axes"][0]}
+    forms = [record for record in CLOSURE.records if closure.type in record.values_of_type()]
+    form = next(record.model for record in forms if own.keys() <= record.all_keys.keys())
+    linear, angular = closure.compliance.linear or None, closure.compliance.angular or None
+    written: AnyClosure = form(
+        name=closure.name,
+        type=closure.type,
+        frames=(anchors.reference(closure.a), anchors.reference(closure.b)),
+        compliance=Compliance(linear=linear, angular=angular) if linear or angular else None,
+        **own,
+    )
+    return written
 
 
 class _Anchors:
@@ -379,20 +376,10 @@ class _Anchors:
             # A name that means two frames is an error (EU-FRM-002).
             self.named[name] = ("", IDENTITY) if both else (name, IDENTITY)
 
-    def reference(self, anchor: Anchor) -> Value:
+    def reference(self, anchor: Anchor) -> FrameReference:
         if anchor.frame and self.named.get(anchor.frame) == (anchor.body, anchor.pose):
-            return anchor.frame
-        return _placed(anchor.body, anchor.pose)
-
-
-def _placed(link: str, pose: Pose) -> dict[str, Any]:
-    entry: dict[str, Any] = {"link": link}
-    if any(pose.xyz):
-        entry["xyz"] = list(pose.xyz)
-    rpy = rpy_of(pose)
-    if any(rpy):
-        entry["rpy"] = list(rpy)
-    return entry
+            return NamedFrame(target=anchor.frame)
+        return PoseOnLink(link=anchor.body, xyz=anchor.pose.xyz, rpy=rpy_of(anchor.pose))
 
 
 def _place_own_data(content: dict[str, Any], mechanism: Mechanism) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 from eurdf.diagnostics import FileError
 from eurdf.diagnostics.lines import BREAK
-from eurdf.format.conforms import keys_of
+from eurdf.format.model import VERSION2
 from eurdf.format.yaml_text import Value, flow, lines_of
 from eurdf.reading.source import Source
 from eurdf.reading.yaml_node import Collection, Node, Span
@@ -55,7 +55,7 @@ class _Edit:
     def stated(self, name: str, value: dict[str, Value]) -> str:
         configurations = self._root.nodes.get("configurations")
         if configurations is None:
-            before = tuple(takewhile(lambda key: key != "configurations", keys_of("2.0")))
+            before = tuple(takewhile(lambda key: key != "configurations", VERSION2.all_keys))
             last = [key for key in self._root.nodes if key in before][-1]
             self._add(self._root, last, {"configurations": {name: value}})
         elif not isinstance(configurations, Collection):

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from eurdf.closures.hinge import HingeClosure
 from eurdf.closures.point import PointClosure
 from eurdf.diagnostics import Diagnostics, enumerated
-from eurdf.format.own_key import is_own_key
+from eurdf.format.conventions import VERSION2_0, VERSION2_1, is_own_key
 from eurdf.format.urdf.data import Urdf
-from eurdf.format.version import VERSION2_0, VERSION2_1
+from eurdf.format.yaml_text import Entry, Value, entries_of, lines_of, modeline, text_of
 from eurdf.linking.merging import find_chains
 from eurdf.linking.rereading import reread
 from eurdf.linking.urdf_tree import joint_of
@@ -26,8 +26,6 @@ from eurdf.writing.naming_conventions import (
     GeneratedVersion,
     NamedClosure,
     find,
-    version1_text,
-    version2_text,
     with_type,
 )
 
@@ -92,11 +90,9 @@ def generate(
         merges = _merges(urdf, said, chosen)
         # The version, and so the schema, is not known before every type is.
         reference = None if any(closure.type is None for closure in found.closures) else schema(chosen)
-        if chosen == "1":
-            text = version1_text(said, reference)
-        else:
-            number = VERSION2_1 if chosen == "2.1" else VERSION2_0
-            text = version2_text(said, merges, root, urdf_path, reference, number)
+        number = VERSION2_1 if chosen == "2.1" else VERSION2_0
+        head, *rest = _version1(said) if chosen == "1" else _version2(said, merges, root, urdf_path, number)
+        text = text_of([replace(head, above=() if reference is None else (modeline(reference),)), *rest])
         mechanism, diagnostics = reread(text, urdf, "the description")
         return Generation(text, chosen, said, merges, mechanism, diagnostics, _mate_notes(mates, chosen))
 
@@ -190,3 +186,39 @@ def revolute_mates(found: Found, urdf: Urdf) -> Mates:
 
 def _link(urdf: Urdf, frame: str) -> str:
     return frame if frame in urdf.links else urdf.joints[frame].child
+
+
+# -- text ---------------------------------------------------------------------------------------------------------
+
+
+def _version2(
+    found: Found, merges: Mapping[str, tuple[str, str, str]], root: Root, urdf_path: str, version: str
+) -> Iterator[Entry]:
+    """The entries of a description in version 2.0, which has no hinges, or 2.1."""
+    joints: dict[str, Value] = dict.fromkeys(found.sphericals, "spherical")
+    joints |= {name: {"type": "spherical", "merges": three} for name, three in merges.items()}
+    content: dict[str, Value] = {
+        "extended_urdf": version,
+        "urdf": urdf_path,
+        "root": "" if root == "fixed" else root,
+        "closures": [
+            {"name": closure.name, "type": closure.type or "6d", "frames": closure.frames, **closure.axis_keys}
+            for closure in found.closures
+        ],
+        "joints": joints,
+        "actuators": found.motors,
+    }
+    return entries_of({key: value for key, value in content.items() if value})
+
+
+def _version1(found: Found) -> Iterator[Entry]:
+    """The entries of a description in version 1, which merges revolutes by itself."""
+    values: dict[str, Value] = {
+        "closed_loop": [closure.frames for closure in found.closures],
+        "type": [closure.type or "6d" for closure in found.closures],
+        "name_mot": found.motors,
+        "joint_name": found.sphericals,
+        "joint_type": ["SPHERICAL"] * len(found.sphericals),
+    }
+    # Without any key of the format, it would still be a description of version 1: of nothing.
+    return (Entry(lines_of(key, value)) for key, value in values.items() if value or key in ("closed_loop", "type"))

@@ -10,12 +10,12 @@ from typing import Literal
 
 from eurdf.diagnostics import FileError
 from eurdf.diagnostics.lines import BREAK
-from eurdf.format.extension import Extension, FrameReference, JointEntry
-from eurdf.format.own_key import is_own_key
+from eurdf.format.closure_model import AXES, CLOSURE, Closure, FrameReference, NamedFrame
+from eurdf.format.conventions import VERSION2_0, VERSION2_1, is_own_key
+from eurdf.format.joint_model import JOINT, Joint, Overridden, Spherical
+from eurdf.format.model import VERSION1, Description
 from eurdf.format.schema import FILES
 from eurdf.format.urdf.data import Urdf
-from eurdf.format.version import VERSION2_0, VERSION2_1
-from eurdf.format.version1 import Version1
 from eurdf.format.yaml_text import (
     WIDTH,
     Entry,
@@ -36,8 +36,11 @@ from eurdf.writing.comments import Attached, Comment, attach, comments_of
 # The comment by which an editor finds the schema.
 _MODELINE = re.compile(r"#\s*yaml-language-server:\s*\$schema=(.*)")
 
-# The keys of version 1 that become one key of version 2.
-_SECTIONS = {"closures": ("closed_loop", "type"), "joints": ("joint_name", "joint_type"), "actuators": ("name_mot",)}
+# The keys of version 1 that become one key of version 2, by that key.
+_SECTIONS = {
+    section: [name for name, key in VERSION1.all_keys.items() if key.becomes == section]
+    for section in ("closures", "joints", "actuators")
+}
 
 
 class NotMigratable(Exception):  # noqa: N818 - shown to the user as it is
@@ -61,7 +64,7 @@ class Migrated:
 
 
 def migrated(
-    extension: Extension,
+    description: Description,
     urdf: Urdf,
     merged: Mapping[str, Sequence[str]],
     urdf_path: str = "robot.urdf",
@@ -70,7 +73,7 @@ def migrated(
     """Write a description of version 1 in version 2.
 
     Args:
-        extension: The description, of version 1 and linked without error.
+        description: The description, of version 1 and linked without error.
         urdf: Its URDF.
         merged: The joints that version 1 merges by rule: for each spherical joint, the three it is made of.
         urdf_path: Path of the URDF from the new file.
@@ -79,7 +82,7 @@ def migrated(
     Raises:
         NotMigratable: Version 2 cannot say the same.
     """
-    return _Migration(extension, urdf, merged, urdf_path, schema).migrated()
+    return _Migration(description, urdf, merged, urdf_path, schema).migrated()
 
 
 def version_needed(urdf: Urdf) -> Literal["2", "2.1"]:
@@ -97,7 +100,7 @@ def schema_named(document: YamlDocument, urdf: Urdf) -> str | None:
 
 def own_keys(data: Iterable[str]) -> dict[str, str]:
     """For each user-defined key of a version 1 file, its name in version 2: ``x-`` and the key."""
-    own = [key for key in data if key not in Version1.model_fields]
+    own = [key for key in data if key not in VERSION1.all_keys]
     taken = {key for key in own if is_own_key(key)}
     names = {}
     for key in own:
@@ -111,11 +114,11 @@ def own_keys(data: Iterable[str]) -> dict[str, str]:
     return names
 
 
-def split_halves(extension: Extension) -> dict[str, tuple[str, int]]:
+def split_halves(description: Description) -> dict[str, tuple[str, int]]:
     """For each revolute that version 1 makes of a universal joint: that joint, and 0 or 1 for the first or second."""
     return {
         f"{entry.name}_{letter}": (entry.name, index)
-        for entry in extension.joints
+        for entry in description.joints
         for index, letter in enumerate(entry.split)
     }
 
@@ -125,21 +128,21 @@ class _Migration:
 
     def __init__(
         self,
-        extension: Extension,
+        description: Description,
         urdf: Urdf,
         merged: Mapping[str, Sequence[str]],
         urdf_path: str,
         schema: str | None,
     ) -> None:
-        self.document = extension.document
-        self.extension = extension
+        self.document = description.document
+        self.description = description
         self.urdf = urdf
         self.merged = merged
         self.urdf_path = urdf_path
         self.schema = schema
         self.version = version_needed(urdf)
         self.mimicking = {joint.name for joint in urdf.joints.values() if joint.mimic}
-        self.halves = split_halves(extension)
+        self.halves = split_halves(description)
         self.notes: list[str] = []
 
     def migrated(self) -> Migrated:
@@ -175,29 +178,26 @@ class _Migration:
         """The entries that comments may go with."""
         for key, value in self.document.data.items():
             yield (key,)
-            if key in Version1.model_fields:
+            if key in VERSION1.all_keys:
                 yield from ((key, index) for index in range(len(value)))
 
     # -- what the format knows ------------------------------------------------------------------------------------
 
     def closures(self, attached: Mapping[Pointer, Attached]) -> Iterator[Entry]:
-        for index, closure in enumerate(self.extension.closures):
-            value: dict[str, Value] = {
-                "name": closure.name,
-                "type": closure.type,
-                "frames": [self.frame(closure.a), self.frame(closure.b)],
-            }
+        for index, closure in enumerate(self.description.closures):
+            a, b = map(self.frame, closure.frames)
+            value = CLOSURE.write(Closure(name=closure.name, type=closure.type, frames=(a, b)))
             yield Entry(item_of_mapping(value), *_together(attached, [("closed_loop", index), ("type", index)]))
-        count = len(self.extension.closures)
+        count = len(self.description.closures)
         if count:
             to = f" to 'closure_{count}'" if count > 1 else ""
             self.notes.append(f"closures are numbered as in version 1, 'closure_1'{to}; you can rename them")
 
-    def frame(self, reference: FrameReference) -> str:
-        """The name of a closure's frame; the second half of a universal joint is now the joint itself."""
-        name = reference.name
+    def frame(self, reference: FrameReference) -> FrameReference:
+        """A closure's frame; the second half of a universal joint is now the joint itself."""
+        name = reference.target
         if name not in self.halves or name in self.urdf.links:
-            return name
+            return reference
         joint, index = self.halves[name]
         if index == 0:
             raise NotMigratable(
@@ -205,10 +205,10 @@ class _Migration:
                 "and version 2 has no frame there",
                 reference.pointer,
             )
-        return joint
+        return NamedFrame(target=joint)
 
     def joints(self, attached: Mapping[Pointer, Attached]) -> Iterator[Entry]:
-        pointers: dict[str, Pointer] = {entry.name: entry.pointer for entry in self.extension.joints}
+        pointers: dict[str, Pointer] = {entry.name: entry.pointer for entry in self.description.joints}
         changed = {*pointers, *(joint for joints in self.merged.values() for joint in joints)}
         freed = [name for name in self.urdf.joints if name in self.mimicking and name not in changed]
         for name in (*pointers, *self.merged, *freed):
@@ -217,14 +217,14 @@ class _Migration:
                     f"joint '{name}' cannot be a key: in version 2, keys that begin with 'x-' are your own data",
                     pointers.get(name, ()),
                 )
-        for index, entry in enumerate(self.extension.joints):
+        for index, entry in enumerate(self.description.joints):
             lines = lines_of(entry.name, self.joint(entry))
             yield Entry(lines, *_together(attached, [("joint_name", index), ("joint_type", index)]))
         for name, joints in self.merged.items():
-            freeing = {} if self.mimicking.isdisjoint(joints) else {"mimic": False}
-            yield Entry(lines_of(name, {"type": "spherical", "merges": list(joints), **freeing}))
+            mimic = None if self.mimicking.isdisjoint(joints) else False
+            yield Entry(lines_of(name, JOINT.write(Spherical(type="spherical", merges=tuple(joints), mimic=mimic))))
         for name in freed:
-            yield Entry(lines_of(name, {"mimic": False}))
+            yield Entry(lines_of(name, JOINT.write(Overridden(mimic=False))))
         if self.mimicking:
             freed = [name for name in self.urdf.joints if name in self.mimicking]
             self.notes.append(
@@ -235,20 +235,20 @@ class _Migration:
                 "merged from three revolutes, which version 1 does implicitly and version 2 states: spherical "
                 + _joints(self.merged)
             )
-        split = [entry.name for entry in self.extension.joints if entry.split]
+        split = [entry.name for entry in self.description.joints if entry.split]
         if split:
             self.notes.append(
                 f"one joint with two angles, for two revolute joints of version 1: universal {_joints(split)}"
             )
 
-    def joint(self, entry: JointEntry) -> Value:
-        freeing = {"mimic": False} if entry.name in self.mimicking else {}
-        if not entry.split:
-            return {"type": entry.type, **freeing} if freeing else entry.type
-        return {"type": "universal", "axes": entry.split.lower(), **freeing}
+    def joint(self, entry: Joint) -> Value:
+        axes = tuple(AXES[letter] for letter in entry.split.lower())
+        mimic = False if entry.name in self.mimicking else None
+        written: Value = JOINT.write(type(entry)(type=entry.type, axes=axes, mimic=mimic))
+        return written
 
     def actuators(self, attached: Mapping[Pointer, Attached]) -> Iterator[Entry]:
-        entries = iter(self.extension.actuators)
+        entries = iter(self.description.actuators)
         for entry in entries:
             name, pointers = entry.joint, [entry.pointer]
             if name in self.halves:

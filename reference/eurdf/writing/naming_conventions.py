@@ -8,13 +8,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal, cast
 
-from eurdf.format.own_key import is_own_key
+from eurdf.format.conventions import is_own_key
 from eurdf.format.urdf.data import Urdf
-from eurdf.format.version import VERSION2_0
-from eurdf.format.yaml_text import Entry, Value, entries_of, lines_of, modeline, text_of
+from eurdf.format.yaml_text import Value
 from eurdf.linking.merging import MASSLESS
 from eurdf.mechanism.joint_types import ROTARY
-from eurdf.mechanism.mechanism import Root
 from eurdf.mechanism.pose import Vector3
 
 #: The types of closure that are chosen between.
@@ -359,60 +357,3 @@ def hints(urdf: Urdf, found: Found, convention: Conventions) -> tuple[str, ...]:
 
 def _some(names: Sequence[str]) -> str:
     return ", ".join(f"'{name}'" for name in names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
-
-
-# -- text ---------------------------------------------------------------------------------------------------------
-
-
-def version2_text(
-    found: Found,
-    merges: Mapping[str, Sequence[str]],
-    root: Root = "fixed",
-    urdf_path: str = "robot.urdf",
-    schema: str | None = None,
-    version: Literal["2.0", "2.1"] = VERSION2_0,
-) -> str:
-    """The description in version 2.0 or 2.1.
-
-    Args:
-        found: What the names say.
-        merges: For each spherical joint made of three revolutes, their names.
-        root: Whether the root is fixed or floating.
-        urdf_path: Path of the URDF from the folder of the description.
-        schema: Path of the schema from the folder of the description, for editors; no line names it where it is None.
-        version: The version of the description; version 2.0 has no hinges.
-    """
-    joints: dict[str, Value] = dict.fromkeys(found.sphericals, "spherical")
-    joints |= {name: {"type": "spherical", "merges": list(three)} for name, three in merges.items()}
-    content: dict[str, Value] = {
-        "extended_urdf": version,
-        "urdf": urdf_path,
-        "root": "" if root == "fixed" else root,
-        "closures": [
-            {"name": closure.name, "type": closure.type or "6d", "frames": closure.frames, **closure.axis_keys}
-            for closure in found.closures
-        ],
-        "joints": joints,
-        "actuators": found.motors,
-    }
-    head, *rest = entries_of({key: value for key, value in content.items() if value})
-    return text_of([replace(head, above=_schema_line(schema)), *rest])
-
-
-def version1_text(found: Found, schema: str | None = None) -> str:
-    """The description in version 1, which merges revolutes by itself; `schema` as in `version2_text`."""
-    values: dict[str, Value] = {
-        "closed_loop": [closure.frames for closure in found.closures],
-        "type": [closure.type or "6d" for closure in found.closures],
-        "name_mot": found.motors,
-        "joint_name": found.sphericals,
-        "joint_type": ["SPHERICAL"] * len(found.sphericals),
-    }
-    # Without any key of the format, it would still be a description of version 1: of nothing.
-    entries = [Entry(lines_of(key, value)) for key, value in values.items() if value or key in ("closed_loop", "type")]
-    first, *rest = entries
-    return text_of([Entry(first.lines, _schema_line(schema)), *rest])
-
-
-def _schema_line(schema: str | None) -> tuple[str, ...]:
-    return () if schema is None else (modeline(schema),)

@@ -150,8 +150,7 @@ def _to_state(
     read: ReadRobot, robot: Robot, coordinates: Mapping[str, Sequence[float]], configuration: str
 ) -> dict[str, Sequence[float]]:
     """The coordinates of the joints that a file has to state."""
-    entries = {entry.name: entry.joints for entry in read.description.configurations}
-    stated = entries.get(configuration, {})
+    stated = read.description.configurations.get(configuration, {})
     neutral = {joint.name: joint.type.neutral for joint in robot.mechanism.joints}
     neutral[ROOT_JOINT] = root_joint("").type.neutral
     return {name: values for name, values in coordinates.items() if name in stated or tuple(values) != neutral[name]}

@@ -23,7 +23,7 @@ from eurdf.convert.drake.facts import CLOSURES, EXACT, LEAST, ROWS, STIFFNESS, c
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format
 from eurdf.convert.inertia import accepted_inertia, has_inertia
 from eurdf.convert.losses import Losses
-from eurdf.convert.parts import Part
+from eurdf.convert.parts import Part, part_of
 from eurdf.convert.steps import AXES, ExportedJoint
 from eurdf.convert.urdf.tree import UrdfTree
 from eurdf.mechanism.body import Body, Inertia
@@ -116,7 +116,7 @@ class _DrakeTree(UrdfTree):
     def add_part(self, joint: Joint, names: Sequence[str], steps: Sequence[ExportedJoint]) -> None:
         ratios = ((step.velocities[0], 1.0, 0.0) for step in steps)
         rotation = "quaternion" if joint.type is JointType.PLANAR else "rpy"
-        self.parts.append(Part.of(joint, names, ratios, self.mimics.get(joint.name), rotation=rotation))
+        self.parts.append(part_of(joint, names, ratios, self.mimics.get(joint.name), rotation=rotation))
 
     def add_properties(self, joint: Joint, step: ExportedJoint, element: etree._Element) -> None:
         kind, properties = step.joint.type, step.joint.properties
@@ -148,16 +148,11 @@ class _DrakeTree(UrdfTree):
         """The actuators of a joint, which carry its armature."""
         properties, mechanism = joint.properties, self.mechanism
         armature = properties.armature
-        if joint.name not in mechanism.actuators:
+        if joint.name not in mechanism.actuators or not can_have_actuator(joint):
             if any(armature):
                 self.losses.add("export-armature", joint.name)
             return
-        motor = mechanism.motor(joint.name)
-        shown = motor.name
-        if not can_have_actuator(joint):
-            if any(armature):
-                self.losses.add("export-armature", joint.name)
-            return
+        shown = mechanism.motor(joint.name).name
         names = self.joints[joint.name]
         for index, name in enumerate(names):
             transmission = etree.SubElement(self.root, "transmission")

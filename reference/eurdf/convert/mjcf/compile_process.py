@@ -99,8 +99,8 @@ def _compiled(path: str, folders: Folders) -> dict[str, Any]:
         left_out = _without_assets(spec, faults | more)
         model = spec.compile()
     elements = {kind: _elements(model, kind) for kind in _ELEMENTS}
-    for mesh, element in zip(sorted(spec.meshes, key=lambda mesh: mesh.id), elements["mesh"], strict=True):
-        element |= _mesh(model, mesh)
+    for mesh in spec.meshes:
+        elements["mesh"][mesh.id] |= _mesh(model, mesh)
     full = {body.id: np.asarray(body.fullinertia) for body in spec.bodies}
     for body in elements["body"]:
         inertia = full.get(body["index"], np.array(math.nan))

@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import cast
 
 from eurdf.convert.mjcf.compiled import Element
+from eurdf.convert.mjcf.facts import UNLIMITED
 from eurdf.convert.mjcf.read_state import MjcfReading, WholeJoint, flat, usable, vector, xyzw
 from eurdf.convert.steps import SCREW_SLIDE, suffixes
 from eurdf.mechanism.body import Body
@@ -17,9 +18,6 @@ from eurdf.mechanism.pose import IDENTITY, Pose, Quaternion, Vector3
 
 #: Lengths (m), and parts of unit vectors, that differ by no more are equal.
 _SAME = 1e-9
-
-#: A bound beyond this is none, rad or m.
-UNLIMITED = 1e10
 
 #: MuJoCo's types of joints, by the motions of ours.
 _TYPES = {"slide": "slide", "turn": "hinge", "ball": "ball"}

@@ -22,22 +22,9 @@ from eurdf.convert.export_format import ExportInput, ExportOutput, Format
 from eurdf.convert.inertia import accepted_inertia, along_principal_axes, has_inertia
 from eurdf.convert.losses import Losses
 from eurdf.convert.meshes import MeshFiles
-from eurdf.convert.mjcf.facts import (
-    CLOSURES,
-    EXACT,
-    KINDS,
-    LEAST,
-    ROWS,
-    SOLIMP,
-    SOLREF,
-    TIMESTEP,
-    TOLERANCE,
-    UNLIMITED,
-    WHOLE,
-    is_readable,
-)
+from eurdf.convert.mjcf import facts
 from eurdf.convert.names import UniqueNames
-from eurdf.convert.parts import Part
+from eurdf.convert.parts import Part, part_of
 from eurdf.convert.steps import AXES, ExportedJoint, in_series
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.constraint import Closure, Coupling
@@ -77,7 +64,7 @@ class _MjcfWriter:
         #: The MuJoCo joints of each joint, by their names.
         self.steps: dict[str, dict[str, ExportedJoint]] = {}
         self.parts: list[Part] = []
-        self.meshes = MeshFiles(given, losses, is_readable)
+        self.meshes = MeshFiles(given, losses, facts.is_readable)
         self.used_meshes: dict[tuple[str, tuple[float, ...]], str] = {}
         self.mimics = given.mimics
 
@@ -90,7 +77,7 @@ class _MjcfWriter:
             self._site(frame.body, frame.pose, frame.name)
         self._exclusions()
         for closure in mechanism.closures:
-            if closure.type in CLOSURES:
+            if closure.type in facts.CLOSURES:
                 self._closure(closure)
         for coupling in mechanism.couplings:
             self._coupling(coupling)
@@ -113,10 +100,14 @@ class _MjcfWriter:
             self.root, "compiler", angle="radian", inertiafromgeom="false", autolimits="true", meshdir="meshes"
         )
         # The implicit integrators add the damping of servos after the constraints are solved, which opens the loops.
-        option = {"timestep": numbers((TIMESTEP,)), "tolerance": numbers((TOLERANCE,)), "integrator": "Euler"}
+        option = {
+            "timestep": numbers((facts.TIMESTEP,)),
+            "tolerance": numbers((facts.TOLERANCE,)),
+            "integrator": "Euler",
+        }
         etree.SubElement(self.root, "option", option)
         default = etree.SubElement(self.root, "default")
-        etree.SubElement(default, "equality", solref=numbers(SOLREF), solimp=numbers(SOLIMP))
+        etree.SubElement(default, "equality", solref=numbers(facts.SOLREF), solimp=numbers(facts.SOLIMP))
         visual = etree.SubElement(default, "default", {"class": "visual"})
         etree.SubElement(visual, "geom", group="2", contype="0", conaffinity="0")
         collision = etree.SubElement(default, "default", {"class": "collision"})
@@ -132,7 +123,7 @@ class _MjcfWriter:
         name = self.joints.new(ROOT_JOINT)
         etree.SubElement(element, "freejoint", name=name)
         self.parts.append(Part((name,), ROOT_JOINT, JointType.FLOATING))
-        self._content(body, element, LEAST)
+        self._content(body, element, facts.LEAST)
 
     def _body(self, joint: Joint, body: Body) -> None:
         host, pose = self.hosts[joint.parent]
@@ -142,9 +133,11 @@ class _MjcfWriter:
             return
         element = etree.SubElement(host, "body", {"name": self.bodies.new(body.name), **_placed(pose)})
         back = joint.offset.inverse()
-        self.steps[joint.name] = found = {self.joints.new(step.joint.name): step for step in in_series(joint, WHOLE)}
+        self.steps[joint.name] = found = {
+            self.joints.new(step.joint.name): step for step in in_series(joint, facts.WHOLE)
+        }
         for name, step in found.items():
-            attributes = {"name": name, "type": KINDS[step.joint.type]}
+            attributes = {"name": name, "type": facts.KINDS[step.joint.type]}
             if joint.offset is not IDENTITY and any(back.xyz):
                 attributes["pos"] = numbers(back.xyz)
             if step.joint.axes:
@@ -153,8 +146,8 @@ class _MjcfWriter:
             etree.SubElement(element, "joint", attributes)
         ratios = ((step.velocities[0], step.lead or 1.0, 0.0) for step in found.values())
         mimic = self.mimics.get(joint.name)
-        self.parts.append(Part.of(joint, tuple(found), ratios, mimic, turn=joint.offset.quaternion))
-        self._content(body, element, LEAST)
+        self.parts.append(part_of(joint, tuple(found), ratios, mimic, turn=joint.offset.quaternion))
+        self._content(body, element, facts.LEAST)
 
     def _fixed(self, body: Body, host: etree._Element, pose: Pose) -> None:
         """A link that is fixed to its host: a body, or a site if it has no mass."""
@@ -241,7 +234,7 @@ class _MjcfWriter:
         MuJoCo itself excludes a body and its parent, unless the parent is fixed to the world.
         """
         hosts = {body: element.get("name", _WORLD) for body, (element, _) in self.hosts.items()}
-        for one, other in dict.fromkeys((hosts[a], hosts[b]) for a, b in neighbours(self.mechanism, LEAST)):
+        for one, other in dict.fromkeys((hosts[a], hosts[b]) for a, b in neighbours(self.mechanism, facts.LEAST)):
             etree.SubElement(self.contact, "exclude", body1=one, body2=other)
 
     # -- joints -----------------------------------------------------------------------------------------------------
@@ -276,7 +269,7 @@ class _MjcfWriter:
             found |= {"stiffness": numbers(own.stiffness), "springref": numbers(own.rest)}
         ((lower, upper),) = step.joint.ranges
         if (math.isfinite(lower) or math.isfinite(upper)) and lower < upper:
-            found["range"] = numbers((max(lower, -UNLIMITED), min(upper, UNLIMITED)))
+            found["range"] = numbers((max(lower, -facts.UNLIMITED), min(upper, facts.UNLIMITED)))
         return found
 
     def _scalar(self, joint: str) -> str:
@@ -318,12 +311,12 @@ class _MjcfWriter:
             excess = closure.length - math.dist(*(self._origin(end.body, end.pose) for end in closure.anchors))
             self._tendon_equality(name, path, excess)
             return
-        etree.SubElement(self.equality, CLOSURES[closure.type], name=name, site1=a, site2=b)
+        etree.SubElement(self.equality, facts.CLOSURES[closure.type], name=name, site1=a, site2=b)
         if isinstance(closure, HingeClosure):
             one, other = (Pose(point_on(direction(axis))) for axis in closure.axes)
             a, b = self._sites(closure, "_axis", (one, other))
             name = self.equalities.new(f"{closure.name}/axis")
-            etree.SubElement(self.equality, CLOSURES[closure.type], name=name, site1=a, site2=b)
+            etree.SubElement(self.equality, facts.CLOSURES[closure.type], name=name, site1=a, site2=b)
 
     def _sites(
         self, closure: Closure, suffix: str = "", poses: tuple[Pose, Pose] = (IDENTITY, IDENTITY)
@@ -400,4 +393,4 @@ def _placed(pose: Pose) -> dict[str, str]:
     return attributes
 
 
-FORMAT = Format("mjcf", "MJCF, for MuJoCo and what reads its format", write, ROWS, EXACT)
+FORMAT = Format("mjcf", "MJCF, for MuJoCo and what reads its format", write, facts.ROWS, facts.EXACT)

@@ -24,7 +24,7 @@ from eurdf.convert.inertia import accepted_inertia
 from eurdf.convert.losses import Losses
 from eurdf.convert.meshes import MeshFiles
 from eurdf.convert.names import UniqueNames
-from eurdf.convert.parts import Part
+from eurdf.convert.parts import Part, part_of
 from eurdf.convert.sdf.facts import CLOSURES, EXACT, LEAST, ROWS, VERSION
 from eurdf.convert.steps import AXES, in_series, turn_type
 from eurdf.mechanism.body import Body, Inertia, Shape
@@ -212,7 +212,7 @@ class _SdfWriter:
             mimic = replace(mimic, offset=mimic.offset - at[0])
         zero = () if at == joint.type.neutral else at
         ratios = ((index, 1.0, -value) for index, value in enumerate(at))
-        self.parts.append(Part.of(joint, names, ratios, mimic, zero=zero))
+        self.parts.append(part_of(joint, names, ratios, mimic, zero=zero))
 
     # -- relations --------------------------------------------------------------------------------------------------
 

@@ -12,7 +12,7 @@ from lxml import etree
 from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format
 from eurdf.convert.losses import Losses
-from eurdf.convert.parts import Part
+from eurdf.convert.parts import Part, part_of
 from eurdf.convert.steps import ExportedJoint, turn_type
 from eurdf.convert.urdf.facts import EXACT, ROWS
 from eurdf.convert.urdf.tree import UrdfTree
@@ -91,7 +91,7 @@ class PlainTree(UrdfTree):
             circular = [2]
         ratios = ((step.velocities[0], 1.0, 0.0) for _, step in own)
         rotation = "xyz" if joint.type is JointType.SPHERICAL else "quaternion"
-        part = Part.of(joint, [name for name, _ in own], ratios, rotation=rotation)
+        part = part_of(joint, [name for name, _ in own], ratios, rotation=rotation)
         self.parts.append(replace(part, circular=tuple(circular)))
 
     @property

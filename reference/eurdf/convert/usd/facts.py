@@ -137,7 +137,7 @@ ROWS = (
         "is left out: the joint has a position drive, and USD has one drive for an axis",
         "export with actuators 'motor'",
         sayable=True,
-        actuators="position",
+        actuators=("position",),
         where=by_writer,
     ),
     approximate(

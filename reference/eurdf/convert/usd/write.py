@@ -23,7 +23,7 @@ from eurdf.convert.inertia import about_centre, accepted_inertia, has_inertia
 from eurdf.convert.losses import Losses
 from eurdf.convert.meshes import MeshFiles
 from eurdf.convert.names import UniqueNames
-from eurdf.convert.parts import UPRIGHT, Part
+from eurdf.convert.parts import UPRIGHT, Part, part_of
 from eurdf.convert.steps import in_series
 from eurdf.convert.usd.facts import CLOSURES, DAMPING_TIME, EXACT, LEAST, LEAST_MOMENT, ROWS
 from eurdf.convert.usd.joints import KINDS, WHOLE, Freedom, axis_and_frame, freedoms
@@ -175,7 +175,7 @@ class _UsdWriter:
             ratios += [(step.velocities[each.index], each.lead or 1.0, 0.0) for each in free]
             host, at, placement = child, IDENTITY, IDENTITY
         if not joint.type.is_fixed:
-            self.parts.append(Part.of(joint, names, ratios, self.mimics.get(joint.name)))
+            self.parts.append(part_of(joint, names, ratios, self.mimics.get(joint.name)))
 
     def _axes(
         self, name: str, joint: Joint, kind: str, path: str, own: Sequence[float], freedoms: Sequence[Freedom]

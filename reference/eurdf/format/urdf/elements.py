@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from functools import partial
+from typing import NamedTuple
 
 from eurdf.diagnostics import Hint, did_you_mean
-from eurdf.format.near import near
-from eurdf.format.numbers import HINT, LARGEST, too_large
+from eurdf.format.conventions import HINT, LARGEST, too_large
+from eurdf.format.wording import near
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 from eurdf.reading.reporter import Element, XmlReporter
@@ -16,64 +17,48 @@ from eurdf.reading.reporter import Element, XmlReporter
 #: The types a URDF may give a joint.
 URDF_JOINT_TYPES = {kind.value: kind for kind in JointType if not kind.replaces}
 
-#: The optional child elements of each element; `limit` is required for a joint that moves in a range.
-_OPTIONAL_CHILDREN: dict[str, tuple[str, ...]] = {
-    "robot": ("link", "joint", "material"),
-    "link": ("inertial", "visual", "collision"),
-    "inertial": ("origin",),
-    "visual": ("origin", "material"),
-    "collision": ("origin",),
-    "joint": ("origin", "axis", "limit", "dynamics", "mimic"),
-    "material": ("color", "texture"),
-}
+#: Attributes of ``limit`` from URDF 1.2 on.
+RATES = ("acceleration", "deceleration", "jerk")
 
-_REQUIRED_CHILDREN: dict[str, tuple[str, ...]] = {
-    "inertial": ("mass", "inertia"),
-    "visual": ("geometry",),
-    "collision": ("geometry",),
-    "joint": ("parent", "child"),
-}
 
-_KNOWN_CHILDREN: dict[str, frozenset[str]] = {
-    tag: frozenset((*optional, *_REQUIRED_CHILDREN.get(tag, ()))) for tag, optional in _OPTIONAL_CHILDREN.items()
-}
+class _Known(NamedTuple):
+    """What an element may have; no known name is a near miss of another.
 
-#: The optional attributes of each element.
-_OPTIONAL_ATTRIBUTES: dict[str, tuple[str, ...]] = {
-    "origin": ("xyz", "rpy"),  # before URDF 1.1
-    "mesh": ("scale",),
-    "texture": ("filename",),
-    "limit": ("lower", "upper"),  # before URDF 1.2
-    "dynamics": ("damping", "friction"),
-    "mimic": ("multiplier", "offset"),
-}
+    Attributes:
+        children: The optional child elements; ``limit`` is required for a joint that moves in a range.
+        needed: The required ones.
+        attributes: The optional attributes, before URDF 1.1 and 1.2.
+        others: The required ones, and those of later versions of URDF.
+    """
 
-_REQUIRED_ATTRIBUTES: dict[str, tuple[str, ...]] = {
-    "mesh": ("filename",),
-    "limit": ("effort", "velocity"),
-    "mimic": ("joint",),
-}
+    children: tuple[str, ...] = ()
+    needed: tuple[str, ...] = ()
+    attributes: tuple[str, ...] = ()
+    others: tuple[str, ...] = ()
 
-#: Attributes that came with a later version of URDF.
-_LATER_ATTRIBUTES: dict[str, tuple[str, ...]] = {
-    "origin": ("quat_xyzw",),
-    "limit": ("acceleration", "deceleration", "jerk"),
-}
 
-#: All attributes of each of these elements, none of which is a near miss of another.
-_KNOWN_ATTRIBUTES: dict[str, frozenset[str]] = {
-    tag: frozenset((*optional, *_REQUIRED_ATTRIBUTES.get(tag, ()), *_LATER_ATTRIBUTES.get(tag, ())))
-    for tag, optional in _OPTIONAL_ATTRIBUTES.items()
+_KNOWN = {
+    "robot": _Known(("link", "joint", "material")),
+    "link": _Known(("inertial", "visual", "collision")),
+    "inertial": _Known(("origin",), ("mass", "inertia")),
+    "visual": _Known(("origin", "material"), ("geometry",)),
+    "collision": _Known(("origin",), ("geometry",)),
+    "joint": _Known(("origin", "axis", "limit", "dynamics", "mimic"), ("parent", "child")),
+    "material": _Known(("color", "texture")),
+    "origin": _Known(attributes=("xyz", "rpy"), others=("quat_xyzw",)),
+    "mesh": _Known(attributes=("scale",), others=("filename",)),
+    "texture": _Known(attributes=("filename",)),
+    "limit": _Known(attributes=("lower", "upper"), others=("effort", "velocity", *RATES)),
+    "dynamics": _Known(attributes=("damping", "friction")),
+    "mimic": _Known(attributes=("multiplier", "offset"), others=("joint",)),
 }
-
-#: What `origin` may have from URDF 1.1 on.
-_OPTIONAL_IN_ORIGIN = ("xyz", "rpy", "quat_xyzw")
+_KNOWN_CHILDREN = {tag: frozenset((*known.children, *known.needed)) for tag, known in _KNOWN.items()}
+_KNOWN_ATTRIBUTES = {
+    tag: frozenset((*known.attributes, *known.others)) for tag, known in _KNOWN.items() if known.attributes
+}
 
 #: Attributes of limits, which may be beyond `LARGEST` on the side where they do not limit: the sign of that side.
-_LIMITS = {
-    "lower": -1.0,
-    **dict.fromkeys(("upper", "effort", "velocity", "acceleration", "deceleration", "jerk"), 1.0),
-}
+_LIMITS = dict.fromkeys(_KNOWN_ATTRIBUTES["limit"], 1.0) | {"lower": -1.0}
 
 #: Name of the world.
 RESERVED = "universe"
@@ -104,12 +89,6 @@ def _how_to_add(element: Element, attribute: str) -> str | None:
     if attribute in ("lower", "upper"):
         return "from URDF 1.2, the limit of a revolute or prismatic joint states both 'lower' and 'upper'"
     return None
-
-
-def cycle_of(names: Sequence[str]) -> str:
-    """How a message names the members of a cycle, a few at most."""
-    shown = names if len(names) <= 6 else [*names[:5], "..."]
-    return " -> ".join(f"'{name}'" for name in [*shown, names[0]])
 
 
 def _floats(text: str, pieces: Iterable[str]) -> tuple[float, ...] | None:
@@ -231,7 +210,7 @@ class UrdfReader:
         if element.keys() == [*attributes]:  # no other, and all at once, which takes half the time
             texts = element.values()  # type: ignore[assignment]
         else:
-            if element.tag in _OPTIONAL_ATTRIBUTES:
+            if element.tag in _KNOWN_ATTRIBUTES:
                 self.attributes(element, optional)
             get = element.get
             texts = [get(attribute, default) for attribute, default in attributes.items()]
@@ -296,7 +275,7 @@ class UrdfReader:
         tag = child.tag
         if not isinstance(tag, str):
             return
-        optional = _OPTIONAL_CHILDREN[str(parent.tag)]
+        optional = _KNOWN[str(parent.tag)].children
         kind = URDF_JOINT_TYPES.get(parent.get("type", "")) if parent.tag == "joint" else None
         if kind is not None and kind.is_ranged:
             optional = tuple(other for other in optional if other != "limit")
@@ -310,7 +289,7 @@ class UrdfReader:
             Whether there is one.
         """
         tag = str(element.tag)
-        known, optional = _KNOWN_ATTRIBUTES[tag], optional or _OPTIONAL_ATTRIBUTES[tag]
+        known, optional = _KNOWN_ATTRIBUTES[tag], optional or _KNOWN[tag].attributes
         is_misspelt = False
         for attribute in map(str, element.keys()):
             if attribute not in known and (hint := self.near_miss(attribute, optional)):
@@ -347,7 +326,7 @@ class UrdfReader:
                 self.attributes(element)
                 self.later(element, "quat_xyzw", "1.1")
             else:
-                self.attributes(element, _OPTIONAL_IN_ORIGIN)
+                self.attributes(element, (*_KNOWN["origin"].attributes, "quat_xyzw"))
                 quaternion_text = element.get("quat_xyzw")
         text = (xyz_text, rpy_text, quaternion_text)
         pose = self._poses.get(text)

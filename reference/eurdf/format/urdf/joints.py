@@ -6,9 +6,9 @@ import math
 from collections.abc import Mapping
 
 from eurdf.diagnostics import did_you_mean
-from eurdf.format.numbers import is_too_small, lower_limit, too_small, upper_limit
+from eurdf.format.conventions import is_too_small, lower_limit, too_small, upper_limit
 from eurdf.format.urdf.data import Limit, UrdfJoint
-from eurdf.format.urdf.elements import RESERVED, URDF_JOINT_TYPES, UrdfReader, named
+from eurdf.format.urdf.elements import RATES, RESERVED, URDF_JOINT_TYPES, UrdfReader, named
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Vector3
@@ -19,8 +19,7 @@ _X: Vector3 = (1.0, 0.0, 0.0)
 # Attributes of one number each, and their defaults.
 _LIMIT = {"lower": "0", "upper": "0", "effort": None, "velocity": None}
 _RANGE_1_2 = ("lower", "upper")
-_RATES = ("acceleration", "deceleration", "jerk")
-_LIMIT_1_2 = ("effort", "velocity", *_RATES)
+_LIMIT_1_2 = ("effort", "velocity", *RATES)
 _NO_LIMIT = {"upper": math.inf, "velocity": math.inf, "effort": math.inf}
 _DYNAMICS = {"damping": "0", "friction": "0"}
 _MIMIC = {"multiplier": "1", "offset": "0"}
@@ -115,7 +114,7 @@ def _limit_1_0(reader: UrdfReader, element: Element) -> Limit | None:
     """A ``limit`` before URDF 1.2."""
     values = reader.single_numbers(element, _LIMIT)
     for attribute in map(str, element.keys()):
-        if attribute in _RATES:
+        if attribute in RATES:
             reader.later(element, attribute, "1.2")
     if values is None:
         return None

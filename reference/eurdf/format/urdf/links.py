@@ -1,15 +1,25 @@
-"""The links of a URDF."""
+"""The links of a URDF, with their inertia and their visual and collision shapes."""
 
 from __future__ import annotations
 
+from typing import Literal, cast, get_args
+
+from eurdf.diagnostics import did_you_mean
 from eurdf.format.urdf.data import UrdfLink
 from eurdf.format.urdf.elements import RESERVED, UrdfReader
-from eurdf.format.urdf.materials import Materials
-from eurdf.format.urdf.shapes import read_shape
+from eurdf.format.urdf.materials import Look, Materials
 from eurdf.mechanism.body import Inertia, Shape
+from eurdf.mechanism.pose import Pose
 from eurdf.reading.reporter import Element
+from eurdf.reading.xml_reader import written_name
+
+_Primitive = Literal["box", "cylinder", "sphere", "capsule"]
+
+_SHAPES = (*get_args(_Primitive), "mesh")
+_SHAPES_1_0 = tuple(shape for shape in _SHAPES if shape != "capsule")
 
 # Attributes of one number each.
+_CYLINDER = {"radius": None, "length": None}
 _INERTIA = dict.fromkeys(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
 
 
@@ -29,7 +39,7 @@ def read_link(reader: UrdfReader, element: Element, materials: Materials | None)
             inertial = child
             inertia = _inertial(reader, child)
         elif tag in ("visual", "collision"):
-            shape = None if materials is None else read_shape(reader, child, materials)
+            shape = None if materials is None else _shape(reader, child, materials)
             if shape is not None:
                 (visuals if tag == "visual" else collisions).append(shape)
         else:
@@ -52,3 +62,80 @@ def _inertial(reader: UrdfReader, element: Element) -> Inertia | None:
     if mass is None or moments is None:
         return None
     return Inertia(mass, pose, moments)  # type: ignore[arg-type]
+
+
+def _shape(reader: UrdfReader, element: Element, materials: Materials) -> Shape | None:
+    """The shape of a ``visual`` or ``collision``; None if it has an error, which was reported."""
+    found = reader.children(element)
+    pose = reader.origin(found.get("origin"))
+    look: Look = (None, "")
+    if element.tag == "visual" and "material" in found:
+        look = materials.of(found["material"])
+    geometry = reader.need(element, found, "geometry")
+    shape = None if geometry is None else _only_shape(reader, geometry)
+    if shape is None:
+        return None
+    return (_mesh if shape.tag == "mesh" else _primitive)(reader, shape, pose, look)
+
+
+def _only_shape(reader: UrdfReader, geometry: Element) -> Element | None:
+    """EU-URD-024: a geometry contains one shape; elements of other programs are ignored."""
+    known = _SHAPES_1_0 if reader.version == "1.0" else _SHAPES
+    shapes = [child for child in geometry if child.tag in known]
+    if len(shapes) == 1:
+        if not reader.version and shapes[0].tag == "capsule":
+            reader.later(shapes[0], None, "1.1")
+        return shapes[0]
+    other = None if shapes or len(geometry) != 1 else geometry[0]
+    if other is None:
+        message = f"<geometry> contains {len(shapes)} shapes; it must contain exactly one"
+        reader.report("urdf-geometry", message, geometry)
+    elif other.tag in _SHAPES:
+        message = f"<{other.tag}> is a shape from URDF 1.1 on, and <robot> has version {reader.version}"
+        reader.report("urdf-geometry", message, other, hint='write version="1.1" in <robot>')
+    else:
+        name = written_name(other, str(other.tag))
+        message = f"<{name}> is not a shape; it must be box, cylinder, sphere, capsule or mesh"
+        reader.report("urdf-geometry", message, other, hint=did_you_mean(str(other.tag), _SHAPES))
+    return None
+
+
+def _mesh(reader: UrdfReader, element: Element, pose: Pose, look: Look) -> Shape | None:
+    """EU-URD-024: the scale of a mesh is not zero on any axis."""
+    name = reader.name(element, "filename")
+    text = element.get("scale")
+    reader.attributes(element)
+    scale = (1.0, 1.0, 1.0) if text is None else reader.numbers(element, "scale", text, 3)
+    if name is None or scale is None:
+        return None
+    if 0.0 in scale:
+        reader.report("urdf-geometry", "'scale' of <mesh> contains a 0", element, "scale")
+        return None
+    return Shape("mesh", scale, pose, name, *look)
+
+
+def _primitive(reader: UrdfReader, element: Element, pose: Pose, look: Look) -> Shape | None:
+    """EU-URD-024: any other shape is a box, cylinder, sphere or capsule of positive size."""
+    kind = element.tag
+    if kind == "box":
+        size = _size_of_box(reader, element)
+    elif kind == "sphere":
+        radius = reader.number(element, "radius")
+        size = None if radius is None else (radius,)
+    else:
+        size = reader.single_numbers(element, _CYLINDER)
+    if size is None:
+        return None
+    if min(size) <= 0.0:
+        reader.report("urdf-geometry", f"<{kind}> has a dimension that is not positive", element)
+        return None
+    color, texture = look
+    return Shape(cast(_Primitive, kind), size, pose, color=color, texture=texture)
+
+
+def _size_of_box(reader: UrdfReader, element: Element) -> tuple[float, ...] | None:
+    text = element.get("size")
+    if text is None:
+        reader.missing_attribute(element, "size")
+        return None
+    return reader.numbers(element, "size", text, 3)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 from itertools import dropwhile
 
 from eurdf.diagnostics import did_you_mean
 from eurdf.format.urdf.data import UrdfJoint
-from eurdf.format.urdf.elements import UrdfReader, cycle_of
+from eurdf.format.urdf.elements import UrdfReader
 from eurdf.mechanism.mimic import Mimic
 from eurdf.reading.reporter import Element
 
@@ -81,3 +81,9 @@ def _check_chain(
             "joint",
         )
     done.update(trail)
+
+
+def cycle_of(names: Sequence[str]) -> str:
+    """How a message names the members of a cycle, a few at most."""
+    shown = names if len(names) <= 6 else [*names[:5], "..."]
+    return " -> ".join(f"'{name}'" for name in [*shown, names[0]])

@@ -8,8 +8,8 @@ from typing import TypeVar
 
 from eurdf.diagnostics import did_you_mean, quoted
 from eurdf.format.urdf.data import Urdf, UrdfJoint, UrdfLink
-from eurdf.format.urdf.elements import UrdfReader, cycle_of
-from eurdf.format.urdf.mimics import check_mimics
+from eurdf.format.urdf.elements import UrdfReader
+from eurdf.format.urdf.mimics import check_mimics, cycle_of
 from eurdf.reading.other_formats import of_element
 
 _Named = TypeVar("_Named", UrdfLink, UrdfJoint)

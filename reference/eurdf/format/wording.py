@@ -1,9 +1,11 @@
-"""Names that are near each other, so that one is probably the other misspelt (chapter Scope and terms)."""
+"""How messages show the values of a file, and names that are near each other, so that one is probably misspelt."""
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Iterable
 from string import ascii_lowercase, ascii_uppercase
+from typing import Any
 
 #: Known names of fewer characters may be one edit away, others two.
 SHORT = 5
@@ -11,8 +13,29 @@ SHORT = 5
 _FOLD = str.maketrans(ascii_uppercase, ascii_lowercase)
 
 
+def quoted(text: str) -> str:
+    """A text as a message quotes it: shortened if it is long, with control characters escaped."""
+    shown = text if text.isprintable() else repr(text)[1:-1]
+    return f"'{shown}'" if len(shown) <= 60 else f"'{shown[:57]}…'"
+
+
+def described(value: Any) -> str:
+    """What a value is, as a message describes it."""
+    if value is None:
+        return "null"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return quoted(value)
+    if isinstance(value, int | float):
+        return repr(value) if abs(value) < 1e15 else f"{value:g}"
+    if isinstance(value, list):
+        return "a list of names" if value and all(isinstance(item, str) for item in value) else "a list"
+    return "a mapping"
+
+
 def near(name: str, known: Iterable[str]) -> str | None:
-    """The first known name that an unknown one is near, or None.
+    """The first known name that an unknown one is near (chapter Scope and terms), or None.
 
     Args:
         name: The unknown name.
@@ -44,3 +67,14 @@ def edits(one: str, other: str) -> int:
             row.append(least)
         before = above
     return row[-1]
+
+
+def likeliest_key(key: str, keys: Iterable[str]) -> str | None:
+    """The most similar known key, for a hint: looser than `near`, and dashes and blanks are ignored.
+
+    Args:
+        key: An unknown key.
+        keys: The known ones, in lower case and with underscores.
+    """
+    folded = key.casefold().replace("-", "_").replace(" ", "_")
+    return next(iter(difflib.get_close_matches(folded, list(keys), n=1)), None)
