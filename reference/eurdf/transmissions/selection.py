@@ -11,10 +11,10 @@ import numpy as np
 
 from eurdf.kinematics.array import Indices
 from eurdf.kinematics.several import several
-from eurdf.mechanism.mimic import drivers
+from eurdf.mechanism.joint import drivers
 
 if TYPE_CHECKING:
-    from eurdf.pinocchio.coordinates import Slot
+    from eurdf.pinocchio.configuration import Slot
     from eurdf.pinocchio.robot import Robot
 
 
