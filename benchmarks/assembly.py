@@ -25,7 +25,7 @@ from benchmarks.load import ROOT, robots
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.residual import residual, residual_and_jacobian
 from eurdf.kinematics.scale import characteristic_length, velocity_scale
-from eurdf.mechanism.frame import Anchor
+from eurdf.mechanism.body import Anchor
 from eurdf.pinocchio.robot import build_robot
 
 Vector = npt.NDArray[np.float64]

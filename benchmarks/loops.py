@@ -16,8 +16,7 @@ import pinocchio as pin
 import eurdf
 from benchmarks.interleaved import peak_memory, timed
 from eurdf.closures.point import PointClosure
-from eurdf.mechanism.body import Body
-from eurdf.mechanism.frame import Anchor
+from eurdf.mechanism.body import Anchor, Body
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism

@@ -30,7 +30,7 @@ from benchmarks.load import ROOT, robots
 from benchmarks.table import Table, duration, ratio
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
-from eurdf.pinocchio.joint_model import joint_model
+from eurdf.pinocchio.joint_model import joint_models
 
 _INF = math.inf
 _HERE = pin.SE3.Identity()
@@ -163,7 +163,8 @@ def _placement(origin: Any) -> pin.SE3:
 def _moving(kind: str, axis: str) -> tuple[pin.JointModel, int, int]:
     """The joint model, which nearly all loads share with one before, and its numbers of coordinates and velocities."""
     direction = tuple(map(float, axis.split()))
-    model = pin.JointModel(joint_model(Joint("", JointType(kind), "", "", axes=(direction,))))  # type: ignore[arg-type]
+    (shared,) = joint_models(Joint("", JointType(kind), "", "", axes=(direction,)))  # type: ignore[arg-type]
+    model = pin.JointModel(shared)
     return model, model.nq, model.nv
 
 

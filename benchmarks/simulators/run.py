@@ -10,7 +10,7 @@ import numpy.typing as npt
 from eurdf.closures.distance import DistanceClosure
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.hinge import HingeClosure
-from eurdf.mechanism.frame import Anchor
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose, Quaternion, Vector3, direction

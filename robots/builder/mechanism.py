@@ -12,13 +12,11 @@ from eurdf.closures.distance import DistanceClosure
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.hinge import HingeClosure
 from eurdf.closures.point import PointClosure
-from eurdf.mechanism.body import Body, Inertia, Shape
+from eurdf.mechanism.body import Anchor, Body, Frame, Inertia, Shape
 from eurdf.mechanism.constraint import Closure, Coupling
-from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.motor import Motor
+from eurdf.mechanism.mechanism import Mechanism, Motor
 from eurdf.mechanism.pose import Pose, Vector3
 from robots.builder import drawing as drawn
 from robots.builder import joint as drawn_joint

@@ -21,7 +21,7 @@ from eurdf.kinematics.array import Vector
 from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.pinocchio.coordinates import Slot, slots
+from eurdf.pinocchio.configuration import Slot, slots
 from eurdf.pinocchio.frames import body_frame_ids
 from eurdf.pinocchio.robot import Robot
 from robots.quality.candidate import Candidate

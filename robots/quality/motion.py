@@ -32,9 +32,13 @@ def is_assembled(candidate: Candidate) -> list[str]:
 
 def has_mass(candidate: Candidate) -> list[str]:
     """Every moving body has mass, and M(q) is positive definite at 'assembled' and on all paths."""
-    model = candidate.robot.model
-    moving = zip(model.names[1:], model.inertias[1:], strict=True)
-    massless = [f"the body of joint '{name}' has no mass" for name, inertia in moving if not inertia.mass > 0.0]
+    robot, model = candidate.robot, candidate.robot.model
+    carried = set(range(1, model.njoints)) - robot.tree.in_series.keys()
+    massless = [
+        f"the body of joint '{model.names[joint]}' has no mass"
+        for joint in sorted(carried)
+        if not model.inertias[joint].mass > 0.0
+    ]
     if massless:
         return massless
     data = model.createData()

@@ -19,8 +19,7 @@ from eurdf.linking.robot_files import read_robot
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.constraint import Compliance
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.motor import Motor
+from eurdf.mechanism.mechanism import Mechanism, Motor
 from eurdf.mechanism.pose import Pose
 from eurdf.mechanism.same_model import with_universal_joints
 from eurdf.mechanism.spanning_tree import rigid_roots

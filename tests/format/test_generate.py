@@ -1,4 +1,4 @@
-"""A description from the names in a URDF, and the YAML text that it is written as."""
+"""A description from the names in a URDF, the YAML text that it is written as, and its file."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from eurdf.format.urdf.data import Urdf
 from eurdf.format.urdf.read import read_urdf
 from eurdf.format.yaml_text import flow, lines_of, lines_of_item, scalar
 from eurdf.kinematics.analysis import analyze
+from eurdf.linking.robot_files import read_robot
 from eurdf.mechanism.same_model import differences
 from eurdf.pinocchio.robot import build_robot
 from eurdf.reading.source import Source, read_source
@@ -229,14 +230,6 @@ def test_revolute_mate_is_two_3d_closures_where_no_hinge_can_be(version: Literal
     assert note.startswith("'closing_pin' and 'closing_pin_z' ")
 
 
-def test_half_an_axis_is_reported() -> None:
-    found = generated(*LEG[:3], *HINGE[:3]).found
-    assert [(closure.name, closure.frames) for closure in found.closures] == [
-        ("closing_pin", ("closing_pin_1", "closing_pin_2"))
-    ]
-    assert found.warnings == ("'closing_pin_1_z' has no other side: a closure has two frames; left out",)
-
-
 @pytest.mark.parametrize(("given_", "count"), [("3d", 2), ("6d", 1)])
 def test_user_can_set_all_closure_types(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], given_: str, count: int
@@ -270,42 +263,50 @@ def test_loops_are_sorted_by_number() -> None:
     ]
 
 
-def test_half_a_pair_is_reported_and_skipped() -> None:
-    found = generated("hip revolute base thigh", "j1 fixed thigh closedloop1_A").found
-    assert found.closures == ()
-    assert found.warnings == ("'closedloop1_A' has no other side: a closure has two frames; left out",)
-
-
-def test_pair_within_one_body_is_reported_and_skipped() -> None:
-    found = generated("hip revolute base thigh", "j1 fixed thigh loop_A", "j2 fixed thigh closedloop1_A",
-                      "j3 fixed loop_A closedloop1_B").found  # fmt: skip
-    assert found.closures == ()
+@pytest.mark.parametrize(
+    ("rows", "closures", "frames", "said"),
+    [
+        (
+            ("j1 fixed base closedloop1_A",),
+            [],
+            [],
+            r"'closedloop1_A' has no other side: a closure has two frames; left out",
+        ),
+        (
+            HINGE[:3],
+            [],
+            [("closing_pin_1", "closing_pin_2")],
+            "'closing_pin_1_z' has no other side: a closure has two frames; left out",
+        ),
+        (
+            ("j1 fixed base loop_A", "j2 fixed base closedloop1_A", "j3 fixed loop_A closedloop1_B"),
+            [],
+            [],
+            "'closedloop1_A' and 'closedloop1_B' are fixed to each other",
+        ),
+        ([f"j{side} revolute base loop1_{side}" for side in "ABC"], ["(?P<loop>loop.)_(?P<side>.)"], [], "3 sides"),
+        (
+            LEG[3:],
+            [PUBLISHED_CLOSURE, r"(?P<loop>closed)loop1_(?P<side>.)_frame"],
+            [("closedloop1_A_frame", "closedloop1_B_frame")],
+            "already",
+        ),
+        (
+            ("j1 fixed shin closedloop1_A", "closedloop1_A_frame revolute base other", "j2 fixed base closedloop1_B"),
+            [],
+            [("closedloop1_A", "closedloop1_B")],
+            "side A of loop 'closedloop1' is taken to be 'closedloop1_A'; it might be 'closedloop1_A_frame'",
+        ),
+    ],
+    ids=["half a pair", "half an axis", "one body", "three sides", "duplicate", "two frames of a side"],
+)
+def test_what_makes_no_closure_is_reported(
+    rows: list[str], closures: list[str], frames: list[tuple[str, str]], said: str
+) -> None:
+    found = generated(*LEG[:3], *rows, closures=closures).found
+    assert [closure.frames for closure in found.closures] == frames
     (warning,) = found.warnings
-    assert "'closedloop1_A' and 'closedloop1_B' are fixed to each other" in warning
-
-
-def test_more_than_two_sides_are_reported_and_skipped() -> None:
-    rows = [f"j{side} revolute base loop1_{side}" for side in "ABC"]
-    found = generated(*rows, closures=["(?P<loop>loop.)_(?P<side>.)"]).found
-    assert found.closures == ()
-    assert "3 sides" in found.warnings[0]
-
-
-def test_duplicate_closure_is_reported_and_skipped() -> None:
-    found = generated(
-        *LEG, closures=[PUBLISHED_CLOSURE, r"(?P<loop>closed)loop1_(?P<side>.)_frame"]
-    ).found  # fmt: skip
-    assert [closure.name for closure in found.closures] == ["closed"]
-    assert "already" in found.warnings[0]
-
-
-def test_two_frames_of_one_side_are_reported() -> None:
-    rows = ("hip revolute base thigh", "j1 fixed thigh closedloop1_A", "closedloop1_A_frame revolute base other",
-            "j2 fixed base closedloop1_B")  # fmt: skip
-    found = generated(*rows).found
-    assert found.closures[0].frames == ("closedloop1_A", "closedloop1_B")
-    assert found.warnings == ("side A of loop 'closedloop1' is taken to be 'closedloop1_A'; it might be "
-                              "'closedloop1_A_frame'",)  # fmt: skip
+    assert said in warning
 
 
 def test_user_pattern_gives_sides_loops_and_types() -> None:
@@ -540,22 +541,29 @@ def test_list_items_are_indented_equally() -> None:
     assert flow({"a": [], "b": {}}) == "{a: [], b: {}}"
 
 
+def named(loop: str, motor: str, ball: str) -> str:
+    """A URDF with these words in its names."""
+    base = "base\x7f"
+    joints: list[tuple[str, str, str, str, list[str]]] = [
+        (f"motor_{motor}", "revolute", base, "rod", []),
+        (f"spherical {ball}", "revolute", base, "other", []),
+        ("fix1", "fixed", "rod", f"closedloop{loop}_A", []),
+        ("fix2", "fixed", "other", f"closedloop{loop}_B", []),
+    ]
+    links = [base, "rod", "other", f"closedloop{loop}_A", f"closedloop{loop}_B"]
+    return _written(etree.Element("robot", name="r"), links, joints)
+
+
 @settings(max_examples=60, deadline=None, derandomize=True)
-@given(st.lists(xml_text | nasty, unique=True, min_size=3, max_size=3), st.booleans())
-def test_any_names_can_be_described(names: list[str], both: bool) -> None:
+@given(st.lists(xml_text | nasty, unique=True, min_size=3, max_size=3), st.sampled_from(["1", "2"]))
+def test_any_names_can_be_described(names: list[str], version: Literal["1", "2"]) -> None:
     loop, motor, ball = names
-    a, b = f"closedloop{loop}_A", f"closedloop{loop}_B"
-    base, rod, other = "base\x7f", "rod", "other"
-    motor, ball = f"motor_{motor}", f"spherical {ball}"
-    joints = [(motor, "revolute", base, rod, []), (ball, "revolute", base, other, []),
-              ("fix1", "fixed", rod, a, []), ("fix2", "fixed", other, b, [])]  # fmt: skip
-    text = _written(etree.Element("robot", name="r"), [base, rod, other, a, b], joints)
-    generation = generate(read(text), conventions(), "1" if both else "2")
+    generation = generate(read(named(loop, motor, ball)), conventions(), version)
     assert generation.mechanism is not None, list(generation.diagnostics)
     (closure,) = generation.mechanism.closures
-    assert (closure.a.frame, closure.b.frame) == (a, b)
-    assert generation.mechanism.actuators == (motor,)
-    assert generation.found.sphericals == (ball,)
+    assert (closure.a.frame, closure.b.frame) == (f"closedloop{loop}_A", f"closedloop{loop}_B")
+    assert generation.mechanism.actuators == (f"motor_{motor}",)
+    assert generation.found.sphericals == (f"spherical {ball}",)
 
 
 # -- the command --------------------------------------------------------------------------------------------------
@@ -642,3 +650,52 @@ def test_missing_closures_or_motors_always_give_hint(tmp_path: Path, capsys: pyt
     assert "hint: no joint is named as a motor" in told
     assert main(["generate", str(file), "--json"]) == 0
     assert len(json.loads(capsys.readouterr().out)["hints"]) == 2
+
+
+# -- files of unusual names, line ends or encodings ---------------------------------------------------------------
+
+
+def actuators_of_generated(folder: Path, data: bytes, urdf: str = "robot.urdf", *options: str) -> tuple[str, ...]:
+    """The actuators of the robot that is written for a URDF, once the check finds nothing wrong with it."""
+    (folder / urdf).write_bytes(data)
+    assert main(["generate", str(folder / urdf), "-o", str(folder / "out.yaml"), *options]) == 0
+    robot = read_robot(folder / "out.yaml")
+    assert robot.mechanism is not None, list(robot.diagnostics)
+    return robot.mechanism.actuators
+
+
+@pytest.mark.parametrize("version", ["1", "2"])
+@pytest.mark.parametrize("name", ["no", "膝", "a: b", "x\ny"], ids=ascii)
+def test_file_of_any_names_survives_round_trip(tmp_path: Path, name: str, version: str) -> None:
+    data = named(name, name, name).encode()
+    motor = f"motor_{name}"
+    assert actuators_of_generated(tmp_path, data, "robot.urdf", "--version", version, "--schema", "robot") == (motor,)
+    schema = json.loads((tmp_path / "out.schema.json").read_text(encoding="utf-8"))
+    assert motor in schema["$defs"]["UrdfJointName"]["enum"]
+
+
+@pytest.mark.parametrize(("start", "end"), [("", "\r\n"), ("", "\r"), ("\ufeff", "\n")], ids=ascii)
+def test_line_ends_of_urdf_do_not_matter(tmp_path: Path, start: str, end: str) -> None:
+    text = start + named("é", "é", "é").replace("><", f">{end}<")
+    assert actuators_of_generated(tmp_path, text.encode()) == ("motor_é",)
+    written = (tmp_path / "out.yaml").read_bytes()
+    assert b"\r" not in written
+    assert b"motor_\xc3\xa9" in written
+
+
+@pytest.mark.parametrize("encoding", ["latin-1", "utf-16"])
+def test_other_encoding_is_refused_without_writing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], encoding: str
+) -> None:
+    (tmp_path / "robot.urdf").write_bytes(named("é", "é", "é").encode(encoding))
+    assert main(["generate", str(tmp_path / "robot.urdf"), "-o", str(tmp_path / "out.yaml")]) == 1
+    assert "file-not-utf8" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["robot.urdf"]
+
+
+@pytest.mark.parametrize(
+    "urdf", ["no.urdf", "a: b.urdf", "my robot #1.urdf", "膝.urdf", "'x'.urdf", "1e3.urdf", "-x.urdf", "[a].urdf"]
+)
+def test_urdf_of_any_file_name_is_named(tmp_path: Path, urdf: str) -> None:
+    actuators_of_generated(tmp_path, urdf_text(*LEG).encode(), urdf)
+    assert yaml.safe_load((tmp_path / "out.yaml").read_text(encoding="utf-8"))["urdf"] == urdf

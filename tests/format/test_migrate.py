@@ -121,9 +121,7 @@ def halves(robot: Robot, joint: str) -> list[str]:
 
 def velocities(robot: Robot, names: list[str]) -> list[int]:
     """Indices in v of the joints."""
-    model = robot.model
-    ids = [model.getJointId(name) for name in names]
-    return [row for index in ids for row in range(model.idx_vs[index], model.idx_vs[index] + model.nvs[index])]
+    return [row for name in names for row in robot.tree.velocities_of(name)]
 
 
 def assert_same_motion(before: Mechanism, after: Mechanism) -> None:

@@ -25,8 +25,8 @@ from eurdf.closures.point import PointClosure
 from eurdf.closures.se3 import plane_across
 from eurdf.commands.robot_info import robot_info
 from eurdf.kinematics.residual import acceleration_drift
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Closure, Constraint, Coupling
-from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import Robot, build_robot
 from support.described import LIMITED, body, load, revolute

@@ -20,10 +20,9 @@ from eurdf.kinematics.residual import residual, residual_and_jacobian
 from eurdf.kinematics.sensitivity import actuated_jacobian, dq_dq_actuated
 from eurdf.kinematics.split import split_configuration
 from eurdf.mechanism.body import Body
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.mimic import Mimic
 from eurdf.pinocchio.robot import build_robot
 from support.actuated import ROBOTS, actuated, closed_near, robot_called
 from support.linkage import Linkage, X, Z, bennett, closure, loop, n_bar, slider_crank, stewart, translation

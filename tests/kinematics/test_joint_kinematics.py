@@ -72,11 +72,6 @@ def test_bodies_of_all_joint_types_have_expected_poses(seed: int) -> None:
         np.testing.assert_allclose(jacobian_of(model, q, body.name), J[body.name], atol=1e-12)
 
 
-def test_perpendicular_universal_joint_matches_pinocchio() -> None:
-    model = build_model(one_joint(Joint("cardan", JointType.UNIVERSAL, "base", "tip", axes=(Y, Z))))
-    assert model.joints[1].shortname() == "JointModelUniversal"
-
-
 @given(seed=SEEDS, root=st.sampled_from(["fixed", "floating"]))
 @settings(deadline=None)
 def test_coordinates_survive_round_trip_through_pinocchio(seed: int, root: str) -> None:

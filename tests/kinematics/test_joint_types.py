@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import IDENTITY, Pose
-from eurdf.pinocchio.joint_model import joint_model
-from eurdf.pinocchio.placement import placement_of
+from eurdf.pinocchio.frames import placement_of
+from eurdf.pinocchio.joint_model import joint_models
 from support import by_hand
 
 Z = (0.0, 0.0, 1.0)
@@ -31,12 +31,13 @@ def test_transform_matches_pinocchio_joint_model(kind: JointType, seed: int) -> 
         axes = [tuple(np.roll(Z, turn).tolist()) for turn in random.permutation(3)]
         joint = replace(joint, axes=tuple(axes[: len(joint.axes)]))
     c = by_hand.some_coordinates(kind, random)
-    model = pin.Model()
-    model.addJoint(0, joint_model(joint), pin.SE3.Identity(), "joint")
+    model, last = pin.Model(), 0
+    for part in joint_models(joint):
+        last = model.addJoint(last, part, pin.SE3.Identity(), f"part {last}")
     angle_at_end = model.nq > len(c)
     data = model.createData()
     pin.forwardKinematics(model, data, np.array([*c[:-1], math.cos(c[-1]), math.sin(c[-1])] if angle_at_end else c))
-    np.testing.assert_allclose(placement_of(joint.transform(c)).homogeneous, data.oMi[1].homogeneous, atol=1e-12)
+    np.testing.assert_allclose(placement_of(joint.transform(c)).homogeneous, data.oMi[last].homogeneous, atol=1e-12)
 
 
 @pytest.mark.parametrize("kind", JointType)

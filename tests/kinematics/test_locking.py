@@ -22,12 +22,10 @@ from eurdf.kinematics.exceptions import CannotLock, LockedOpen
 from eurdf.kinematics.locked_mechanism import lock_joints
 from eurdf.kinematics.locking import LockedRobot, lock
 from eurdf.kinematics.residual import residual, residual_and_jacobian
-from eurdf.mechanism.body import Shape
-from eurdf.mechanism.frame import Anchor, Frame
-from eurdf.mechanism.joint import Joint, JointProperties
+from eurdf.mechanism.body import Anchor, Frame, Shape
+from eurdf.mechanism.joint import Joint, JointProperties, Mimic
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import Pose
 from eurdf.mechanism.spanning_tree import rigid_roots
 from eurdf.pinocchio.robot import Robot, build_robot
@@ -52,10 +50,11 @@ Coordinates = dict[str, Sequence[float]]
 
 
 def frame_placements(robot: Robot, q: Any) -> list[tuple[str, Any]]:
-    """Name and pose of every frame, in order."""
+    """Name and pose of every frame, in order, but between two joints that are one joint of the robot."""
     data = robot.model.createData()
     pin.framesForwardKinematics(robot.model, data, q)
-    return [(frame.name, data.oMf[index].homogeneous) for index, frame in enumerate(robot.model.frames)]
+    frames = [each for each in enumerate(robot.model.frames) if each[1].parentJoint not in robot.tree.in_series]
+    return [(frame.name, data.oMf[index].homogeneous) for index, frame in frames]
 
 
 def geometry_placements(geometry_model: Any, model: Any, q: Any) -> list[tuple[str, Any]]:

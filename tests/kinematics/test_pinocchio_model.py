@@ -15,8 +15,7 @@ from hypothesis import strategies as st
 
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.point import PointClosure
-from eurdf.mechanism.body import Body
-from eurdf.mechanism.frame import Anchor, Frame
+from eurdf.mechanism.body import Anchor, Body, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism

@@ -23,13 +23,11 @@ from eurdf.convert.export_format import ExportInput, export_format
 from eurdf.convert.formats import EXPORTS
 from eurdf.convert.hinges import with_hinges
 from eurdf.convert.losses import Losses
-from eurdf.mechanism.body import Inertia, Shape
+from eurdf.mechanism.body import Frame, Inertia, Shape
 from eurdf.mechanism.constraint import Closure, Compliance, Coupling
-from eurdf.mechanism.frame import Frame
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.motor import Motor
+from eurdf.mechanism.mechanism import Mechanism, Motor
 from eurdf.mechanism.pose import IDENTITY, Vector3
 from eurdf.pinocchio.meshes import read_meshes
 from eurdf.pinocchio.robot import Robot, build_robot

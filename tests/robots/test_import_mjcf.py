@@ -16,8 +16,7 @@ from eurdf.closures.distance import DistanceClosure
 from eurdf.closures.point import PointClosure
 from eurdf.mechanism.constraint import Coupling
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.mechanism import ROOT_JOINT
-from eurdf.mechanism.motor import Motor
+from eurdf.mechanism.mechanism import ROOT_JOINT, Motor
 from eurdf.pinocchio.robot import build_robot
 from support.imported import Beside, model_without_meshes
 

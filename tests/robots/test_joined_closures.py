@@ -13,7 +13,7 @@ from lxml import etree
 
 import eurdf
 from eurdf.closures.point import PointClosure
-from eurdf.mechanism.frame import Anchor
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.pose import IDENTITY, Pose
 from eurdf.pinocchio.robot import build_robot
 from eurdf.writing.joined_closures import JoinedClosures, join_points

@@ -17,7 +17,7 @@ from eurdf.closures.hinge import HingeClosure
 from eurdf.convert.losses import Effect
 from eurdf.convert.parts import Part
 from eurdf.convert.verification.read_model import without_armature
-from eurdf.mechanism.frame import Anchor, Frame
+from eurdf.mechanism.body import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism

@@ -88,9 +88,10 @@ def mass_matrix(model: Any, q: Any) -> Any:
 
 def at(model: Any, joint: str) -> tuple[int, int, int, int]:
     """Indices of a joint's coordinates and velocities: idx_q, nq, idx_v, nv."""
-    index = model.getJointId(joint)
-    assert index < model.njoints, f"no joint '{joint}'"
-    return model.idx_qs[index], model.nqs[index], model.idx_vs[index], model.nvs[index]
+    last = model.getJointId(joint)
+    assert last < model.njoints, f"no joint '{joint}'"
+    first = last - model.existJointName(f"{joint}/1")  # a universal or cylindrical joint is two in series
+    return model.idx_qs[first], sum(model.nqs[first : last + 1]), model.idx_vs[first], sum(model.nvs[first : last + 1])
 
 
 STAR_CONTENT = '<axis xyz="0 0 1"/><limit lower="-2" upper="2" effort="1" velocity="1"/>'

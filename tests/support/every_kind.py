@@ -12,8 +12,8 @@ from eurdf.closures.distance import DistanceClosure
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.hinge import HingeClosure
 from eurdf.closures.point import PointClosure
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Closure, Coupling
-from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint_types import JointType
 from eurdf.pinocchio.robot import Robot, build_robot
 from support.by_hand import some_pose, tree_of_all_types

@@ -12,8 +12,8 @@ import pinocchio as pin
 
 from eurdf.closures.kind import REGISTRY
 from eurdf.kinematics.residual import closure_openings
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Closure, Constraint
-from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.actuation import Actuation
 from eurdf.pinocchio.constraint import build_constraint_models

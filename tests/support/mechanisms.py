@@ -15,15 +15,13 @@ from eurdf.closures.frame import FrameClosure
 from eurdf.closures.hinge import HingeClosure
 from eurdf.closures.kind import REGISTRY
 from eurdf.closures.point import PointClosure
-from eurdf.mechanism.body import Body
+from eurdf.mechanism.body import Anchor, Body
 from eurdf.mechanism.constraint import Closure, Coupling
-from eurdf.mechanism.frame import Anchor
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism, Root
-from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose
-from eurdf.pinocchio.coordinates import slots
+from eurdf.pinocchio.configuration import slots
 from eurdf.pinocchio.frames import body_frame_ids
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand

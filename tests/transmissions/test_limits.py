@@ -11,7 +11,7 @@ import pytest
 from scipy.optimize import linprog, minimize
 
 import eurdf
-from eurdf.mechanism.motor import Motor
+from eurdf.mechanism.mechanism import Motor
 from eurdf.pinocchio.robot import build_robot
 from eurdf.transmissions.box import largest_box
 from eurdf.transmissions.polytope import image_of_box, preimage_of_box

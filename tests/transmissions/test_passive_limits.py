@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import eurdf
-from eurdf.mechanism.motor import Motor
+from eurdf.mechanism.mechanism import Motor
 from eurdf.pinocchio.robot import build_robot
 from eurdf.transmissions.passive_limits import PassiveLimit, passive_limits
 from support.transmissions import DRIVEN, posed, slider_crank

@@ -12,10 +12,9 @@ from eurdf.mechanism.body import Shape
 from eurdf.mechanism.constraint import RIGID, Compliance
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.motor import Motor
+from eurdf.mechanism.mechanism import Mechanism, Motor
 from eurdf.mechanism.pose import Vector3
-from eurdf.pinocchio.placement import placement_of
+from eurdf.pinocchio.frames import placement_of
 from eurdf_conformance.level import Version
 from eurdf_conformance.protocol.message import (
     CanonicalActuator,

@@ -16,10 +16,8 @@ import pinocchio as pin
 
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
-from eurdf.pinocchio.configuration import configuration_vector
-from eurdf.pinocchio.coordinates import slots
-from eurdf.pinocchio.frames import body_frame_ids
-from eurdf.pinocchio.placement import placement_of
+from eurdf.pinocchio.configuration import slots
+from eurdf.pinocchio.frames import body_frame_ids, placement_of
 from eurdf.pinocchio.robot import Robot
 from eurdf_conformance.protocol.message import Jacobian, MassMatrix, Pose, Quantity, Values
 
@@ -42,7 +40,7 @@ class Quantities:
         """
         self.robot = robot
         self.frames = frames
-        self.q = configuration_vector(robot.mechanism, robot.model, configuration)
+        self.q = robot.configuration(configuration)
         pin.forwardKinematics(robot.model, robot.data, self.q)
         self._bodies = body_frame_ids(robot.mechanism)
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 from eurdf.format.model import Description
 from eurdf.linking.robot_files import ReadRobot
-from eurdf.mechanism.joint_types import JointType
 from eurdf.reading.yaml_node import Pointer
 
 if TYPE_CHECKING:
@@ -68,7 +67,7 @@ def _in_urdf(urdf: Urdf) -> Iterator[_Found]:
     limits: list[_Found] = []
     open_ended: list[_Found] = []
     for joint in urdf.joints.values():
-        if joint.type is not JointType.REVOLUTE or joint.limit is None:
+        if not joint.type.is_ranged or joint.type.slides or joint.limit is None:
             continue
         element = next(child for child in joint.element if child.tag == "limit")
         for side in ("lower", "upper"):

@@ -87,7 +87,7 @@ def _axes(robot: Robot, q: Vector, closure: Closure) -> Iterator[tuple[Vector3, 
     sites = [robot.tree.site(anchor) for anchor in closure.anchors]
     frames = [data.oMi[joint].rotation @ placement.rotation for joint, placement in sites]
     directions = [frame[:, index] for frame in frames for index in (2, 0, 1)]
-    directions += [axis for joint, _ in sites for axis in _joint_axis(model, data, joint, q)]
+    directions += [axis for joint, _ in sites for axis in _joint_axis(robot, data, joint, q)]
     seen: list[Vector] = []
     for direction in directions:
         if all(min(np.linalg.norm(direction - other), np.linalg.norm(direction + other)) > _SAME for other in seen):
@@ -95,9 +95,10 @@ def _axes(robot: Robot, q: Vector, closure: Closure) -> Iterator[tuple[Vector3, 
             yield _in_frame(frames[0], direction), _in_frame(frames[1], direction)
 
 
-def _joint_axis(model: pin.Model, data: pin.Data, joint: int, q: Vector) -> Sequence[Vector]:
+def _joint_axis(robot: Robot, data: pin.Data, joint: int, q: Vector) -> Sequence[Vector]:
     """The axis of a joint that turns about one, in the world."""
-    if model.nvs[joint] != 1:
+    model = robot.model
+    if model.nvs[joint] != 1 or joint in robot.tree.in_series.values():
         return ()
     own = model.joints[joint].createData()
     model.joints[joint].calc(own, q)

@@ -48,7 +48,9 @@ def advise_on_massless_links(read: ReadRobot, robot: Robot, q: Vector, diagnosti
     child_of |= {joint.name: joint.child for joint in robot.mechanism.joints}
     # The coordinate of a leader that comes after its mimic joints is a joint without a link.
     with_link = [joint for joint in range(1, model.njoints) if model.names[joint] in child_of]
-    massless = {joint for joint in with_link if _is_massless(model.inertias[joint])}
+    # The first of two joints in series carries no link, and the second what both move.
+    second = robot.tree.in_series
+    massless = {joint for joint in (*with_link, *second) if _is_massless(model.inertias[joint])}
     if massless.isdisjoint(looped):
         return
     random, length = np.random.default_rng(0), characteristic_length(robot)
@@ -70,13 +72,15 @@ def advise_on_massless_links(read: ReadRobot, robot: Robot, q: Vector, diagnosti
         if len(motions) and len(_motions_at_rest(model, joints, massless, beside, length)):
             columns = [joint for joint in joints for _ in range(model.nvs[joint])]
             fast = np.abs(motions).max(axis=0) > _NOTHING
-            moving = dict.fromkeys(joint for joint, moves in zip(columns, fast, strict=True) if moves)
+            moving = dict.fromkeys(
+                second.get(joint, joint) for joint, moves in zip(columns, fast, strict=True) if moves
+            )
             names = " and ".join(f"'{model.names[joint]}'" for joint in moving)
             why = f"and can move by {names} without moving any mass: the mass matrix is singular"
             _report(read, [child_of[model.names[joint]] for joint in moving if joint in massless], why, diagnostics)
             continue
         for joint in joints:
-            if joint not in massless or joint not in looped or _has_armature(model, joint):
+            if joint not in massless or joint not in looped or joint in second or _has_armature(robot, joint):
                 continue
             reach = _reach(model, joint, children, anchors)
             if reach > _REACH:
@@ -103,8 +107,8 @@ def _reach(model: Any, joint: int, children: dict[int, list[int]], anchors: dict
     return max((float(np.linalg.norm(placement.translation)) for placement in carried), default=0.0)
 
 
-def _has_armature(model: Any, joint: int) -> bool:
-    return bool((model.armature[model.idx_vs[joint] : model.idx_vs[joint] + model.nvs[joint]] > 0.0).all())
+def _has_armature(robot: Robot, joint: int) -> bool:
+    return bool((robot.model.armature[list(robot.tree.velocities_of(robot.model.names[joint]))] > 0.0).all())
 
 
 def _is_massless(inertia: Any) -> bool:

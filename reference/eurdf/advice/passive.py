@@ -89,7 +89,7 @@ class PassiveMotions:
         joint_model, inertia = model.joints[joint], model.inertias[joint]
         if self._widths[joint] > 1:
             return self._parents[joint] == 0 and joint_model.shortname() in _ROOT_JOINTS
-        if joint in self._inner or not inertia.mass > 0.0:
+        if joint in self._inner or joint in self._robot.tree.in_series.values() or not inertia.mass > 0.0:
             return False
         data = joint_model.createData()
         joint_model.calc(data, motion.q)
@@ -114,7 +114,8 @@ class PassiveMotions:
             while above and above not in twists:
                 above = self._parents[above]
             twists[joint] = twists.get(above, np.zeros(6)) + J[:, column : column + width] @ own
-        return list(twists.values())
+        # Between two joints in series there is no body.
+        return [twist for joint, twist in twists.items() if joint not in self._robot.tree.in_series]
 
 
 def _turns_about_one_line(twists: list[Vector], length: float) -> bool:

@@ -82,9 +82,8 @@ def _distance(one: tuple[float, ...], other: tuple[float, ...]) -> float:
 
 def _closes(robot: Robot, coordinates: _Coordinates) -> bool:
     from eurdf.kinematics.residual import all_openings
-    from eurdf.pinocchio.configuration import configuration_vector
 
-    q = configuration_vector(robot.mechanism, robot.model, coordinates)
+    q = robot.configuration(coordinates)
     return not any(opening.is_open for opening in all_openings(robot, q))
 
 

@@ -242,7 +242,7 @@ def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
 
 
 def _joint_infos(robot: Robot) -> Iterator[JointInfo]:
-    from eurdf.pinocchio.coordinates import slots
+    from eurdf.pinocchio.configuration import slots
 
     mechanism = robot.mechanism
     if mechanism.root == "floating":

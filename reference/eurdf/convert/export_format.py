@@ -15,9 +15,8 @@ from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.formats import Actuators, MeshFileChoice
 from eurdf.convert.losses import Losses, LossKind
 from eurdf.convert.parts import OwnVectors
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import Joint, Mimic, drivers
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.mimic import Mimic, drivers
 from eurdf.mesh_files.folders import Folders
 from eurdf.mesh_files.reader import MeshReader
 

@@ -6,9 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import Quaternion
 
 UPRIGHT: Quaternion = (0.0, 0.0, 0.0, 1.0)

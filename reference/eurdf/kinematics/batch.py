@@ -17,8 +17,8 @@ from pinocchio import LOCAL
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import close
 from eurdf.kinematics.blocks import Progress, blocks, checked_configurations, checked_rows, shape_of, starts
-from eurdf.kinematics.derived import borrowed
-from eurdf.kinematics.evaluate import frames
+from eurdf.kinematics.derived import borrowed, derived
+from eurdf.kinematics.evaluate import Evaluator, evaluator, frames
 from eurdf.kinematics.exceptions import NumericalOverflow
 from eurdf.kinematics.forward import driving_many, goals, in_equilibrium, moved_many
 from eurdf.kinematics.frame_jacobian import checked_reference
@@ -148,8 +148,9 @@ def residual(
         NumericalOverflow: A configuration is so large that its residual is not finite; the message names it.
     """
     rows = checked_rows("q", q, robot.tree.nq)
-    model = for_many(robot)
-    (r,) = blocks(model.numbers, block, threads, executor, progress).map(_residual, model, (rows,))
+    constraints = derived(robot, _constraints)
+    work = blocks(constraints.numbers_of_residual, block, threads, executor, progress)
+    (r,) = work.map(_residual, constraints, (rows,))
     _require_finite(r)
     return r
 
@@ -181,18 +182,24 @@ def residual_and_jacobian(
         NumericalOverflow: As in `residual`, also of the derivative.
     """
     rows = checked_rows("q", q, robot.tree.nq)
-    model = for_many(robot)
-    r, K = blocks(model.numbers, block, threads, executor, progress).map(_residual_and_jacobian, model, (rows,))
+    constraints = derived(robot, _constraints)
+    work = blocks(constraints.numbers, block, threads, executor, progress)
+    r, K = work.map(_residual_and_jacobian, constraints, (rows,))
     _require_finite(r, K)
     return r, K
 
 
-def _residual(model: Problem, q: Matrix) -> tuple[Matrix]:
-    return (model.residual(q),)
+def _constraints(robot: Robot) -> Evaluator:
+    return evaluator(robot, few=False)
 
 
-def _residual_and_jacobian(model: Problem, q: Matrix) -> tuple[Matrix, Matrix]:
-    return model.residual(q), model.jacobian(q)
+def _residual(constraints: Evaluator, q: Matrix) -> tuple[Matrix]:
+    return (constraints.residual(constraints.at(q)),)
+
+
+def _residual_and_jacobian(constraints: Evaluator, q: Matrix) -> tuple[Matrix, Matrix]:
+    at = constraints.at(q)
+    return constraints.residual(at), constraints.jacobian(at)
 
 
 def _require_finite(*results: Matrix) -> None:

@@ -140,9 +140,7 @@ def per_constraint(robot: Robot, lambdas: Vector) -> tuple[Vector, ...]:
 def by_joint(tree: TreeKinematics, values: Vector) -> dict[str, tuple[float, ...]]:
     """The values (nv,) by joint name, for the joints that have a value above rounding."""
     least = 1e-6 * np.abs(values).max(initial=0.0)
-    found, names = {}, tree.velocity_names
-    for v in tree.own_velocities:
-        own = values[v.start : v.stop]
-        if (np.abs(own) > least).any():
-            found[names[v.start]] = tuple(own.tolist())
-    return found
+    owned: dict[str, list[float]] = {}
+    for name, value in zip(tree.velocity_names, values.tolist(), strict=True):
+        owned.setdefault(name, []).append(value)
+    return {name: tuple(own) for name, own in owned.items() if max(map(abs, own)) > least}

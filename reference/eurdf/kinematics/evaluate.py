@@ -201,7 +201,7 @@ class Evaluator:
 
     def _state(self, q: Matrix, poses: RelativePoses | None = None) -> State:
         poses = self._pairs.at(q) if poses is None else poses
-        return State(q, poses, [poses.of(group.pairs) for group in self._groups])
+        return State(q, poses, [poses] if self._is_plain else [poses.of(group.pairs) for group in self._groups])
 
 
 def evaluator(

@@ -10,10 +10,8 @@ from types import MappingProxyType
 
 from eurdf.kinematics.exceptions import CannotLock
 from eurdf.mechanism.constraint import Constraint
-from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_types import JointType
+from eurdf.mechanism.joint import Joint, Mimic, drivers
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.mimic import Mimic, drivers
 from eurdf.mechanism.pose import Pose
 from eurdf.mechanism.spanning_tree import rigid_roots
 
@@ -133,8 +131,7 @@ def _fixed(joint: Joint, at: Mapping[str, Pose]) -> Joint:
     """The joint; if it is locked, a fixed joint at its locked pose."""
     if joint.name not in at:
         return joint
-    placement = joint.placement * at[joint.name] * joint.offset
-    return Joint(joint.name, JointType.FIXED, joint.parent, joint.child, placement)
+    return joint.fixed(joint.placement * at[joint.name] * joint.offset)
 
 
 def _near(one: Pose, other: Pose) -> bool:

@@ -10,7 +10,7 @@ from typing import Any, Protocol
 
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.closures.coupling import Coordinate
-from eurdf.mechanism.frame import Anchor
+from eurdf.mechanism.body import Anchor
 
 
 class MovingJoint(Protocol):

@@ -8,8 +8,8 @@ from dataclasses import fields
 from eurdf.closures.kind import REGISTRY
 from eurdf.format.closure_model import AnyClosure, Hinge, HingeAboutTwo
 from eurdf.linking.frame_names import FrameNames
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import RIGID, Closure, Compliance
-from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.pose import Pose
 from eurdf.reading.reporter import YamlReporter
 

@@ -9,8 +9,7 @@ from eurdf.diagnostics import did_you_mean
 from eurdf.format.closure_model import Coupling as CouplingEntry
 from eurdf.format.urdf.data import Urdf
 from eurdf.mechanism.constraint import Coupling
-from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.mimic import drivers
+from eurdf.mechanism.joint import Joint, drivers
 from eurdf.reading.reporter import YamlReporter
 from eurdf.reading.yaml_node import Pointer
 

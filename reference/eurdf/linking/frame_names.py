@@ -10,7 +10,7 @@ from eurdf.diagnostics import did_you_mean
 from eurdf.format.closure_model import Frame as FrameEntry
 from eurdf.format.closure_model import FrameReference, NamedFrame
 from eurdf.format.urdf.data import Urdf
-from eurdf.mechanism.frame import Anchor, Frame
+from eurdf.mechanism.body import Anchor, Frame
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.pose import Pose
 from eurdf.reading.reporter import YamlReporter

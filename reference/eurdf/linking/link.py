@@ -21,11 +21,9 @@ from eurdf.linking.mimic_chains import check_chains
 from eurdf.linking.ranges import check_ranges
 from eurdf.linking.replacement import Joints, replace_joints
 from eurdf.linking.urdf_tree import bodies_of, joint_of
-from eurdf.mechanism.frame import Frame
-from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, Root, root_joint
-from eurdf.mechanism.mimic import Mimic, drivers
-from eurdf.mechanism.motor import Motor
+from eurdf.mechanism.body import Frame
+from eurdf.mechanism.joint import Joint, Mimic, drivers
+from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, Motor, Root, root_joint
 from eurdf.mechanism.spanning_tree import depth_first, rigid_roots
 from eurdf.reading.reporter import YamlReporter
 from eurdf.reading.yaml_node import json_pointer

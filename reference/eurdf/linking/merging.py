@@ -121,12 +121,7 @@ def merge(chain: Chain, name: str) -> tuple[Joint, Joint, Joint]:
             by_axis[rate] = tuple((getattr(joint.properties, rate) or (math.inf,))[0] for joint in nearest)
     properties = replace(JointProperties.unlimited(JointType.SPHERICAL), **by_axis)
     ball = Joint(name, JointType.SPHERICAL, first.parent, third.child, zero, offset, properties=properties)
-    return fixed(first), fixed(second), ball
-
-
-def fixed(joint: Joint) -> Joint:
-    """EU-JNT-019: the joint locked at its zero."""
-    return Joint(joint.name, JointType.FIXED, joint.parent, joint.child, joint.placement, joint.offset)
+    return first.fixed(), second.fixed(), ball
 
 
 def find_chains(

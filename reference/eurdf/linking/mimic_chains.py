@@ -5,8 +5,8 @@ from __future__ import annotations
 from eurdf.diagnostics import Diagnostics
 from eurdf.format.conventions import HINT, LARGEST, is_too_small, too_large, too_small
 from eurdf.format.urdf.data import Urdf
+from eurdf.mechanism.joint import drivers
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.mimic import drivers
 
 
 def check_chains(mechanism: Mechanism, urdf: Urdf, diagnostics: Diagnostics) -> None:

@@ -11,7 +11,7 @@ from eurdf.diagnostics import Hint, did_you_mean
 from eurdf.format.conventions import HINT, is_too_small, too_small
 from eurdf.format.joint_model import Joint as JointEntry
 from eurdf.format.urdf.data import Urdf
-from eurdf.linking.merging import PARALLEL, NotMergeable, check_chain, find_chains, fixed, merge
+from eurdf.linking.merging import PARALLEL, NotMergeable, check_chain, find_chains, merge
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
@@ -251,7 +251,7 @@ class _Replacement:
             )
             return None
         if new == "fixed":
-            return fixed(joint)
+            return joint.fixed()
         if new == "spherical":
             return self._spread(joint, JointType.SPHERICAL, ())
         if new == "universal":

@@ -1,4 +1,4 @@
-"""Bodies: the links of the robot, with inertia and shapes."""
+"""Bodies, the links of the robot, with inertia and shapes, and frames fixed to them."""
 
 from __future__ import annotations
 
@@ -62,3 +62,35 @@ class Body:
     visuals: tuple[Shape, ...] = ()
     collisions: tuple[Shape, ...] = ()
     virtual: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """A named frame that is neither that of a body nor that of a joint.
+
+    Attributes:
+        name: As the description gives it, or the name of a joint that version 1 split in two.
+        body: Body it is fixed to.
+        pose: Pose in that body's frame.
+        kind: ``frame`` for one that the description adds, ``joint`` for a joint of the URDF that was split.
+    """
+
+    name: str
+    body: str
+    pose: Pose = IDENTITY
+    kind: Literal["frame", "joint"] = "frame"
+
+
+@dataclass(frozen=True, slots=True)
+class Anchor:
+    """One side of a closure.
+
+    Attributes:
+        body: Body it is fixed to.
+        pose: Pose in that body's frame.
+        frame: Name the description gives it; empty for a pose written in place.
+    """
+
+    body: str
+    pose: Pose = IDENTITY
+    frame: str = ""

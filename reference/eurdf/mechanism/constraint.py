@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
-from eurdf.mechanism.frame import Anchor
+from eurdf.mechanism.body import Anchor
 
 if TYPE_CHECKING:
     from typing_extensions import Self

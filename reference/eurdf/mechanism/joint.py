@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import NamedTuple
 
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Quaternion, Vector3, direction
 
 #: A coordinate may be beyond its limit by this much, rad or m (EU-CFG-004).
@@ -34,6 +33,15 @@ class Motion(NamedTuple):
 
 
 _BALL = Motion(None, turns=True, advance=0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Mimic:
+    """q = multiplier · q_joint + offset, in rad or m."""
+
+    joint: str
+    multiplier: float = 1.0
+    offset: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,6 +145,11 @@ class Joint:
             self.mimic,
         )
 
+    def fixed(self, placement: Pose | None = None) -> Joint:
+        """The joint locked at its zero (EU-JNT-019), or with its child at a pose in the parent."""
+        at = (self.placement, self.offset) if placement is None else (placement, IDENTITY)
+        return Joint(self.name, JointType.FIXED, self.parent, self.child, *at)
+
     @property
     def motions(self) -> tuple[Motion, ...]:
         """EU-JNT-015 to -018, EU-JNT-025: the steps of its type, with its axes and its pitch."""
@@ -211,3 +224,32 @@ class Joint:
 def is_no_range(lower: float, upper: float) -> bool:
     """EU-URD-025: whether two position limits are no range: URDF reads limits that are left out as 0."""
     return lower == upper == 0.0
+
+
+def drivers(mimics: Mapping[str, Mimic]) -> dict[str, Mimic]:
+    """For each mimic joint, the joint at the end of its chain, and the relation between the two.
+
+    A chain q₂ = m₂ q₁ + o₂, q₁ = m₁ q + o₁ becomes q₂ = m₂ m₁ q + (m₂ o₁ + o₂). A joint whose chain ends in a cycle is
+    skipped.
+
+    Args:
+        mimics: For each mimic joint, the joint that it names and the relation between the two, in rad or m.
+    """
+    resolved: dict[str, Mimic] = {}
+    endless: set[str] = set()
+    for name in mimics:
+        chain: dict[str, None] = {}
+        while name in mimics and not (name in resolved or name in chain or name in endless):
+            chain[name] = None
+            name = mimics[name].joint
+        if name in chain or name in endless:
+            endless.update(chain)
+            continue
+        for joint in reversed(chain):
+            mimic = mimics[joint]
+            step = resolved.get(mimic.joint)
+            if step is not None:
+                offset = mimic.multiplier * step.offset + mimic.offset
+                mimic = Mimic(step.joint, mimic.multiplier * step.multiplier, offset)
+            resolved[joint] = mimic
+    return resolved

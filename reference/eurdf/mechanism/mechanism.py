@@ -13,12 +13,10 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any, Literal
 
-from eurdf.mechanism.body import Body
+from eurdf.mechanism.body import Body, Frame
 from eurdf.mechanism.constraint import Closure, Constraint, Coupling
-from eurdf.mechanism.frame import Frame
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.motor import Motor
 
 Root = Literal["fixed", "floating"]
 
@@ -37,6 +35,19 @@ def _read_only(content: dict[Any, Any]) -> MappingProxyType[Any, Any]:
 
 # Python can neither pickle nor copy a read-only mapping by itself.
 copyreg.pickle(MappingProxyType, lambda mapping: (_read_only, (mapping.copy(),)))
+
+
+@dataclass(frozen=True, slots=True)
+class Motor:
+    """What a description states of a motor beside its gear, which is a property of the joint.
+
+    Attributes:
+        name: Name of the actuator.
+        control: Smallest and largest torque (N·m) or force (N) at each velocity of the joint, or None.
+    """
+
+    name: str
+    control: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,9 +6,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import fields, replace
 from typing import TypeVar
 
-from eurdf.mechanism.body import Body
+from eurdf.mechanism.body import Anchor, Body, Frame
 from eurdf.mechanism.constraint import Constraint
-from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism

@@ -12,7 +12,7 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.pinocchio.coordinates import Slot, slots
+from eurdf.pinocchio.configuration import Slot, slots
 
 _UNLIMITED = (-math.inf, math.inf)
 

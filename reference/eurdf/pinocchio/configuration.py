@@ -1,21 +1,62 @@
-"""Configurations: from the coordinates of files and answers to Pinocchio's q and back."""
+"""Configurations: where each joint has its coordinates in q, from those of files and answers to q, and back."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
+from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, root_joint
 from eurdf.pinocchio.arguments import checked_array
-from eurdf.pinocchio.coordinates import Slot, slots
+from eurdf.pinocchio.joint_model import is_circular
 from eurdf.pinocchio.mimic import following
 
 Vector = npt.NDArray[np.float64]
+
+
+class Slot(NamedTuple):
+    """A joint with its own coordinates, and their indices.
+
+    Attributes:
+        joint: The joint.
+        idx_q: Index of the first of its coordinates in q.
+        nq: Number of its coordinates as Pinocchio has them.
+        idx_v: Index of the first of its velocities in v.
+        nv: Number of its velocities.
+    """
+
+    joint: Joint
+    idx_q: int
+    nq: int
+    idx_v: int
+    nv: int
+
+
+def slots(mechanism: Mechanism) -> dict[str, Slot]:
+    """The slots of all joints except fixed joints and mimic joints, in the order of the mechanism's joints.
+
+    Args:
+        mechanism: The mechanism; the indices are those in the model that `build_model` makes of it.
+    """
+    led = following(mechanism)
+    mimics, unwrapped = led.mimics, led.unwrapped
+    idx_q, idx_v = (7, 6) if mechanism.root == "floating" else (0, 0)
+    found: dict[str, Slot] = {}
+    for joint in (*led.late, *mechanism.joints):
+        kind, name = joint.type, joint.name
+        if kind.is_fixed or name in mimics or name in found:
+            continue
+        nq, nv = len(kind.coordinates), kind.nv
+        nq += is_circular(kind, unwrapped=name in unwrapped)
+        found[name] = Slot(joint, idx_q, nq, idx_v, nv)
+        idx_q, idx_v = idx_q + nq, idx_v + nv
+    return {joint.name: found[joint.name] for joint in mechanism.joints if joint.name in found} if led.late else found
 
 
 def configuration_vector(
@@ -47,7 +88,7 @@ def configuration_vector(
     for name, given in coordinates.items():
         values = [float(value) for value in given]
         if name == ROOT_JOINT and mechanism.root == "floating":
-            q[:7] = _checked(name, values, JointType.FLOATING)
+            q[:7] = _checked(name, values, root_joint("").type)
             continue
         slot = at.get(name)
         if slot is None:

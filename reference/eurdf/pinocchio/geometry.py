@@ -12,9 +12,8 @@ import pinocchio as pin
 from eurdf.exceptions import EurdfError
 from eurdf.mechanism.body import Shape
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.pinocchio.frames import body_frame_ids
+from eurdf.pinocchio.frames import body_frame_ids, placement_of
 from eurdf.pinocchio.meshes import Mesh, read_meshes
-from eurdf.pinocchio.placement import placement_of
 
 Resolve = Callable[[str], str | None]
 #: Cache of the geometry of meshes, by path and scale.
@@ -116,26 +115,6 @@ def _geometry(
             if (path, size) not in cache:
                 cache[path, size] = _mesh_geometry(meshes[path], size)
             return cache[path, size], path, np.array(size)
-
-
-def carry_over(geometry_model: pin.GeometryModel, before: pin.Model, after: pin.Model) -> pin.GeometryModel:
-    """The geometry, fixed to the joints of the new model.
-
-    Both models have the same frames in the same order: `build_model` creates the same frames for a fixed and a moving
-    joint, and frames that were added by hand come after them. So the first frame of each joint gives the new pose of
-    what is attached to the joint.
-    """
-    sites: dict[int, tuple[int, pin.SE3]] = {}
-    for old, new in zip(before.frames, after.frames, strict=False):
-        if old.parentJoint not in sites:
-            stays = old.placement == new.placement
-            jMj = pin.SE3.Identity() if stays else new.placement * old.placement.inverse()
-            sites[old.parentJoint] = new.parentJoint, jMj
-    carried = geometry_model.copy()
-    for geometry in carried.geometryObjects:
-        geometry.parentJoint, jMj = sites[geometry.parentJoint]
-        geometry.placement = jMj * geometry.placement
-    return carried
 
 
 def meshes_of(mechanism: Mechanism, resolve: Resolve) -> dict[str, Mesh]:

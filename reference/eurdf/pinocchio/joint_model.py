@@ -1,4 +1,4 @@
-"""The Pinocchio joint model of each joint type."""
+"""The Pinocchio joint models of each joint type."""
 
 from __future__ import annotations
 
@@ -18,43 +18,48 @@ _ALIGNED = 1e-12
 _ONE_CONTINUOUS_JOINT = """<robot name=""><link name="a"/><link name="b"/><joint name="j" type="continuous">
 <parent link="a"/><child link="b"/><axis xyz="{}"/></joint></robot>"""
 
-_REVOLUTE = tuple(pin.JointModel(kind()) for kind in (pin.JointModelRX, pin.JointModelRY, pin.JointModelRZ))
+# About or along x, y and z, and any other axis.
 _CONTINUOUS = tuple(pin.JointModel(kind()) for kind in (pin.JointModelRUBX, pin.JointModelRUBY, pin.JointModelRUBZ))
-_PRISMATIC = tuple(pin.JointModel(kind()) for kind in (pin.JointModelPX, pin.JointModelPY, pin.JointModelPZ))
-_HELICAL = (pin.JointModelHX, pin.JointModelHY, pin.JointModelHZ)
-_PLANAR = pin.JointModel(pin.JointModelPlanar())
-_FLOATING = pin.JointModel(pin.JointModelFreeFlyer())
-_SPHERICAL = pin.JointModel(pin.JointModelSpherical())
+_MODELS = {
+    "turn": (pin.JointModelRX, pin.JointModelRY, pin.JointModelRZ, pin.JointModelRevoluteUnaligned),
+    "slide": (pin.JointModelPX, pin.JointModelPY, pin.JointModelPZ, pin.JointModelPrismaticUnaligned),
+    "screw": (pin.JointModelHX, pin.JointModelHY, pin.JointModelHZ, pin.JointModelHelicalUnaligned),
+}
+_WHOLE = {
+    JointType.PLANAR: pin.JointModel(pin.JointModelPlanar()),
+    JointType.FLOATING: pin.JointModel(pin.JointModelFreeFlyer()),
+    JointType.SPHERICAL: pin.JointModel(pin.JointModelSpherical()),
+}
 
 
-def joint_model(joint: Joint, *, unwrapped: bool = False) -> pin.JointModel:
-    """The model of a moving joint. It may be shared: copy it before changing it.
+def joint_models(joint: Joint, *, unwrapped: bool = False) -> tuple[pin.JointModel, ...]:
+    """The models of a moving joint, in series. They may be shared: copy one before changing it.
+
+    Each has a motion subspace that does not depend on its coordinates: of others, such as `JointModelUniversal` and
+    `JointModelComposite`, Pinocchio 4.1 has wrong derivatives. So a joint about or along axes of its own has one model
+    for each of them.
 
     Args:
         joint: Any joint but a fixed one.
         unwrapped: Whether the coordinate of a continuous joint is an unwrapped angle instead of (cos, sin).
     """
-    match joint.type:
-        case JointType.REVOLUTE:
-            return _revolute(joint.axes[0])
-        case JointType.CONTINUOUS:
-            return _revolute(joint.axes[0]) if unwrapped else _continuous(joint.axes[0])
-        case JointType.PRISMATIC:
-            return _prismatic(joint.axes[0])
-        case JointType.SPHERICAL:
-            return _SPHERICAL
-        case JointType.UNIVERSAL:
-            return _universal(joint.axes[0], joint.axes[1])
-        case JointType.CYLINDRICAL:
-            return _in_series(_prismatic(joint.axes[0]), _revolute(joint.axes[0]))
-        case JointType.HELICAL:
-            return _helical(joint.axes[0], joint.pitch)
-        case JointType.PLANAR:
-            return _PLANAR
-        case JointType.FLOATING:
-            return _FLOATING
-        case JointType.FIXED:
-            raise ValueError(f"joint '{joint.name}' is fixed and has no joint model")
+    kind = joint.type
+    if kind.moving_frame:
+        return (_WHOLE[kind],)
+    if is_circular(kind, unwrapped=unwrapped):
+        return (_continuous(joint.axes[0]),)
+    steps = ((step, joint.axes[at] if isinstance(at, int) else at) for step, at in kind.steps)
+    return tuple(_along(step, axis, joint.pitch) for step, axis in steps)
+
+
+def number_of_models(kind: JointType) -> int:
+    """Number of joints that the model has for a joint of the type; one for a fixed joint, which is a frame."""
+    return 1 if kind.moving_frame else max(1, len(kind.steps))
+
+
+def is_circular(kind: JointType, *, unwrapped: bool) -> bool:
+    """Whether Pinocchio has the last coordinate, an angle, as (cos, sin): one number more in q."""
+    return kind is JointType.PLANAR or (kind is JointType.CONTINUOUS and not unwrapped)
 
 
 def unit(axis: Vector3) -> Vector3:
@@ -79,19 +84,13 @@ def aligned(axis: Vector3) -> int | None:
 # Models are kept: the legs of a robot have the same axes, and to make one takes longer than all else of a joint. Equal
 # axes have equal models: -0.0, which equals 0.0, becomes 0.0.
 @lru_cache(maxsize=256)
-def _revolute(axis: Vector3) -> pin.JointModel:
+def _along(kind: str, axis: Vector3, pitch: float) -> pin.JointModel:
+    """The model of a turn, slide or screw."""
+    per_radian = (pitch / (2.0 * math.pi),) if kind == "screw" else ()
     index = aligned(axis)
     if index is not None:
-        return _REVOLUTE[index]
-    return pin.JointModel(pin.JointModelRevoluteUnaligned(np.array(unit(axis)) + 0.0))
-
-
-@lru_cache(maxsize=256)
-def _prismatic(axis: Vector3) -> pin.JointModel:
-    index = aligned(axis)
-    if index is not None:
-        return _PRISMATIC[index]
-    return pin.JointModel(pin.JointModelPrismaticUnaligned(np.array(unit(axis)) + 0.0))
+        return pin.JointModel(_MODELS[kind][index](*per_radian))
+    return pin.JointModel(_MODELS[kind][3](np.array(unit(axis)) + 0.0, *per_radian))
 
 
 def _continuous(axis: Vector3) -> pin.JointModel:
@@ -105,27 +104,3 @@ def _continuous(axis: Vector3) -> pin.JointModel:
 def _continuous_about(xyz: str) -> pin.JointModel:
     """Python cannot give JointModelRevoluteUnboundedUnaligned its axis; Pinocchio's URDF parser can."""
     return pin.JointModel(pin.buildModelFromXML(_ONE_CONTINUOUS_JOINT.format(xyz)).joints[1])
-
-
-def _helical(axis: Vector3, pitch: float) -> pin.JointModel:
-    per_radian = pitch / (2.0 * math.pi)
-    index = aligned(axis)
-    if index is None:
-        return pin.JointModelHelicalUnaligned(np.array(unit(axis)), per_radian)
-    return _HELICAL[index](per_radian)
-
-
-@lru_cache(maxsize=256)
-def _universal(first: Vector3, second: Vector3) -> pin.JointModel:
-    """Two revolutes in one point. Pinocchio's universal joint requires exactly perpendicular axes."""
-    (a, b, c), (x, y, z) = unit(first), unit(second)
-    if a * x + b * y + c * z == 0.0:
-        return pin.JointModel(pin.JointModelUniversal(np.array((a, b, c)) + 0.0, np.array((x, y, z)) + 0.0))
-    return _in_series(_revolute(first), _revolute(second))
-
-
-def _in_series(first: pin.JointModel, second: pin.JointModel) -> pin.JointModel:
-    composite = pin.JointModelComposite(2)
-    composite.addJoint(first)
-    composite.addJoint(second)
-    return pin.JointModel(composite)

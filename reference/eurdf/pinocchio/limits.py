@@ -10,11 +10,21 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_types import JointType
 
 # Pinocchio bounds a cosine, a sine and each component of a unit quaternion by this: never reached, and finite.
 _UNIT = 1.01
 _INF = math.inf
+
+#: The properties that have a number for each velocity, and what it is if the joint states none.
+_OF_VELOCITIES = (
+    ("velocity", _INF),
+    ("effort", _INF),
+    ("friction", 0.0),
+    ("damping", 0.0),
+    ("armature", 0.0),
+    ("rotor_inertia", 0.0),
+    ("gear_ratio", 1.0),
+)
 
 Vector = npt.NDArray[np.float64]
 
@@ -32,8 +42,7 @@ def set_limits(model: pin.Model, joints: Sequence[tuple[Joint, int]], root_nq: i
         root_nv: Number of its velocities.
     """
     lower, upper = _first(root_nq, model.lowerPositionLimit, model.upperPositionLimit)
-    velocity, effort, friction, damping, armature, rotor_inertia, gear_ratio = _first(
-        root_nv,
+    of_root = (
         model.upperVelocityLimit,
         model.upperEffortLimit,
         model.upperDryFrictionLimit,
@@ -42,32 +51,21 @@ def set_limits(model: pin.Model, joints: Sequence[tuple[Joint, int]], root_nq: i
         model.rotorInertia,
         model.rotorGearRatio,
     )
+    found = _first(root_nv, *of_root)
     for joint, nq in joints:
         lowest, highest = _position_bounds(joint, nq)
         lower += lowest
         upper += highest
-        nv = joint.type.nv
-        properties = joint.properties
-        velocity += properties.velocity or (_INF,) * nv
-        effort += properties.effort or (_INF,) * nv
-        friction += properties.friction or (0.0,) * nv
-        damping += properties.damping or (0.0,) * nv
-        armature += properties.armature or (0.0,) * nv
-        rotor_inertia += properties.rotor_inertia or (0.0,) * nv
-        gear_ratio += properties.gear_ratio or (1.0,) * nv
-    model.lowerPositionLimit = np.array(lower)
-    model.upperPositionLimit = np.array(upper)
+        nv, properties = joint.type.nv, joint.properties
+        for numbers, (name, default) in zip(found, _OF_VELOCITIES, strict=True):
+            numbers += getattr(properties, name) or (default,) * nv
+    velocity, effort, friction, *others = map(np.array, found)
+    model.lowerPositionLimit, model.upperPositionLimit = np.array(lower), np.array(upper)
     # Pinocchio 4.1 gives the lower velocity limit the sign of the upper one. Whichever it gave its defaults is kept.
-    model.lowerVelocityLimit = np.copysign(velocity, model.lowerVelocityLimit)
-    model.upperVelocityLimit = np.array(velocity)
-    model.upperEffortLimit = np.array(effort)
-    model.lowerEffortLimit = -model.upperEffortLimit
-    model.upperDryFrictionLimit = np.array(friction)
-    model.lowerDryFrictionLimit = -model.upperDryFrictionLimit
-    model.damping = np.array(damping)
-    model.armature = np.array(armature)
-    model.rotorInertia = np.array(rotor_inertia)
-    model.rotorGearRatio = np.array(gear_ratio)
+    model.lowerVelocityLimit, model.upperVelocityLimit = np.copysign(velocity, model.lowerVelocityLimit), velocity
+    model.lowerEffortLimit, model.upperEffortLimit = -effort, effort
+    model.lowerDryFrictionLimit, model.upperDryFrictionLimit = -friction, friction
+    model.damping, model.armature, model.rotorInertia, model.rotorGearRatio = others
 
 
 def _first(count: int, *vectors: Vector) -> list[list[float]]:
@@ -79,14 +77,10 @@ def _position_bounds(joint: Joint, nq: int) -> tuple[tuple[float, ...], tuple[fl
     """Lower and upper position limits as Pinocchio's coordinates have them, ``nq`` numbers each."""
     lower = joint.properties.lower or (-_INF,) * len(joint.type.coordinates)
     upper = joint.properties.upper or (_INF,) * len(joint.type.coordinates)
-    kind = joint.type
-    if kind is JointType.SPHERICAL or (kind is JointType.CONTINUOUS and nq == 2):
-        plain = 0
-    elif kind is JointType.PLANAR:
-        plain = 2
-    elif kind is JointType.FLOATING:
-        plain = 3
-    else:
+    plain = joint.type.quaternion
+    if nq > len(lower):  # the last coordinate is a (cos, sin) pair
+        plain = len(lower) - 1
+    if plain is None:
         return lower, upper
     unit = (_UNIT,) * (nq - plain)
     return (*lower[:plain], *(-bound for bound in unit)), (*upper[:plain], *unit)

@@ -7,10 +7,8 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import NamedTuple
 
-from eurdf.mechanism.joint import Joint, JointProperties
-from eurdf.mechanism.joint_types import JointType
+from eurdf.mechanism.joint import Joint, JointProperties, Mimic, drivers
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.mimic import Mimic, drivers
 
 
 class Following(NamedTuple):
@@ -44,7 +42,7 @@ def following(mechanism: Mechanism) -> Following:
 
 def _unwrapped(mechanism: Mechanism, resolved: Mapping[str, Mimic]) -> frozenset[str]:
     """EU-CPL-006: the continuous joints whose whole turns matter."""
-    continuous = {joint.name for joint in mechanism.joints if joint.type is JointType.CONTINUOUS}
+    continuous = {joint.name for joint in mechanism.joints if joint.type.is_axial and not joint.type.limited}
     # With an integer multiplier, a turn of the leader is a whole number of turns of the mimic joint.
     whole = {name for name, mimic in resolved.items() if mimic.multiplier.is_integer()}
     # If one joint of a leader needs an unwrapped angle, so do the leader and its other mimic joints.

@@ -8,19 +8,19 @@ none (EU-FIL-006), are infinite; those of acceleration and jerk are left out, as
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
+from itertools import count
 
 import pinocchio as pin
 
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
-from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY
+from eurdf.pinocchio.frames import placement_of
 from eurdf.pinocchio.inertia import inertias_of, is_zero
-from eurdf.pinocchio.joint_model import joint_model
+from eurdf.pinocchio.joint_model import joint_models
 from eurdf.pinocchio.limits import set_limits
 from eurdf.pinocchio.mimic import following, with_followers
-from eurdf.pinocchio.placement import placement_of
 
 _Indices = tuple[int, int, int, int]  # of a joint: its own, and where its q, its v and its v with mimic joints start
 
@@ -43,6 +43,9 @@ def build_model(mechanism: Mechanism) -> pin.Model:
     joint of its own, named ``<leader>/coordinate``, which moves nothing and which the leader mimics as its mimic joints
     do; a chain is resolved to its end; such a continuous joint is one angle with infinite limits.
 
+    A universal or cylindrical joint is two joints in series, as Pinocchio's derivatives need (`joint_models`): the last
+    has its name, the first the name ``<joint>/1``, or the next such name that is free. There is no body between.
+
     Its velocities are those of EU-JNT-026; the inertias of links that fixed joints hold together are summed
     (EU-INR-005), and armatures are part of the mass matrix (EU-INR-006).
 
@@ -61,13 +64,14 @@ def build_model(mechanism: Mechanism) -> pin.Model:
     joint_id, body_frame = _add_root(model, mechanism, root_inertia)
     root_nq, root_nv = model.nq, model.nv
 
+    names = {joint.name for joint in mechanism.joints}
     free: list[tuple[Joint, int]] = []  # joints with coordinates of their own, in the model's order
     sources: dict[str, _Indices] = {}  # indices of the leaders' coordinates
     for joint in led.late:
-        moving = joint_model(joint, unwrapped=joint.name in led.unwrapped)
+        (moving,) = joint_models(joint, unwrapped=joint.name in led.unwrapped)
         free.append((joint, moving.nq))
         # It hangs from a floating root, whose coordinates stay the first.
-        coordinate = model.addJoint(joint_id, moving, _HERE, _coordinate_name(joint, mechanism))
+        coordinate = model.addJoint(joint_id, moving, _HERE, _coordinate_name(joint.name, names))
         sources[joint.name] = _indices(model, coordinate)
 
     add_joint, add_frame, append_body = model.addJoint, model.addFrame, model.appendBodyToJoint
@@ -87,10 +91,13 @@ def build_model(mechanism: Mechanism) -> pin.Model:
             joint_id = parent_joint
             joint_frame = add_frame(pin.Frame(name, joint_id, parent_frame, placement, _FIXED_JOINT, inertia))
         else:
-            moving = joint_model(joint, unwrapped=name in unwrapped)
+            *before, moving = joint_models(joint, unwrapped=name in unwrapped)
             mimic = mimics.get(name) or (Mimic(name) if name in sources else None)
             if mimic is None:
-                free.append((joint, moving.nq))
+                free.append((joint, moving.nq + len(before)))
+                for part in before:
+                    parent_joint = add_joint(parent_joint, part, placement, _part_name(name, names))
+                    parent_frame, placement = add_joint_frame(parent_joint, parent_frame), _HERE
                 joint_id = add_joint(parent_joint, moving, placement, name)
                 if mimics:
                     sources[name] = _indices(model, joint_id)
@@ -147,9 +154,13 @@ def _follower(moving: pin.JointModel, mimic: Mimic, sources: Mapping[str, _Indic
     return pin.JointModelMimic(moving, mimic.multiplier, mimic.offset)
 
 
-def _coordinate_name(leader: Joint, mechanism: Mechanism) -> str:
-    names = {joint.name for joint in mechanism.joints}
-    name = f"{leader.name}/coordinate"
-    while name in names:
+def _coordinate_name(leader: str, taken: Collection[str]) -> str:
+    name = f"{leader}/coordinate"
+    while name in taken:
         name += "'"
     return name
+
+
+def _part_name(joint: str, taken: Collection[str]) -> str:
+    """Name of the first of two joints in series, of which the second has the joint's own."""
+    return next(name for name in (f"{joint}/{number}" for number in count(1)) if name not in taken)

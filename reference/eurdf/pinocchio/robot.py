@@ -14,10 +14,9 @@ from eurdf.diagnostics import Diagnostic
 from eurdf.mechanism.constraint import Constraint
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.actuation import Actuation, build_actuation
-from eurdf.pinocchio.configuration import Vector, configuration_vector, joint_coordinates, own_coordinates
+from eurdf.pinocchio.configuration import Slot, Vector, configuration_vector, joint_coordinates, own_coordinates, slots
 from eurdf.pinocchio.constraint import build_constraint_models
-from eurdf.pinocchio.coordinates import Slot, slots
-from eurdf.pinocchio.geometry import MeshCache, Resolve, build_geometry, carry_over, meshes_of
+from eurdf.pinocchio.geometry import MeshCache, Resolve, build_geometry, meshes_of
 from eurdf.pinocchio.meshes import Mesh
 from eurdf.pinocchio.model import build_model
 from eurdf.pinocchio.tree import PinocchioTree, build_tree
@@ -251,10 +250,33 @@ def build_robot(
 
 
 def carried_over(before: Robot, after: Robot) -> Geometry | None:
-    """The geometry of a robot, fixed to the joints of another one whose bodies are at the same places."""
+    """The geometry of a robot, fixed to the joints of another one whose bodies are at the same places.
+
+    Both have the same frames in the same order: `build_model` creates the same frames for a fixed and a moving joint,
+    except for the first of two joints in series, and frames that were added by hand come after them. So the first frame
+    of each joint gives the new pose of what is attached to the joint.
+    """
     if before.geometry is None:
         return None
-    return Geometry(*(carry_over(each, before.model, after.model) for each in before.geometry))
+    frames: dict[int, int] = {}
+    sites: dict[int, tuple[int, pin.SE3]] = {}
+    for (index, old), (new_index, new) in zip(_frames(before), _frames(after), strict=False):
+        frames[index] = new_index
+        if old.parentJoint not in sites:
+            stays = old.placement == new.placement
+            jMj = pin.SE3.Identity() if stays else new.placement * old.placement.inverse()
+            sites[old.parentJoint] = new.parentJoint, jMj
+    carried = Geometry(*(each.copy() for each in before.geometry))
+    for geometry in (found for each in carried for found in each.geometryObjects):
+        geometry.parentJoint, jMj = sites[geometry.parentJoint]
+        geometry.parentFrame = frames.get(geometry.parentFrame, geometry.parentFrame)
+        geometry.placement = jMj * geometry.placement
+    return carried
+
+
+def _frames(robot: Robot) -> list[tuple[int, pin.Frame]]:
+    """The frames with their indices, but those of the first of two joints in series."""
+    return [each for each in enumerate(robot.model.frames) if each[1].parentJoint not in robot.tree.in_series]
 
 
 def _nothing(uri: str) -> None:

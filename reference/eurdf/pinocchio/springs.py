@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from eurdf.mechanism.joint import Mimic
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.mimic import Mimic
-from eurdf.pinocchio.coordinates import Slot
+from eurdf.pinocchio.configuration import Slot
 from eurdf.pinocchio.mimic import following
 
 Vector = npt.NDArray[np.float64]

@@ -13,13 +13,11 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from eurdf.array import Matrix, Vector
-from eurdf.mechanism.frame import Anchor
-from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.body import Anchor
+from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.pinocchio.arguments import checked_data
-from eurdf.pinocchio.coordinates import Slot, slots
-from eurdf.pinocchio.frame_index import frame_index
-from eurdf.pinocchio.frames import body_frame_ids
-from eurdf.pinocchio.placement import placement_of
+from eurdf.pinocchio.configuration import Slot, slots
+from eurdf.pinocchio.frames import body_frame_ids, frame_index, placement_of
 from eurdf.pinocchio.springs import NO_SPRINGS, Springs, build_springs
 from eurdf.pinocchio.tree_few import Site
 from eurdf.pinocchio.tree_recursion import TreeRecursion
@@ -125,13 +123,16 @@ class PinocchioTree:
     @cached_property
     def velocity_names(self) -> list[str]:
         """For each velocity (nv) the name of its joint."""
-        model = self.model
-        names, joints = [""] * self.nv, set(model.names)
-        for name, own in zip(model.names, self.own_velocities, strict=True):
-            # The coordinate of a leader that comes after one of its mimic joints belongs to a helper joint.
-            leader = name.removesuffix("/coordinate")
-            names[own.start : own.stop] = [leader if leader in joints else name] * len(own)
+        names = [ROOT_JOINT] * self.nv
+        for name, (_, _, first, count) in self._first.items():
+            names[first : first + count] = [name] * count
         return names
+
+    @cached_property
+    def in_series(self) -> dict[int, int]:
+        """The first of each two joints that are one joint of the mechanism, with the second, which has its name."""
+        own = [self.model.getJointId(name) for name, (_, _, _, count) in self._first.items() if count > 1]
+        return {self.parents[joint]: joint for joint in own if len(self.own_velocities[joint]) == 1}
 
     @property
     def position_limits(self) -> tuple[Vector, Vector]:
@@ -166,6 +167,9 @@ class PinocchioTree:
             ValueError: The tree has no such joint.
         """
         model = self.model
+        _, _, first, count = self._first.get(joint, (0, 0, 0, 0))
+        if count:
+            return range(first, first + count)
         if not model.existJointName(joint):
             near = difflib.get_close_matches(joint, list(model.names), n=1)
             raise ValueError(f"the model has no joint '{joint}'" + (f"; did you mean '{near[0]}'?" if near else ""))

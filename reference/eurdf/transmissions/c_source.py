@@ -30,8 +30,7 @@ from eurdf.kinematics.tolerances import (
     SHORTEST_STEP,
 )
 from eurdf.mechanism.constraint import Closure, Constraint, Coupling
-from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.mimic import Mimic
+from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.pinocchio.mimic import following
 from eurdf.transmissions.drive import MOST_SUBSTEPS, SINGULAR, Drive

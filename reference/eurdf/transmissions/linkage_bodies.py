@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from eurdf.mechanism.mimic import drivers
+from eurdf.mechanism.joint import drivers
 from eurdf.transmissions.motors import driven_loops
 
 if TYPE_CHECKING:

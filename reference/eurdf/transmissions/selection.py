@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eurdf.kinematics.array import Indices
-from eurdf.mechanism.mimic import drivers
+from eurdf.mechanism.joint import drivers
 from eurdf.pinocchio.arguments import as_names
 
 if TYPE_CHECKING:
-    from eurdf.pinocchio.coordinates import Slot
+    from eurdf.pinocchio.configuration import Slot
     from eurdf.pinocchio.robot import Robot
 
 

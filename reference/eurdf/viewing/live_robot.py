@@ -14,10 +14,10 @@ import numpy as np
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Closure, Constraint, Coupling
-from eurdf.mechanism.frame import Anchor
+from eurdf.mechanism.joint import drivers
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, root_joint
-from eurdf.mechanism.mimic import drivers
 from eurdf.mechanism.pose import IDENTITY, Pose, direction
 from eurdf.viewing.scene import Scene
 from eurdf.viewing.session import Session

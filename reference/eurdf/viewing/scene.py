@@ -18,13 +18,11 @@ from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.evaluate import Frames, frames_at
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.residual import all_openings
-from eurdf.mechanism.body import Inertia
-from eurdf.mechanism.frame import Anchor
+from eurdf.mechanism.body import Anchor, Inertia
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import direction
-from eurdf.pinocchio.frames import body_frame_ids
-from eurdf.pinocchio.placement import placement_of
+from eurdf.pinocchio.frames import body_frame_ids, placement_of
 from eurdf.viewing.surface import Surface, sphere, surface_of
 
 if TYPE_CHECKING:

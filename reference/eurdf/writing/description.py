@@ -30,9 +30,8 @@ from eurdf.format.joint_model import JOINT, Geared, Limits
 from eurdf.format.joint_model import Joint as JointEntry
 from eurdf.format.model import VERSION2, Version2, lowest_version
 from eurdf.format.yaml_text import entries_of, modeline, text_of
-from eurdf.mechanism.body import Body
+from eurdf.mechanism.body import Anchor, Body
 from eurdf.mechanism.constraint import Closure
-from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
@@ -229,7 +228,7 @@ def _in_urdf(joint: Joint) -> tuple[JointType, Vector3 | None]:
     """The type and axis that a joint has in the URDF."""
     axis = joint.axes[0] if joint.axes else _Z
     if not joint.type.replaces:
-        return joint.type, axis if any(step.kind != "ball" for step in joint.type.steps[-1:]) else None
+        return joint.type, None if joint.type.is_fixed or joint.type.quaternion is not None else axis
     index = _limited_in_urdf(joint)
     if index is None:
         return JointType.CONTINUOUS, axis

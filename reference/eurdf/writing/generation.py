@@ -14,7 +14,7 @@ from eurdf.format.yaml_text import Entry, Value, entries_of, lines_of, modeline,
 from eurdf.linking.merging import find_chains
 from eurdf.linking.rereading import reread
 from eurdf.linking.urdf_tree import joint_of
-from eurdf.mechanism.frame import Anchor
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.mechanism import Mechanism, Root
 from eurdf.mechanism.spanning_tree import rigid_poses
 from eurdf.writing.closure_choice import choose_types

@@ -14,8 +14,8 @@ from eurdf.closures.hinge import HingeClosure
 from eurdf.closures.point import PointClosure
 from eurdf.diagnostics import enumerated
 from eurdf.kinematics.array import Matrix
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import RIGID, Closure
-from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.pose import Pose, Vector3, direction
 
 #: Distances in the two bodies that differ by no more are equal, m: files state positions with six digits.

@@ -9,8 +9,8 @@ from types import MappingProxyType
 from lxml import etree
 
 from eurdf.mechanism.body import Inertia, Shape
+from eurdf.mechanism.joint import Mimic
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 from eurdf.writing.xml_text import numbers, representable, rpy_of
 

@@ -18,8 +18,8 @@ from eurdf.convert.losses import approximate, dropped
 from eurdf.convert.names import UniqueNames
 from eurdf.convert.urdf.read import URDF_LOSSES, UrdfTree, read_tree
 from eurdf.convert.xml_elements import Elements, local, named
+from eurdf.mechanism.body import Anchor, Frame
 from eurdf.mechanism.constraint import Closure, Coupling
-from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism

@@ -18,8 +18,8 @@ from eurdf.convert.losses import approximate
 from eurdf.convert.names import UniqueNames
 from eurdf.convert.urdf.read import URDF_LOSSES, UrdfTree, loop_left_out, read_tree
 from eurdf.convert.xml_elements import named
+from eurdf.mechanism.body import Anchor, Frame
 from eurdf.mechanism.constraint import Closure
-from eurdf.mechanism.frame import Anchor, Frame
 
 _LOSSES = {
     "loop": loop_left_out("loop joint"),

@@ -34,7 +34,7 @@ from eurdf.convert.mjcf.read_state import (
 )
 from eurdf.convert.xml_elements import places_of_names
 from eurdf.linking.configurations import beyond_limits
-from eurdf.mechanism.frame import Frame
+from eurdf.mechanism.body import Frame
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.mechanism.spanning_tree import depth_first

@@ -10,7 +10,7 @@ from eurdf.convert.mjcf.compiled import Element
 from eurdf.convert.mjcf.read_joints import largest_effort
 from eurdf.convert.mjcf.read_state import MjcfReading
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.motor import Motor
+from eurdf.mechanism.mechanism import Motor
 
 
 def read_actuators(reading: MjcfReading) -> tuple[tuple[str, ...], dict[str, Motor]]:

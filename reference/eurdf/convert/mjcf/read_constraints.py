@@ -10,12 +10,11 @@ from eurdf.closures.frame import FrameClosure
 from eurdf.closures.point import PointClosure
 from eurdf.convert.mjcf.compiled import Element
 from eurdf.convert.mjcf.read_state import MjcfReading, pose_from, vector
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Closure, Coupling
-from eurdf.mechanism.frame import Anchor
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import Pose
 from eurdf.mechanism.spanning_tree import rigid_roots
 

@@ -37,13 +37,11 @@ from eurdf.convert.names import UniqueNames
 from eurdf.convert.sdf.read_bodies import read_body
 from eurdf.convert.sdf.read_model import WORLD, SdfModel, is_true, text_of
 from eurdf.convert.xml_elements import inside, read_root
-from eurdf.mechanism.body import Body
+from eurdf.mechanism.body import Anchor, Body, Frame
 from eurdf.mechanism.constraint import Closure
-from eurdf.mechanism.frame import Anchor, Frame
-from eurdf.mechanism.joint import Joint, JointProperties
+from eurdf.mechanism.joint import Joint, JointProperties, Mimic
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, Root
-from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 from eurdf.mechanism.spanning_tree import depth_first
 

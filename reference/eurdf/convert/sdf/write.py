@@ -27,13 +27,11 @@ from eurdf.convert.names import UniqueNames
 from eurdf.convert.parts import Part, part_of
 from eurdf.convert.sdf.facts import CLOSURES, EXACT, LEAST, ROWS, VERSION
 from eurdf.convert.steps import AXES, in_series, turn_type
-from eurdf.mechanism.body import Body, Inertia, Shape
+from eurdf.mechanism.body import Anchor, Body, Inertia, Shape
 from eurdf.mechanism.constraint import Closure, Coupling
-from eurdf.mechanism.frame import Anchor
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.joint_types import ROTARY, JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
-from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.writing.xml_text import file_content, representable, rpy_of
 

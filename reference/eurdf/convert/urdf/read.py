@@ -19,8 +19,7 @@ from eurdf.linking.link import link
 from eurdf.mechanism.body import Shape
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.motor import Motor
+from eurdf.mechanism.mechanism import Mechanism, Motor
 from eurdf.mesh_files.reader import RefusedFile
 from eurdf.reading.source import Source, read_source
 from eurdf.reading.xml_reader import read_xml

@@ -13,9 +13,8 @@ from eurdf.convert.names import UniqueNames
 from eurdf.convert.parts import Part
 from eurdf.convert.steps import ExportedJoint, Z, in_series
 from eurdf.mechanism.body import Body, Inertia, Shape
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose
 from eurdf.writing.urdf_elements import add_inertial, add_joint, add_mimic, add_shape
 from eurdf.writing.xml_text import representable

@@ -19,8 +19,8 @@ from eurdf.convert.losses import dropped
 from eurdf.convert.names import UniqueNames
 from eurdf.convert.urdf.read import URDF_LOSSES, UrdfTree, loop_left_out, read_tree
 from eurdf.convert.xml_elements import named
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Closure, Coupling
-from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint_types import JointType
 
 _LOSSES = {

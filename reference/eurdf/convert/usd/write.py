@@ -31,10 +31,9 @@ from eurdf.diagnostics.extras import install_command
 from eurdf.exceptions import MissingExtra
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.constraint import Closure, Coupling
-from eurdf.mechanism.joint import Joint, JointProperties
+from eurdf.mechanism.joint import Joint, JointProperties, Mimic
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
-from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, turn_from_x
 from eurdf.mechanism.spanning_tree import rigid_roots
 

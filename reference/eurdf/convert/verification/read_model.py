@@ -16,8 +16,8 @@ from eurdf.closures.frame import FrameClosure
 from eurdf.closures.hinge import HingeClosure
 from eurdf.convert.coordinates import Coordinates, Matrix, Vector
 from eurdf.kinematics.opening import Opening
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Closure
-from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.pose import direction
 from eurdf.pinocchio.robot import Robot, build_robot
 

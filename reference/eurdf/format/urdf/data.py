@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from eurdf.mechanism.body import Inertia, Shape
+from eurdf.mechanism.joint import Mimic
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import Pose, Vector3
 from eurdf.reading.reporter import Element
 from eurdf.reading.xml_reader import XmlDocument

@@ -9,8 +9,8 @@ from eurdf.diagnostics import did_you_mean
 from eurdf.format.conventions import is_too_small, lower_limit, too_small, upper_limit
 from eurdf.format.urdf.data import Limit, UrdfJoint
 from eurdf.format.urdf.elements import RATES, RESERVED, URDF_JOINT_TYPES, UrdfReader, named
+from eurdf.mechanism.joint import Mimic
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Vector3
 from eurdf.reading.reporter import Element
 

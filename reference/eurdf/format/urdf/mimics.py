@@ -9,7 +9,7 @@ from itertools import dropwhile
 from eurdf.diagnostics import did_you_mean
 from eurdf.format.urdf.data import UrdfJoint
 from eurdf.format.urdf.elements import UrdfReader
-from eurdf.mechanism.mimic import Mimic
+from eurdf.mechanism.joint import Mimic
 from eurdf.reading.reporter import Element
 
 _Joints = Mapping[str, UrdfJoint]
