@@ -23,9 +23,8 @@ from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits, chosen_limits
 from eurdf.kinematics.problem import Group, Problem
 from eurdf.kinematics.rank import norms
-from eurdf.kinematics.several import several
 from eurdf.kinematics.tolerances import CLOSED, MOST_STEPS, MOST_WORK, RESTARTS, SOLVED, WELL_CLOSED
-from eurdf.pinocchio.arguments import checked_array, checked_count, checked_tolerance
+from eurdf.pinocchio.arguments import as_names, checked_array, checked_count, checked_tolerance
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -119,7 +118,7 @@ def assemble(
             ``tolerance`` or ``restarts`` is negative.
     """
     q = start(robot, q0)
-    held = tuple(velocity for name in several(hold) for velocity in robot.tree.velocities_of(name))
+    held = tuple(velocity for name in as_names(hold) for velocity in robot.tree.velocities_of(name))
     tolerance, chosen = checked_tolerance(tolerance), chosen_limits(robot, limits)
     restarts = checked_count("restarts", restarts, 0)
     with borrowed(robot, Problem, *([held] if held else [])) as problem:  # others borrow one that holds none, too

@@ -89,7 +89,7 @@ def forward_kinematics(
             `assembled` configuration, or the neutral one if there is none. To stay on a branch far from the start, give
             the result for near values.
         tolerance: Bound of each row of the residual for closed loops, m or rad.
-        block: Number of elements that are worked on together. By default as many as take some 32 MB, at most 1,000.
+        block: Number of elements that are worked on together. By default as many as take some 4 MB, at most 1,000.
         threads: Number of threads that work on blocks.
         executor: Any `concurrent.futures.Executor` that works on blocks instead: a process pool, or that of a cluster.
         progress: Called after each block with the number of elements done and the number of all.
@@ -105,7 +105,7 @@ def forward_kinematics(
     q, common = starts(robot, q0, len(values))
     driving = driving_many(robot, checked_tolerance(tolerance))
     goal = goals(driving, q, values)
-    work = blocks(driving.free.numbers + driving.driven.numbers, block, threads, executor, progress)
+    work = blocks(driving.driven.numbers, block, threads, executor, progress)
     closed = None
     if common and len(q):
         first = close(driving.free, q[:1], driving.tolerance, RESTARTS)
@@ -274,7 +274,7 @@ def project_configuration(
     model = for_many(robot)
     task = ProjectionTask(model, metric(weights, model.tree.nv), checked_tolerance(tolerance))
     rows = checked_configurations(robot, "q", q)
-    numbers = 3 * model.numbers + 2 * model.tree.nv**2
+    numbers = model.numbers + model.tree.nv**2
     found, residual, closed = blocks(numbers, block, threads, executor, progress).map(_projected, task, (rows,))
     return Projection(found, closed, residual, tuple(None if each else "not closed" for each in closed.tolist()))
 

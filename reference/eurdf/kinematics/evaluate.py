@@ -298,6 +298,10 @@ class TreeFew:
         """See `TreeMany.difference_derivative`."""
         return _each(self._tree.difference_derivative, (self.nv, self.nv), q, other)
 
+    def difference_derivative_times(self, q: Matrix, other: Matrix, forces: Matrix) -> Matrix:
+        """See `TreeMany.difference_derivative_times`."""
+        return (forces[:, None] @ self.difference_derivative(q, other))[:, 0]
+
     def normalized(self, q: Matrix) -> Matrix:
         """See `TreeMany.normalized`."""
         return _each(self._tree.normalized, self.nq, q)
