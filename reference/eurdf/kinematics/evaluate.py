@@ -120,12 +120,6 @@ class Evaluator:
         return _few_pairs(self._tree, self._sites, self.velocities)
 
     @property
-    def moving(self) -> Indices:
-        """Indices in v of all velocities that move joints of the constraints, also of those without a column in K."""
-        related = np.empty(0, np.intp) if self._couplings is None else self._couplings[0].moving
-        return np.union1d(self._pairs.moving, related)
-
-    @property
     def numbers(self) -> int:
         """Numbers that the residual and K of one element take, roughly."""
         return self.numbers_of_residual + 3 * self.m * self.n + 2 * self.m * self.m

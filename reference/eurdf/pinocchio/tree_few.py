@@ -94,6 +94,9 @@ class FewPoses(RelativePoses):
 class FewPairs:
     """Pairs of frames A, B, with the memory to compute in, for one thread."""
 
+    #: Few configurations need no blocks.
+    numbers = 0
+
     def __init__(self, model: pin.Model, parents: Sequence[int], pairs: Sequence[Pair], velocities: Indices) -> None:
         """Take pairs of a model.
 
