@@ -26,9 +26,7 @@ class DistanceClosure(ClosureKind):
 
     type: ClassVar[str] = "distance"
     units: ClassVar[tuple[Unit, ...]] = ("m",)
-    length: float = key(
-        "Length", "Distance between the origins of A and B, m, at least 0.0001.", unit="m", least=1e-4, example=0.155
-    )
+    length: float = key()
 
     @classmethod
     def prepare(cls, closures: Sequence[DistanceClosure]) -> Vector:

@@ -10,7 +10,7 @@ import numpy as np
 from eurdf.array import Matrix, Vector
 from eurdf.closures.kind import ClosureKind, RelativeMotions, RelativePoses
 from eurdf.closures.point import PointClosure
-from eurdf.closures.se3 import log6_derivative, log6_second_derivative, turned
+from eurdf.closures.se3 import log6_second
 from eurdf.mechanism.constraint import Unit
 
 
@@ -37,10 +37,8 @@ class FrameClosure(ClosureKind):
 
     @staticmethod
     def drift(motions: RelativeMotions, fixed: Any) -> Matrix:
-        """J ξ̇ + J̇ ξ, with ṙ = J(r) ξ the derivative of log6 by the twist in the axes of B."""
-        r = motions.poses.logarithm()
-        J = log6_derivative(r)
-        return turned(J, motions.change) + turned(log6_second_derivative(r, turned(J, motions.twist)), motions.twist)
+        """The second derivative of log6(ᴬM_B)."""
+        return log6_second(motions.poses.logarithm(), motions.twist, motions.change)
 
     @staticmethod
     def opening(poses: RelativePoses, fixed: Any) -> tuple[Vector, Vector]:

@@ -53,12 +53,7 @@ class HingeClosure(ClosureKind):
 
     type: ClassVar[str] = "hinge"
     units: ClassVar[tuple[Unit, ...]] = ("m",) * 3 + ("rad",) * 2
-    axes: tuple[Vector3, Vector3] = key(
-        "Axes",
-        "The axis in frame A, and the axis in frame B: vectors of any length but zero, no unit.",
-        example=((0.0, 0.0, 1.0), (0.0, 1.0, 0.0)),
-        default=((0.0, 0.0, 1.0), (0.0, 0.0, 1.0)),
-    )
+    axes: tuple[Vector3, Vector3] = key(default=((0.0, 0.0, 1.0), (0.0, 0.0, 1.0)))
 
     def stated(self) -> dict[str, Any]:
         """``axis`` where A and B have the same one, else ``axes``; nothing where that is z."""

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from eurdf.kinematics.array import Indices, Matrix, Vector
-from eurdf.kinematics.several import several
-from eurdf.pinocchio.arguments import checked_array
+from eurdf.pinocchio.arguments import as_names, checked_array
 from eurdf.transmissions.box import box_along, largest_box
 from eurdf.transmissions.exceptions import NoTransmission
 from eurdf.transmissions.polytope import Polytope, image_of_box, preimage_of_box
@@ -144,7 +143,7 @@ def serial_limits(
         ValueError: A motor has no limit, or cannot be without torque; or an argument is wrong, as in `transmission`.
     """
     if isinstance(q, Workspace):
-        return _everywhere(q, robot, several(joints), torque_ratio, velocity_ratio)
+        return _everywhere(q, robot, as_names(joints), torque_ratio, velocity_ratio)
     at = transmission(robot, joints, q, motors)
     task = _task(robot, at, torque_ratio, velocity_ratio)
     if isinstance(at, Transmission):

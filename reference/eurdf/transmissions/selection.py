@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eurdf.kinematics.array import Indices
-from eurdf.kinematics.several import several
 from eurdf.mechanism.joint import drivers
+from eurdf.pinocchio.arguments import as_names
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.configuration import Slot
@@ -53,7 +53,7 @@ def selection(robot: Robot, joints: str | Iterable[str], argument: str = "joints
         ValueError: A name is unknown or given twice, or its joint has no coordinate of its own whose rate is its
             velocity.
     """
-    given = several(joints)
+    given = as_names(joints)
     if not given:
         raise ValueError(f"{argument} is empty; name at least one joint")
     twice = next((name for name in given if given.count(name) > 1), None)
