@@ -151,6 +151,8 @@ def members(value: Any, path: str, case: Case, seen: dict[int, Any]) -> Iterator
         except (EurdfError, ValueError):  # there is no such thing here
             continue
         if callable(member):
+            if isinstance(inspect.getattr_static(value, name), staticmethod | classmethod):
+                continue  # a function of its class
             needed = {each.name for each in inspect.signature(member).parameters.values() if each.default is each.empty}
             assert needed <= {*case.arguments, *case.of.get(name, ())}, f"{path}.{name} needs {needed}"
             member = case.call(member, name)
