@@ -12,11 +12,11 @@ from eurdf.kinematics.array import Indices, Vector
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.locked_mechanism import lock_joints
 from eurdf.kinematics.loop import find_loops
-from eurdf.kinematics.named import Named, as_names
+from eurdf.kinematics.named import Named
 from eurdf.kinematics.residual import all_openings, residual
 from eurdf.kinematics.tolerances import CLOSED
 from eurdf.mechanism.mechanism import ROOT_JOINT
-from eurdf.pinocchio.arguments import checked_tolerance
+from eurdf.pinocchio.arguments import as_names, checked_tolerance
 from eurdf.pinocchio.robot import Robot, build_robot, carried_over
 
 

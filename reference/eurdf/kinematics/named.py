@@ -1,8 +1,8 @@
-"""Arguments by name: one name or several, and vectors as the values of joints."""
+"""Vectors given as the values of joints, by their names."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,11 +21,6 @@ ByJoint = Mapping[str, float | Sequence[float]]
 
 #: A vector, or the values of joints by their names.
 Named = Vector | ByJoint
-
-
-def as_names(given: str | Iterable[str]) -> tuple[str, ...]:
-    """The names given: a text alone is one name, not the letters in it."""
-    return (given,) if isinstance(given, str) else tuple(given)
 
 
 def configuration_of(robot: Robot, given: Named, argument: str = "q") -> Vector:

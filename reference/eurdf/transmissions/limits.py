@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike
 
 from eurdf.errors import NoTransmission
 from eurdf.kinematics.array import Indices, Matrix, Vector
-from eurdf.kinematics.named import Named, as_names
+from eurdf.kinematics.named import Named
 from eurdf.loading import of_any_robot
-from eurdf.pinocchio.arguments import checked_array
+from eurdf.pinocchio.arguments import as_names, checked_array
 from eurdf.transmissions.box import box_along, largest_box
 from eurdf.transmissions.polytope import Polytope, image_of_box, preimage_of_box
 from eurdf.transmissions.reachable_set import Workspace

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eurdf.kinematics.array import Indices
-from eurdf.kinematics.named import as_names, unknown_joint
+from eurdf.kinematics.named import unknown_joint
+from eurdf.pinocchio.arguments import as_names
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.configuration import Slot
