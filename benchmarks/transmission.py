@@ -59,7 +59,7 @@ def main() -> None:
     for name, joints in _ROBOTS.items():
         robot = eurdf.load(name, geometry=False)
         prepared = eurdf.transmissions.prepare_transmission(robot, joints)
-        start = np.concatenate([robot.coordinates(prepared.q)[joint] for joint in joints])
+        start = np.concatenate([robot.joint_positions(prepared.q)[joint] for joint in joints])
         for step in _STEPS:
             calls = (_evaluated(robot, prepared.q), _moving(prepared, start, step))
             K, called = (1e6 * time for time in least_times(calls, 200))

@@ -10,6 +10,7 @@ import copy
 import inspect
 import multiprocessing
 import pickle
+import re
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
@@ -21,7 +22,7 @@ import pytest
 
 import eurdf
 from eurdf.errors import EurdfError, Portable
-from support.public import own_names, public_functions
+from support.public import own_names, public_functions, public_names
 
 #: Name; root; joints of the serial side; actuator.
 ROBOTS = [
@@ -51,7 +52,7 @@ class Case:
         q = robot.configurations["assembled"]
         v = eurdf.project_velocity(robot, q, np.full(robot.model.nv, 0.1))
         u = np.full(len(robot.actuation.idx_v), 0.1)
-        coordinates = robot.coordinates(q)
+        coordinates = robot.joint_positions(q)
         frame = robot.mechanism.bodies[-1].name
         self.arguments: dict[str, Any] = {
             "robot": robot,
@@ -202,6 +203,48 @@ def test_results_belong_to_the_caller(robot: tuple[str, Any, tuple[str, ...], st
         np.testing.assert_equal(case.arguments[name], value, err_msg=name)
     after = {**case.results(), "robot": dict(members(case.arguments["robot"], "", case, {}))}
     assert_equal(before, numbers(after, case))
+
+
+def objects(value: Any, seen: dict[int, Any]) -> Iterator[Any]:
+    """The objects of the package in a result."""
+    if id(value) in seen or isinstance(value, np.ndarray | str):
+        return
+    seen[id(value)] = value
+    if isinstance(value, eurdf.Robot):
+        yield value
+        return
+    if isinstance(value, Mapping | tuple | list) and type(value).__module__ == "builtins":
+        inner: Any = value.values() if isinstance(value, Mapping) else value
+    else:
+        yield value
+        inner = getattr(value, "__dict__", {}).values()
+        if hasattr(value, "__dataclass_fields__"):
+            inner = [getattr(value, name) for name in value.__dataclass_fields__]
+        elif isinstance(value, tuple):
+            inner = value
+    for each in inner if type(value).__module__.startswith(("eurdf", "builtins")) else ():
+        yield from objects(each, seen)
+
+
+def test_results_print_in_few_lines_with_units(tmp_path: Path) -> None:
+    kinds = {kind for kind in public_names().values() if inspect.isclass(kind) and not issubclass(kind, BaseException)}
+    seen: set[type] = {eurdf.viewing.Viewer, eurdf.viewing.ShownRobot}  # they need a server
+    for number, robot in enumerate(ROBOTS):
+        case = Case(*robot, tmp_path / str(number))
+        results = {**case.results(), "robot": case.arguments["robot"], "diagnostics": OF_EXCEPTIONS["diagnostics"]}
+        if joints := case.arguments["joints"]:
+            several = case.arguments["robot"], joints, np.tile(case.arguments["q"], (2, 1))
+            results |= {"transmissions": eurdf.transmission(*several), "boundary": results["workspace"].boundary}
+            results["common"] = eurdf.transmissions.serial_limits(*several)
+        for each in objects(results, {}):
+            seen.add(type(each))
+            if type(each) in kinds:
+                text = repr(each)
+                assert text.startswith("<"), text
+                assert text.count("\n") < 3, text
+                assert len(text) < 400, text
+                assert not re.search(r"array\(| object at 0x", text), text
+    assert kinds - seen == set()
 
 
 @pytest.mark.parametrize("robot", ROBOTS, ids=[name for name, *_ in ROBOTS])

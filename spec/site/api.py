@@ -32,7 +32,7 @@ DOORS = ("results", "errors", "kinematics", "springs", "transmissions", "convert
 _QUOTED = "eu-quoted"
 
 #: Types that the first page explains, and those of other packages.
-EXPLAINED = frozenset({"ArrayLike", "Executor", "Matrix", "Path", "Vector", "os.PathLike"})
+EXPLAINED = frozenset({"ArrayLike", "Executor", "Matrix", "Named", "Path", "RobotSource", "Vector", "os.PathLike"})
 
 # A name in an annotation that may be an alias.
 _ALIAS = re.compile(r"(?<![\w.'\"])[A-Z]\w*\b(?![.'\"])")

@@ -22,8 +22,7 @@ ARRAY = re.compile(r"\b(Named|Vector|Matrix|ArrayLike|External|Mapping\[str, Any
 
 #: A valid call of each public function, and of each method of a robot, that takes an array.
 CALLS: dict[str, dict[str, Any]] = {
-    "Robot.coordinates": {"q": "q"},
-    "Robot.joint_coordinates": {"q": "q"},
+    "Robot.joint_positions": {"q": "q"},
     "achievable_acceleration": {"q": "q", "v": "v", "a": "v", "tau": "v", "external": {"coupler": 6}},
     "actuated_jacobian": {"q": "q", "frame": "coupler", "weights": "v"},
     "analyze": {"q": "q"},
@@ -293,7 +292,7 @@ def test_simulation_has_finite_times(duration: float, step: float) -> None:
 def test_named_values_make_the_vectors() -> None:
     loaded = eurdf.load("four_bar", root="floating", geometry=False)
     q = loaded.configurations["assembled"]
-    named = loaded.coordinates(q)
+    named = loaded.joint_positions(q)
     rate = {"motor_crank": 0.3, "root_joint": [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]}
     v = np.zeros(loaded.model.nv)
     v[:6], v[loaded.slots["motor_crank"].idx_v] = rate["root_joint"], 0.3

@@ -226,7 +226,7 @@ def four_bar(
     robot = load(text, f"actuators: [{actuator}]\nclosures: [{{name: pin, type: 3d, frames: [{ends}]}}]\n")
     if assembled is None:
         return robot
-    closed = robot.coordinates(eurdf.assemble(robot, np.array(assembled)).q)
+    closed = robot.joint_positions(eurdf.assemble(robot, np.array(assembled)).q)
     return build_robot(replace(robot.mechanism, configurations={"assembled": closed}), geometry=False)
 
 

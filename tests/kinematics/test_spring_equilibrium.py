@@ -26,7 +26,7 @@ def linkage(bars: int, springs: Mapping[str, str], **options: Any) -> Any:
 
 
 def coordinate(robot: Any, q: Any, joint: str) -> float:
-    return float(robot.coordinates(q)[joint][0])
+    return float(robot.joint_positions(q)[joint][0])
 
 
 def least(function: Callable[[float], float], low: float, high: float) -> float:

@@ -114,7 +114,7 @@ def test_spring_in_a_loop_acts_as_a_force_at_its_joint() -> None:
     at = robot.model.joints[robot.model.getJointId("motor_crank")]
     tau = np.zeros(robot.model.nv)
     tau[at.idx_v] = -3.0 * (q[at.idx_q] - 0.4)
-    there = configuration_vector(plain.mechanism, plain.model, robot.coordinates(q))
+    there = configuration_vector(plain.mechanism, plain.model, robot.joint_positions(q))
     found, expected = eurdf.forward_dynamics(robot, q, v), eurdf.forward_dynamics(plain, there, v, tau=tau)
     np.testing.assert_allclose(found.a, expected.a, rtol=1e-10)
     np.testing.assert_allclose(np.concatenate(found.forces), np.concatenate(expected.forces), rtol=1e-8, atol=1e-10)
@@ -152,7 +152,10 @@ def test_loop_with_springs_keeps_its_energy() -> None:
     plain = eurdf.load("four_bar", geometry=False)
     other = quiet(plain, eurdf.assemble(plain).q, duration=0.1, step=2.5e-4)
     assert (
-        abs(plain.coordinates(other.q[-1])["motor_crank"][0] - robot.coordinates(motion.q[-1])["motor_crank"][0]) > 0.01
+        abs(
+            plain.joint_positions(other.q[-1])["motor_crank"][0] - robot.joint_positions(motion.q[-1])["motor_crank"][0]
+        )
+        > 0.01
     )
 
 
@@ -168,7 +171,7 @@ def test_continuous_joint_with_a_spring_counts_its_turns(tmp_path: Path) -> None
     q = np.array([0.0, 0.0, 4.0 * math.pi, 0.0])
     np.testing.assert_allclose(eurdf.springs.spring_force(robot, q), [0.0, 0.0, -4.0 * (4.0 * math.pi - 1.0), 0.0])
     assert robot.model.upperPositionLimit[2] == math.inf
-    assert robot.coordinates(q)["spin"] == (4.0 * math.pi,)
+    assert robot.joint_positions(q)["spin"] == (4.0 * math.pi,)
 
 
 # -- mimic joints ----------------------------------------------------------------------------------------------------

@@ -75,4 +75,4 @@ def test_unknown_reference_is_refused() -> None:
 def test_configuration_and_coordinates_are_inverse() -> None:
     robot = eurdf.load(ROBOTS / "digit_2legs", geometry=False)
     q = eurdf.assemble(robot).q
-    np.testing.assert_allclose(robot.configuration(robot.coordinates(q)), q, rtol=0.0, atol=1e-12)
+    np.testing.assert_allclose(robot.configuration(robot.joint_positions(q)), q, rtol=0.0, atol=1e-12)

@@ -308,7 +308,7 @@ def test_solution_within_limits_is_not_reported(advice, monkeypatch) -> None:
         opening = eurdf.results.Opening("rocker_pin", 0.1 if limits else 0.0, 0.0)
         return eurdf.results.Assembly(q, 0.1 if limits else 0.0, not limits, not limits, 1, (opening,))
 
-    (angle,) = robot.coordinates(closed)["free_rocker"]
+    (angle,) = robot.joint_positions(closed)["free_rocker"]
     monkeypatch.setattr(module, "assemble", found)
     assert codes(advice("four_bar", without_configurations, rocker(angle - 0.01, angle + 0.01))) == []
 

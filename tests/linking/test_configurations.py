@@ -90,7 +90,7 @@ def test_coordinates_invert_configurations(data: st.DataObject, seed: int, root:
     mechanism = replace(by_hand.tree_of_all_types(np.random.default_rng(seed)), root=root)
     robot = build_robot(mechanism, geometry=False)
     q = some_configuration(robot, data)
-    coordinates = robot.coordinates(q)
+    coordinates = robot.joint_positions(q)
     assert ("root_joint" in coordinates) == (root == "floating")
     for joint in mechanism.joints:
         assert len(coordinates.get(joint.name, ())) == len(joint.type.coordinates)
@@ -104,7 +104,7 @@ def test_coordinates_invert_configurations(data: st.DataObject, seed: int, root:
 def test_coordinates_name_mimic_joints_only_if_free(data: st.DataObject, root: Root, mimic: bool) -> None:
     robot = eurdf.load(WORKBENCH, root=root, geometry=False, mimic=mimic)
     q = some_configuration(robot, data)
-    coordinates = robot.coordinates(q)
+    coordinates = robot.joint_positions(q)
     assert ("follow" in coordinates) != mimic
     back = configuration_vector(robot.mechanism, robot.model, coordinates)
     np.testing.assert_allclose(back, q, rtol=0.0, atol=1e-12)
@@ -114,7 +114,7 @@ def test_coordinates_name_mimic_joints_only_if_free(data: st.DataObject, root: R
 def test_wrong_shape_is_refused(shape: tuple[int, ...]) -> None:
     robot = eurdf.load(WORKBENCH, geometry=False)
     with pytest.raises(ValueError, match="q has the shape"):
-        robot.coordinates(np.zeros(shape))
+        robot.joint_positions(np.zeros(shape))
 
 
 def test_message_shows_digits_that_are_beyond_the_bound(tmp_path: Path) -> None:

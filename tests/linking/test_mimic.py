@@ -198,9 +198,9 @@ def test_freed_joints_make_the_model_without_mimics() -> None:
 def test_freed_joint_left_out_of_a_configuration_is_neutral() -> None:
     more = "joints: {third: {mimic: false}}\nconfigurations: {bent: {first: 0.2}}\n"
     found = load(chain(), HEAD + more)
-    assert found.coordinates(found.configurations["bent"])["third"] == (0.0,)
+    assert found.joint_positions(found.configurations["bent"])["third"] == (0.0,)
     every = load(chain(), HEAD + more, mimic=False)
-    at = every.coordinates(every.configurations["bent"])
+    at = every.joint_positions(every.configurations["bent"])
     assert (at["third"], at["second"]) == ((0.0,), (pytest.approx(0.5),))
 
 

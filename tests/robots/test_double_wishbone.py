@@ -26,5 +26,5 @@ def test_wheel_leans_and_steers_as_the_page_says() -> None:
 def test_hanging_wheel_drops_until_the_spring_is_at_rest() -> None:
     robot = eurdf.load("double_wishbone", geometry=False)
     q = eurdf.forward_kinematics(robot, {"motor_rack": 0.0})
-    assert robot.coordinates(q)["spring_strut"] == pytest.approx((0.075,))
+    assert robot.joint_positions(q)["spring_strut"] == pytest.approx((0.075,))
     assert np.abs(eurdf.residual(robot, q)).max() < 1e-12

@@ -63,7 +63,7 @@ def assert_same_robot(there: InUsd, robot: Robot, q: Any) -> None:
             assert mass == pytest.approx(body.inertia.mass, rel=1e-6)
             np.testing.assert_allclose(centre, p, atol=CLOSE)
             np.testing.assert_allclose(moments, expected, atol=1e-6 * np.abs(expected).max())
-    coordinates = robot.coordinates(q)
+    coordinates = robot.joint_positions(q)
     for joint in mechanism.joints:
         if joint.name in joints:
             a, _ = there.frames(joints[joint.name])

@@ -56,7 +56,7 @@ def test_pads_move_as_in_the_source(tmp_path: Path) -> None:
     half_turn = pin.SE3(pin.utils.rotate("z", np.pi), np.zeros(3))  # the drawing sees the base from the other side
     for name in ("assembled", "closed", "enveloping"):
         q = ours.configurations[name]
-        values = {joint: angle for joint, angle in ours.coordinates(q).items() if joint != "motor"}
+        values = {joint: angle for joint, angle in ours.joint_positions(q).items() if joint != "motor"}
         there = source.configuration(values)
         assert np.abs(eurdf.residual(source, there)).max() < 1e-9
         pin.framesForwardKinematics(source.model, source.data, there)

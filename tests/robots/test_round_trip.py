@@ -224,7 +224,7 @@ def test_robot_of_the_collection_closes_and_moves_as_before(to: str, name: str, 
     assert len(found.mechanism.closures) == len(robot.mechanism.closures)
     q = robot.configurations["assembled"]
     known = {*found.slots, ROOT_JOINT}
-    same = {name: each for name, each in robot.coordinates(q).items() if name in known}
+    same = {name: each for name, each in robot.joint_positions(q).items() if name in known}
     closed = found.configuration(same) if to == "mjcf" else there(export, found, q)
     assert np.abs(eurdf.residual(found, closed)).max() < 1e-6
     assert eurdf.analyze(found, closed).mobility == eurdf.analyze(robot, q).mobility

@@ -15,7 +15,7 @@ def test_motors_turn_joints_by_the_published_ratios() -> None:
         motors = {name: random.uniform(-0.5, 0.5) for name in robot.actuation.joints}
         motors |= {f"{side}_knee_act": random.uniform(-1.9, -0.1) for side in ("left", "right")}
         q = eurdf.forward_kinematics(robot, motors)
-        at = {name: values[0] for name, values in robot.coordinates(q).items()}
+        at = {name: values[0] for name, values in robot.joint_positions(q).items()}
         # Ratios of config.json and toddlerbot.xml of hshi74/toddlerbot 62cee1b.
         one, two = motors["waist_act_1"], motors["waist_act_2"]
         expected = {

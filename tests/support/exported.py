@@ -54,7 +54,7 @@ def random_robot(seed: int, root: Root = "fixed", **options: Any) -> tuple[Robot
     mechanism = robot.mechanism
     joints = tuple(replace(joint, properties=some_properties(joint, random)) for joint in mechanism.joints)
     bodies = tuple(replace(body, inertia=real_inertia(random)) for body in mechanism.bodies)
-    coordinates = robot.coordinates(q)
+    coordinates = robot.joint_positions(q)
     mechanism = replace(
         mechanism, version="2.1", joints=joints, bodies=bodies, configurations={"assembled": coordinates}
     )

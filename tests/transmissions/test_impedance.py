@@ -15,7 +15,7 @@ def torque_of_drives(robot: Any, joints: tuple[str, ...], q: Any, q_J: Any, K_m:
     """τ_J at the joint positions q_J, where the motors have the stiffness K_m around q."""
     names = eurdf.transmission(robot, joints, q).motors
     found = eurdf.transmissions.actuator_values(robot, dict(zip(joints, q_J, strict=True)), q)
-    moved = [found.values[name] - robot.coordinates(q)[name][0] for name in names]
+    moved = [found.values[name] - robot.joint_positions(q)[name][0] for name in names]
     return eurdf.transmission(robot, joints, found.q).joint_torque(tau_m - K_m @ np.array(moved))
 
 
@@ -25,7 +25,7 @@ def test_stiffness_is_the_derivative_of_the_torque(name: str) -> None:
     joints, n = DRIVEN[name], len(DRIVEN[name])
     K_J, C_J, tau_J = np.diag(np.linspace(150.0, 60.0, n)), np.linspace(3.0, 1.0, n), np.linspace(20.0, -9.0, n)
     found = eurdf.transmissions.impedance_map(robot, joints, q, K_J, damping=C_J, tau=tau_J)
-    h, at = 1e-5, np.array([robot.coordinates(q)[joint][0] for joint in joints])
+    h, at = 1e-5, np.array([robot.joint_positions(q)[joint][0] for joint in joints])
     columns = []
     for unit in h * np.eye(n):
         ahead, behind = (

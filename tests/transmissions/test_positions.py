@@ -15,7 +15,7 @@ from support.transmissions import DRIVEN, four_bar, posed, slider_crank
 @pytest.mark.parametrize("name", DRIVEN)
 def test_positions_go_both_ways(name: str) -> None:
     robot, q = posed(name, 3)
-    at = robot.coordinates(q)
+    at = robot.joint_positions(q)
     wanted = {joint: at[joint][0] for joint in DRIVEN[name]}
     found = eurdf.transmissions.actuator_values(robot, wanted)
     for motor, value in found.values.items():
@@ -26,9 +26,9 @@ def test_positions_go_both_ways(name: str) -> None:
     # What the actuators decide is returned by default; other actuators stay where they are.
     every = eurdf.transmissions.joint_values(robot, found.values)
     assert every.values.keys() >= {joint for joint in DRIVEN[name] if joint not in robot.actuation.joints}
-    first = robot.coordinates(robot.configurations["assembled"])
+    first = robot.joint_positions(robot.configurations["assembled"])
     for other in set(robot.actuation.joints) - found.values.keys():
-        assert robot.coordinates(every.q)[other] == pytest.approx(first[other], abs=1e-12)
+        assert robot.joint_positions(every.q)[other] == pytest.approx(first[other], abs=1e-12)
 
 
 def test_positions_stay_on_the_branch() -> None:

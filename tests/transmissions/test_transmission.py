@@ -21,7 +21,7 @@ G1 = "unitree_g1_ankle", DRIVEN["unitree_g1_ankle"]
 
 
 def values(robot: Any, q: Any, names: tuple[str, ...]) -> Any:
-    found = robot.coordinates(q)
+    found = robot.joint_positions(q)
     return np.array([found[name][0] for name in names])
 
 

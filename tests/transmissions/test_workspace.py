@@ -109,7 +109,7 @@ def test_three_joints_have_samples() -> None:
     robot = eurdf.load("kangaroo_leg", geometry=False)
     joints = ("free_knee", "free_ankle_y", "free_ankle_x")
     near = {"free_knee": 0.05, "free_ankle_y": 0.05, "free_ankle_x": 0.05}
-    at = robot.coordinates(robot.configurations["assembled"])
+    at = robot.joint_positions(robot.configurations["assembled"])
     ranges = {name: (at[name][0] - half, at[name][0] + half) for name, half in near.items()}
     found = eurdf.transmissions.workspace(robot, joints, grid=3, ranges=ranges)
     assert found.positions.shape == (len(found.q), 3)

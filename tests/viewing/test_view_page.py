@@ -258,7 +258,7 @@ def test_pose_is_saved_to_the_description_and_comments_stay(tmp_path: Path) -> N
     text_ = (tmp_path / "robot.yaml").read_text()
     assert "# Written by build.py" in text_
     robot = eurdf.load(tmp_path, strict=True)
-    assert robot.coordinates(robot.configurations["bent knee"])["motor_crank"] == pytest.approx((0.4,))
+    assert robot.joint_positions(robot.configurations["bent knee"])["motor_crank"] == pytest.approx((0.4,))
     assert np.abs(eurdf.residual(robot, robot.configurations["bent knee"])).max() < 1e-12
     assert not files.has_changed
     assert files.save("bent knee", session).endswith("already has this configuration")

@@ -147,7 +147,7 @@ def assemble(
     start = start or (NAME if NAME in robot.configurations else NEUTRAL)
     with cannot_run(ValueError):
         assembly = _assemble(robot, named_configuration(robot, start), hold, limits)
-    beyond = beyond_limits(robot.mechanism.joints, robot.coordinates(assembly.q))
+    beyond = beyond_limits(robot.mechanism.joints, robot.joint_positions(assembly.q))
     info = replace(_assembly_info(robot, assembly, start, hold, {found.joint for found in beyond}), file=file)
     if not json:
         _show(info)
@@ -176,7 +176,7 @@ def _assemble(robot: Robot, q0: Vector, hold: list[str], limits: bool) -> Assemb
     # All joints but the held ones within their limits, also those outside of loops.
     within = position_limits(robot).clip(q0, np.setdiff1d(np.arange(robot.tree.nv), held))
     assembly = assemble(robot, within if limits else q0, hold=hold, tolerance=_TOLERANCE, limits=limits)
-    if not limits and assembly.closes and beyond_limits(robot.mechanism.joints, robot.coordinates(assembly.q)):
+    if not limits and assembly.closes and beyond_limits(robot.mechanism.joints, robot.joint_positions(assembly.q)):
         limited = assemble(robot, within, hold=hold, tolerance=_TOLERANCE, limits=True)
         if limited.closes:
             return limited
@@ -199,7 +199,7 @@ def _assembly_info(
             held=name in held,
             beyond_limits=name in beyond,
         )
-        for name, values in robot.coordinates(assembly.q).items()
+        for name, values in robot.joint_positions(assembly.q).items()
     )
     return AssemblyInfo(
         name=robot.mechanism.name,

@@ -127,7 +127,7 @@ def _info(
     motors = motors_of(robot, joints) if motor_names is None else selection(robot, motor_names, "--motors")
     if grid is None:
         assert q is not None
-        at = robot.coordinates(q)
+        at = robot.joint_positions(q)
         return transmission_info(robot, joints, motors, [q], [[value for name in joints.joints for value in at[name]]])
     if grid < 2 or grid ** len(joints) > _MOST_POSES:
         raise CannotRun(f"--grid {grid} makes {grid ** len(joints)} poses; give 2 to {_MOST_POSES}")

@@ -148,7 +148,7 @@ def _pose(
 ) -> PoseInfo:
     if q is None:
         return PoseInfo(tuple(positions), reached=False)
-    at, coordinates = at_one(robot, joints, q, motors), robot.coordinates(q)
+    at, coordinates = at_one(robot, joints, q, motors), robot.joint_positions(q)
     limits = inertia = None
     if at.G is not None and at.rank_joints == len(at.joints):
         if at.B_J is not None:

@@ -84,7 +84,7 @@ COMMON = loss_kinds(
 )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Import:
     """A robot from a file of another format.
 
@@ -140,6 +140,10 @@ class Import:
             OSError: A file cannot be written.
         """
         return write_files(folder, self.files, force=force)
+
+    def __repr__(self) -> str:
+        state = "the loops close" if self.closes else "the loops do not close"
+        return f"<Import of {self.format}: {self.mechanism!r}; {len(self.losses)} losses; {state}>"
 
 
 def import_robot(
@@ -291,7 +295,7 @@ def _assembled(mechanism: Mechanism, robot: Robot, q: Vector, losses: Losses) ->
     if found is None:
         losses.add("import-not-assembled", ASSEMBLED, "no configuration was found that closes the loops")
         return mechanism, False
-    coordinates = robot.coordinates(found.q)
+    coordinates = robot.joint_positions(found.q)
     if beyond := beyond_limits(mechanism.joints, coordinates):
         losses.add("import-not-assembled", ASSEMBLED, f"the loops close beyond limits only: {beyond[0]}")
         return mechanism, True

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from eurdf.diagnostics.wording import enumerated
 from eurdf.json_schema import HIDDEN, Count, NullIfInfinite
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import Assembly, assembled, close, start
@@ -32,7 +33,7 @@ _MOST_WORK = 1e9
 _MOVES = (0.05, 0.1, 0.2, 0.2)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Motion:
     """A motion left with every actuator held.
 
@@ -48,8 +49,11 @@ class Motion:
     values: Vector = field(metadata=HIDDEN)
     q: Vector = field(metadata=HIDDEN)
 
+    def __repr__(self) -> str:
+        return f"<Motion of {enumerated(self.joints)}>"
 
-@dataclass(frozen=True, slots=True, eq=False)
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class LoopAnalysis:
     """An independent group of loops: they share joints with one another and with no other loop.
 
@@ -100,8 +104,14 @@ class LoopAnalysis:
     branches: tuple[Count, ...]
     rigid_order: Count | None
 
+    def __repr__(self) -> str:
+        return (
+            f"<LoopAnalysis of {enumerated(self.closures)}: {self.nv} velocities, {self.nc} rows of rank {self.rank}, "
+            f"{self.mobility} degrees of freedom, {self.uncontrolled} uncontrolled>"
+        )
 
-@dataclass(frozen=True, slots=True, eq=False)
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Analysis:
     """Dimensions of a mechanism, of the whole and of each independent group of loops.
 
@@ -172,6 +182,12 @@ class Analysis:
     finite_mobility: int | Literal["unknown"] | None = None
     rounded_mobility: int | None = None
     rounded_tolerance: float | None = None
+
+    def __repr__(self) -> str:
+        found = f"rank {self.rank}, {self.mobility} degrees of freedom, {self.uncontrolled} uncontrolled"
+        if self.rank is None:
+            found = self.left_out or "the loops do not close"
+        return f"<Analysis: {self.nv} velocities, {self.nc} rows; {found}; residual {self.residual:.3g} m, rad>"
 
 
 #: The figures that `eurdf info` and the viewer show, in this order, and what each of them counts, in few words.

@@ -72,7 +72,7 @@ class Assembly:
 
     def __repr__(self) -> str:
         is_open = ", ".join(str(found) for found in self.open if found.is_open)
-        parts = [f"open: {is_open}" if is_open else "closed", f"residual {self.residual:.3g}"]
+        parts = [f"open: {is_open}" if is_open else "closed", f"residual {self.residual:.3g} m, rad"]
         if self.reason == "rounding":
             parts.append("not converged: rounding makes redundant rows contradict each other")
         if self.reason == "not decided":

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from eurdf.array import numbers
 from eurdf.errors import UnderactuatedMotion
 from eurdf.kinematics.applied_force import AppliedForce, External
 from eurdf.kinematics.array import Vector
@@ -44,6 +45,9 @@ class ForwardDynamics(NamedTuple):
     a: Vector
     forces: tuple[Vector, ...]
 
+    def __repr__(self) -> str:
+        return f"<ForwardDynamics: a {numbers(self.a)} rad/s² or m/s²; {len(self.forces)} forces, N and N·m>"
+
 
 class InverseDynamics(NamedTuple):
     """The result of `inverse_dynamics`.
@@ -55,6 +59,9 @@ class InverseDynamics(NamedTuple):
 
     u: Vector
     forces: tuple[Vector, ...]
+
+    def __repr__(self) -> str:
+        return f"<InverseDynamics: u {numbers(self.u)} N·m or N; {len(self.forces)} forces, N and N·m>"
 
 
 def forward_dynamics(

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class FrameError:
     """How far a frame is from its target.
 
@@ -48,6 +48,9 @@ class FrameError:
     def __str__(self) -> str:
         angle = f" and {math.degrees(self.angle):.3g} degrees" if self.angle else ""
         return f"'{self.frame}' by {self.position * 1e3:.3g} mm{angle}"
+
+    def __repr__(self) -> str:
+        return f"<FrameError: {self}>"
 
 
 _SENTENCES: dict[InverseKinematicsReason, str] = {

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from eurdf.diagnostics.wording import enumerated
 from eurdf.errors import CannotLock, LockedOpen
 from eurdf.kinematics.array import Indices, Vector
 from eurdf.kinematics.assembly import start
@@ -44,6 +45,9 @@ class LockedRobot(Robot):
     idx_q: Indices
     idx_v: Indices
 
+    def __repr__(self) -> str:
+        return f"{super().__repr__()[:-1]}; locked: {enumerated(self.locked_joints)}>"
+
 
 def lock(
     robot: Robot, joints: str | Iterable[str], q: Named | None = None, *, tolerance: float = CLOSED
@@ -79,7 +83,7 @@ def lock(
     if ROOT_JOINT in names and robot.mechanism.root == "floating":
         raise CannotLock(ROOT_JOINT, "it is the floating root; load the robot with root='fixed' instead")
     q, tolerance = start(robot, q, "q"), checked_tolerance(tolerance)
-    locked = lock_joints(robot.mechanism, names, robot.joint_coordinates(q))
+    locked = lock_joints(robot.mechanism, names, robot.joint_positions(q, mimic=True))
     _check_closed(robot, q, {constraint.name for constraint in locked.constraints}, tolerance)
     built = build_robot(locked.mechanism, geometry=False)
     idx_q, idx_v = _free_indices(robot, built)

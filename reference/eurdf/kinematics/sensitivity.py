@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pinocchio import LOCAL
 
+from eurdf.array import numbers
 from eurdf.errors import DependentActuators
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import start
@@ -182,6 +183,12 @@ class FrameVelocity(NamedTuple):
     actuated: Vector
     twist: Vector
     rank: int
+
+    def __repr__(self) -> str:
+        return (
+            f"<FrameVelocity: twist {numbers(self.twist)} m/s and rad/s, of rank {self.rank}; "
+            f"actuated {numbers(self.actuated)} rad/s or m/s>"
+        )
 
 
 @overflow_refused("the velocity")

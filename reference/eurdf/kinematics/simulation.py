@@ -73,6 +73,9 @@ class Simulation(NamedTuple):
         """The largest range of kinetic energy, potential energy and work, J: what `energy_error` compares with."""
         return float(max(np.ptp(part) for part in (self.kinetic, self.potential, self.work)))
 
+    def __repr__(self) -> str:
+        return f"<Simulation: {self.t[-1]:.6g} s in {len(self.t) - 1} steps; energy error {self.energy_error:.3g} J>"
+
 
 def simulate(
     robot: Robot,

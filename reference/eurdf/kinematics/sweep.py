@@ -30,7 +30,7 @@ End = Literal["limit", "half turn", "characteristic length", "passive limit", "d
 _SHORTEST_STEP = 2.0**-12  # steps are halved down to this fraction of one
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class MotionPath:
     """The path of an actuator from its start toward one of its position limits.
 
@@ -53,8 +53,12 @@ class MotionPath:
     correction: float
     singularity: float
 
+    def __repr__(self) -> str:
+        by = f" of '{self.joint}'" if self.joint else ""
+        return f"<MotionPath to {self.reached:.6g} rad or m: {self.end}{by}; {len(self.configurations)} configurations>"
 
-@dataclass(frozen=True, slots=True, eq=False)
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Sweep:
     """The range of motion of one actuator, as `sweep` returns it.
 
@@ -73,6 +77,10 @@ class Sweep:
     lower: MotionPath
     upper: MotionPath
     periodic: bool | None
+
+    def __repr__(self) -> str:
+        ends = (f"{path.reached:.6g} ({path.end})" for path in (self.lower, self.upper))
+        return f"<Sweep of '{self.actuator}': {' to '.join(ends)} rad or m>"
 
 
 def sweep(

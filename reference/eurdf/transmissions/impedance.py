@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from eurdf.array import numbers
 from eurdf.errors import NoTransmission
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import start
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 Side = Literal["joints", "motors"]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Impedance:
     """Gains of joints and the equal gains of motors, as `impedance_map` returns them.
 
@@ -60,6 +61,13 @@ class Impedance:
     drive_damping: Vector
     joint_stiffness_of_drives: Matrix
     joint_damping_of_drives: Matrix
+
+    def __repr__(self) -> str:
+        joints, motors = (numbers(np.diagonal(each)) for each in (self.joint_stiffness, self.motor_stiffness))
+        return (
+            f"<Impedance: stiffness of {', '.join(self.joints)} {joints}, of {', '.join(self.motors)} {motors}, "
+            "N·m/rad or N/m>"
+        )
 
 
 @of_any_robot

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from eurdf.array import numbers
 from eurdf.errors import NoTransmission
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import start
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ReflectedInertia:
     """The terms of the inertia that joints feel, as `reflected_inertia` returns them.
 
@@ -68,6 +69,10 @@ class ReflectedInertia:
         is off the diagonal, and how the terms change with the configuration.
         """
         return np.asarray(self.rotors + self.linkage)
+
+    def __repr__(self) -> str:
+        armature = np.diagonal(self.equivalent_armature, axis1=-2, axis2=-1)
+        return f"<ReflectedInertia of {', '.join(self.joints)}: equivalent armature {numbers(armature)} kg·m² or kg>"
 
 
 @of_any_robot

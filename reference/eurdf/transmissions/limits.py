@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from eurdf.array import numbers
 from eurdf.errors import NoTransmission
 from eurdf.kinematics.array import Indices, Matrix, Vector
 from eurdf.kinematics.named import Named
@@ -76,7 +77,7 @@ class SerialLimits:
         return f"<SerialLimits of {', '.join(self.joints)} by {', '.join(self.motors)}>"
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class CommonLimits:
     """The limits of joints at B configurations, as `serial_limits` returns them.
 
@@ -111,6 +112,12 @@ class CommonLimits:
     q: Matrix
     torque_margin: float | None = None
     velocity_margin: float | None = None
+
+    def __repr__(self) -> str:
+        return (
+            f"<CommonLimits of {', '.join(self.joints)} at {len(self.each)} configurations: "
+            f"torques ±{numbers(self.torque_box)} N·m or N, velocities ±{numbers(self.velocity_box)} rad/s or m/s>"
+        )
 
 
 @of_any_robot

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from eurdf.diagnostics.wording import enumerated
 from eurdf.errors import NotClosable, NoTransmission, OutOfReach
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import assemble, start
@@ -36,6 +37,11 @@ class Positions(NamedTuple):
     values: dict[str, float]
     q: Vector
     beyond: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        values = ", ".join(f"{name} {value + 0.0:.6g}" for name, value in self.values.items())
+        beyond = f"; beyond their limits: {enumerated(self.beyond)}" if self.beyond else ""
+        return f"<Positions: {values} rad or m{beyond}>"
 
 
 @of_any_robot
@@ -124,14 +130,16 @@ def _moved(robot: Robot, given: Selection, motors: Selection, values: Mapping[st
     closed = assemble(robot, start(robot, q0))
     if not closed.closes:
         raise NotClosable("no closed configuration was found near the start", closed.open, closed.q)
-    at = robot.coordinates(closed.q)
+    at = robot.joint_positions(closed.q)
     still: dict[str, Sequence[float]] = {
         name: at[name] for name in robot.actuation.joints if name not in motors.joints and name not in wanted
     }
     q, part = farthest(robot, {**still, **wanted}, closed.q)
     if part < 1.0:
-        reached = {name: robot.coordinates(q)[name][0] for name in wanted}
-        least = assemble(robot, robot.configuration({**robot.coordinates(q), **still, **_lists(wanted)}), hold=wanted)
+        reached = {name: robot.joint_positions(q)[name][0] for name in wanted}
+        least = assemble(
+            robot, robot.configuration({**robot.joint_positions(q), **still, **_lists(wanted)}), hold=wanted
+        )
         raise OutOfReach(wanted, reached, part, least.open, least.q)
     return q
 
@@ -163,5 +171,5 @@ def beyond_limits(robot: Robot, q: Vector) -> tuple[str, ...]:
 
 
 def _positions(robot: Robot, names: Iterable[str], q: Vector) -> Positions:
-    at = robot.coordinates(q)
+    at = robot.joint_positions(q)
     return Positions({name: at[name][0] for name in names}, q, beyond_limits(robot, q))

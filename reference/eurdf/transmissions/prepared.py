@@ -209,6 +209,9 @@ class PreparedTransmission:
         }
         self._q = q
 
+    def __repr__(self) -> str:
+        return f"<PreparedTransmission: motors {', '.join(self.motors)}; joints {', '.join(self.joints)}>"
+
 
 @of_any_robot
 def prepare_transmission(

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from eurdf.array import numbers
 from eurdf.errors import NoTransmission
 from eurdf.kinematics.array import Indices, Matrix, Vector
 from eurdf.kinematics.blocks import checked_configurations, checked_rows
@@ -37,7 +38,7 @@ _FINEST = 1.0 / 64.0
 _POINTS, _MOST_ALONG = 1681, 101
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class BoundaryPoint:
     """A point at which the joints stop.
 
@@ -50,6 +51,9 @@ class BoundaryPoint:
     position: Vector
     q: Vector
     stop: Stop
+
+    def __repr__(self) -> str:
+        return f"<BoundaryPoint {numbers(self.position)} rad or m: {self.stop}>"
 
 
 @dataclass(frozen=True, eq=False, repr=False)

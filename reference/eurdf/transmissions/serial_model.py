@@ -133,7 +133,7 @@ class SerialTwin:
         }
         lost = {name: getattr(self.neglected, name) for name in self.neglected.__slots__}
         fit = {name: getattr(self.map, name) for name in self.map.__slots__ if name not in ("joints", "motors")}
-        q = self.workspace.robot.coordinates(self.q)
+        q = self.workspace.robot.joint_positions(self.q)
         return {
             "joints": list(self.joints),
             "motors": list(self.motors),
@@ -292,7 +292,7 @@ def _refuse_other_motors(robot: Robot, bodies: Sequence[str], joints: Selection,
 
 def _without_linkage(robot: Robot, q: Vector, bodies: Sequence[str], joints: Selection, motors: Selection) -> Robot:
     """The twin without armature of its joints."""
-    coordinates = robot.joint_coordinates(q)
+    coordinates = robot.joint_positions(q, mimic=True)
     mechanism = serial_mechanism(robot.mechanism, set(bodies), coordinates, joints.joints, set(motors.joints))
     bare = {
         joint.name: replace(joint.properties, armature=(), gear_ratio=(), rotor_inertia=())
@@ -310,7 +310,7 @@ def _found_mesh(files: Mapping[str, Path], uri: str) -> str | None:
 def _of_twin(robot: Robot, twin: Robot, q: Vector) -> Vector:
     """The configuration of the twin at one of the robot."""
     own = {*twin.slots, ROOT_JOINT}
-    return twin.configuration({name: values for name, values in robot.coordinates(q).items() if name in own})
+    return twin.configuration({name: values for name, values in robot.joint_positions(q).items() if name in own})
 
 
 def _box(found: Workspace, start: Vector) -> Mask:

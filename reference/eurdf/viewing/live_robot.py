@@ -189,7 +189,7 @@ def _anchor(anchor: Anchor, bodies: Mapping[str, int]) -> dict[str, Any]:
 
 
 def _coordinates(robot: Robot, joints: Sequence[Mapping[str, Any]], q: Vector) -> list[list[float]]:
-    own = robot.coordinates(q)
+    own = robot.joint_positions(q)
     return [list(own.get(joint["name"], ())) for joint in joints]
 
 

@@ -108,3 +108,6 @@ class ShownRobot:
         figure = Figure(self._server, scene, placed, f"{self._node}/version{self._versions}", self._origin)
         figure.highlight(frozenset(name for each in self.session.analysis.dependent_actuators for name in each))
         return figure
+
+    def __repr__(self) -> str:
+        return f"<ShownRobot '{self.robot.mechanism.name}' at '{self._node}'>"

@@ -131,7 +131,7 @@ def with_closed_configuration(read: ReadRobot, robot: Robot, q: Vector, name: st
         NotEditable: The file has a form in which the configuration cannot be changed alone.
     """
     document = read.description.document
-    exact = robot.coordinates(q)
+    exact = robot.joint_positions(q)
     enough = max(CLOSED_IN_FULL, _largest_row(robot, q))
     rounded = {joint: tuple(round(value, _DECIMALS) for value in values) for joint, values in exact.items()}
     text, diagnostics = "", Diagnostics()
