@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eurdf.diagnostics.wording import enumerated
 from eurdf.errors import CannotLock, LockedOpen
 from eurdf.kinematics.array import Indices, Vector
 from eurdf.kinematics.assembly import start
@@ -46,7 +45,7 @@ class LockedRobot(Robot):
     idx_v: Indices
 
     def __repr__(self) -> str:
-        return f"{super().__repr__()[:-1]}; locked: {enumerated(self.locked_joints)}>"
+        return f"{super().__repr__()[:-1]}; locked: {', '.join(self.locked_joints) or 'none'}>"
 
 
 def lock(
