@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 import eurdf
-from eurdf.closures.kind import REGISTRY
+from eurdf.closures import REGISTRY
 from eurdf.convert.common_losses import UNKNOWN
 from eurdf.convert.export_format import ExportInput, export_format
 from eurdf.convert.formats import EXPORTS

@@ -26,8 +26,10 @@ class DistanceClosure(ClosureKind):
 
     type: ClassVar[str] = "distance"
     units: ClassVar[tuple[Unit, ...]] = ("m",)
+    text: ClassVar[str] = "the origins of frames A and B are at a fixed distance, as those of the ball joints of a rod"
+    summary: ClassVar[str] = "Two frames whose origins are at a fixed distance."
     length: float = key(
-        "Length", "Distance between the origins of A and B, m, at least 0.0001.", unit="m", least=1e-4, example=0.155
+        "Length", "Distance between the origins of A and B, m, at least 0.0001.", least=1e-4, example=0.155
     )
 
     @classmethod
@@ -37,7 +39,7 @@ class DistanceClosure(ClosureKind):
 
     @staticmethod
     def residual(poses: RelativePoses, fixed: Vector) -> Matrix:
-        """|p| - length."""
+        """|p| - length (EU-CLO-015)."""
         return np.asarray(norm(poses.position) - fixed)[..., None]
 
     @staticmethod

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
 
-from eurdf.closures.kind import REGISTRY
+from eurdf.closures import REGISTRY
 from eurdf.json_schema import Count, Keywords, NullIfInfinite
 from eurdf.kinematics.analysis import Analysis, LoopAnalysis, Motion
 from eurdf.mechanism.joint_types import JointType
@@ -50,7 +50,7 @@ class ClosureInfo:
 
     name: str
     """Name of the closure."""
-    type: Annotated[str, Keywords(enum=sorted(REGISTRY))]
+    type: Annotated[str, Keywords(enum=lambda: sorted(REGISTRY))]
     """3d for position, 6d for position and orientation, hinge for position and an axis, distance for a distance."""
     rows: Count
     """Number of its constraint rows."""

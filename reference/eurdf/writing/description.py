@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any, Literal
 
 from lxml import etree
@@ -17,13 +17,13 @@ from lxml import etree
 from eurdf.diagnostics.wording import visible
 from eurdf.format.closure_model import (
     CLOSURE,
-    AnyClosure,
     Compliance,
     FrameOnLink,
     FrameReference,
     NamedFrame,
     PoseOnLink,
 )
+from eurdf.format.closure_model import Closure as ClosureEntry
 from eurdf.format.closure_model import Coupling as CouplingEntry
 from eurdf.format.conventions import VERSION2_1, VERSION_KEY, is_own_key
 from eurdf.format.joint_model import JOINT, Geared, Limits
@@ -54,9 +54,6 @@ from eurdf.writing.xml_text import file_content, representable, rpy_of
 _TWO_HYPHENS = re.compile("-(?=-)")
 
 _Z: Vector3 = (0.0, 0.0, 1.0)
-
-#: Fields of all kinds of closure.
-_COMMON = frozenset(each.name for each in fields(Closure))
 
 
 class NotWritable(ValueError):  # noqa: N818 - named as the other refusals are
@@ -342,23 +339,15 @@ def _actuator(name: str, mechanism: Mechanism) -> Geared:
     return Geared(joint=name, **stated)
 
 
-def _closure(closure: Closure, anchors: _Anchors) -> AnyClosure:
-    # What a kind has besides, one of its entries has by the same name.
-    own = {each.name: getattr(closure, each.name) for each in fields(closure)}
-    own = {key: value for key, value in own.items() if key not in _COMMON}
-    if "axes" in own and len(set(own["axes"])) == 1:
-        own = {"axis": own["axes"][0]}
-    forms = [record for record in CLOSURE.records if closure.type in record.values_of_type()]
-    form = next(record.model for record in forms if own.keys() <= record.all_keys.keys())
+def _closure(closure: Closure, anchors: _Anchors) -> ClosureEntry:
     linear, angular = closure.compliance.linear or None, closure.compliance.angular or None
-    written: AnyClosure = form(
+    return CLOSURE.entry(
+        closure.type,
+        closure.stated(),
         name=closure.name,
-        type=closure.type,
         frames=(anchors.reference(closure.a), anchors.reference(closure.b)),
         compliance=Compliance(linear=linear, angular=angular) if linear or angular else None,
-        **own,
     )
-    return written
 
 
 class _Anchors:
