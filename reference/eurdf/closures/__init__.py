@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, MutableMapping
 from importlib import import_module
 from typing import TYPE_CHECKING
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 MODULES = {"3d": "point", "6d": "frame", "hinge": "hinge", "distance": "distance"}
 
 
-class _Registry(Mapping[str, "type[ClosureKind]"]):
+class _Registry(MutableMapping[str, "type[ClosureKind]"]):
     """The kinds by type; each is imported, and NumPy with it, when it is first used."""
 
     def __init__(self) -> None:
@@ -25,15 +25,17 @@ class _Registry(Mapping[str, "type[ClosureKind]"]):
             kind = self._found[type_] = import_module(f"{__name__}.{MODULES[type_]}").KIND
         return kind
 
+    def __setitem__(self, type_: str, kind: type[ClosureKind]) -> None:
+        self._found[type_] = kind
+
+    def __delitem__(self, type_: str) -> None:
+        del self._found[type_]
+
     def __iter__(self) -> Iterator[str]:
         return iter(self._found)
 
     def __len__(self) -> int:
         return len(self._found)
-
-    def add(self, kind: type[ClosureKind]) -> None:
-        """Take a kind that has no line in `MODULES`."""
-        self._found[kind.type] = kind
 
 
 #: The kinds of closure that files can state, by their type there.
