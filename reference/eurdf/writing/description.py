@@ -26,7 +26,7 @@ from eurdf.format.closure_model import (
 from eurdf.format.closure_model import Closure as ClosureEntry
 from eurdf.format.closure_model import Coupling as CouplingEntry
 from eurdf.format.conventions import VERSION2_1, VERSION_KEY, is_own_key
-from eurdf.format.joint_model import JOINT, Geared, Limits
+from eurdf.format.joint_model import JOINT, NAMED, Geared, Limits
 from eurdf.format.joint_model import Joint as JointEntry
 from eurdf.format.model import VERSION2, Version2, lowest_version
 from eurdf.format.yaml_text import entries_of, modeline, text_of
@@ -227,9 +227,10 @@ def _in_urdf(joint: Joint) -> tuple[JointType, Vector3 | None]:
     if not joint.type.replaces:
         return joint.type, None if joint.type.is_fixed or joint.type.quaternion is not None else axis
     index = _limited_in_urdf(joint)
-    if index is None:
+    if index is None and JointType.CONTINUOUS in joint.type.replaces:
         return JointType.CONTINUOUS, axis
-    return JointType.PRISMATIC if joint.type.coordinates[index] == "length" else JointType.REVOLUTE, axis
+    slides = index is None or joint.type.steps[index].kind == "slide"
+    return JointType.PRISMATIC if slides else JointType.REVOLUTE, axis
 
 
 def _limited_in_urdf(joint: Joint) -> int | None:
@@ -392,7 +393,7 @@ def _inside(place: Any, key: str) -> Any:
     """What is at a key or an index; an actuator or a joint that is a name alone becomes a mapping."""
     if isinstance(place, dict):
         value = place.get(key)
-        if isinstance(value, str) and value in ("spherical", "cylindrical"):
+        if isinstance(value, str) and value in NAMED:
             place[key] = value = {"type": value}
         return value
     if isinstance(place, list) and key.isdigit() and int(key) < len(place):
