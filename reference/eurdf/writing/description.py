@@ -40,6 +40,7 @@ from eurdf.mechanism.same_model import with_universal_joints
 from eurdf.writing.urdf_elements import (
     Color,
     add_dynamics,
+    add_fixed_joint,
     add_inertial,
     add_joint,
     add_limit,
@@ -192,7 +193,7 @@ class _Urdf:
             self._properties(joint, kind, element)
         if child != joint.child:
             etree.SubElement(self.robot, "link", name=child)
-            add_joint(self.robot, fixed, JointType.FIXED, child, joint.child, joint.offset, None)
+            add_fixed_joint(self.robot, fixed, child, joint.child, joint.offset)
 
     def _properties(self, joint: Joint, kind: JointType, element: etree._Element) -> None:
         properties = joint.properties

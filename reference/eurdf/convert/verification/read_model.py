@@ -11,14 +11,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import pinocchio as pin
 
-from eurdf.closures.distance import DistanceClosure
-from eurdf.closures.frame import FrameClosure
-from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.kind import ClosureKind, PoseArrays
 from eurdf.convert.coordinates import Coordinates, Matrix, Vector
 from eurdf.kinematics.opening import Opening
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Closure
-from eurdf.mechanism.pose import direction
 from eurdf.pinocchio.robot import Robot, build_robot
 
 
@@ -183,14 +180,10 @@ def without_armature(robot: Robot, names: Sequence[str] | None = None) -> Robot:
 
 def opening_of(closure: Closure, a: Matrix, b: Matrix) -> Opening:
     """How far a closure is open, with its frames at poses (4, 4) in the world."""
-    distance, angle = float(np.linalg.norm(b[:3, 3] - a[:3, 3])), 0.0
-    if isinstance(closure, DistanceClosure):
-        distance = abs(distance - closure.length)
-    elif isinstance(closure, HingeClosure):
-        one, other = (M[:3, :3] @ direction(axis) for M, axis in zip((a, b), closure.axes, strict=True))
-        angle = float(np.arctan2(np.linalg.norm(np.cross(one, other)), one @ other))
-    elif isinstance(closure, FrameClosure):
-        angle = float(np.linalg.norm(pin.log3(a[:3, :3].T @ b[:3, :3])))
+    assert isinstance(closure, ClosureKind)
+    aMb = np.linalg.inv(a) @ b
+    poses = PoseArrays(aMb[None, None, :3, :3], aMb[None, None, :3, 3])
+    distance, angle = (float(size[0, 0]) for size in closure.opening(poses, closure.prepare([closure])))
     return Opening(closure.name, distance, angle)
 
 
