@@ -11,7 +11,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eurdf.closures.kind import MODULES
+from eurdf.closures import MODULES
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import SPREADS
 from eurdf.kinematics.derived import derived
