@@ -16,7 +16,7 @@ from eurdf.kinematics.loop import find_loops
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.residual import acceleration_drift, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
-from eurdf.kinematics.tree_kinematics import TreeKinematics
+from eurdf.pinocchio.tree import Tree
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -137,7 +137,7 @@ def per_constraint(robot: Robot, lambdas: Vector) -> tuple[Vector, ...]:
     return tuple(lambdas[loop.rows] for loop in find_loops(robot))
 
 
-def by_joint(tree: TreeKinematics, values: Vector) -> dict[str, tuple[float, ...]]:
+def by_joint(tree: Tree, values: Vector) -> dict[str, tuple[float, ...]]:
     """The values (nv,) by joint name, for the joints that have a value above rounding."""
     least = 1e-6 * np.abs(values).max(initial=0.0)
     owned: dict[str, list[float]] = {}

@@ -16,8 +16,12 @@ from eurdf.kinematics.independence import Independence, norm
 from eurdf.kinematics.loop import find_loops
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
-from eurdf.kinematics.tree_kinematics import ConstrainedDynamics, ConstrainedMotion
-from eurdf.pinocchio.constrained_dynamics import StatedGains, build_constrained_dynamics
+from eurdf.pinocchio.constrained_dynamics import (
+    ConstrainedDynamics,
+    ConstrainedMotion,
+    StatedGains,
+    build_constrained_dynamics,
+)
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot

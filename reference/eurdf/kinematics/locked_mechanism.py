@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -14,6 +13,7 @@ from eurdf.mechanism.joint import Joint, Mimic, drivers
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 from eurdf.mechanism.spanning_tree import rigid_roots
+from eurdf.pinocchio.arguments import suggestion
 
 #: A named configuration is kept if its pose of each locked joint differs from the locked pose by at most this, m and
 #: rad.
@@ -105,8 +105,7 @@ def _locked(by_name: Mapping[str, Joint], names: Iterable[str], mimics: Mapping[
     """The joints to lock, in the mechanism's order: those named and their mimic joints, without fixed ones."""
     named = set(names)
     for name in sorted(named - by_name.keys()):
-        near = difflib.get_close_matches(name, list(by_name), n=1)
-        raise CannotLock(name, "the robot has no such joint" + (f"; did you mean '{near[0]}'?" if near else ""))
+        raise CannotLock(name, f"the robot has no such joint{suggestion(name, by_name)}")
     locked = []
     for name in by_name:
         leader = mimics[name].joint if name in mimics else name

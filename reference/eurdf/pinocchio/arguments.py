@@ -12,13 +12,15 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
+
+from eurdf.array import Matrix
+from eurdf.diagnostics.wording import did_you_mean
 
 _FLOATS = np.dtype(np.float64)
 
 
-def checked_array(name: str, given: Any, *shapes: tuple[int, ...]) -> npt.NDArray[np.float64]:
+def checked_array(name: str, given: Any, *shapes: tuple[int, ...]) -> Matrix:
     """The given numbers as an array of one of the shapes.
 
     Args:
@@ -48,7 +50,7 @@ def checked_array(name: str, given: Any, *shapes: tuple[int, ...]) -> npt.NDArra
     return values
 
 
-def _all_finite(values: npt.NDArray[np.float64]) -> bool:
+def _all_finite(values: Matrix) -> bool:
     # Sooner than by isfinite; unlike dot, vdot does not warn. If the squares overflow, slower steps follow.
     return math.isfinite(np.vdot(values, values))
 
@@ -96,3 +98,9 @@ def checked_data(model: Any, data: Any) -> Any:
 def as_names(given: str | Iterable[str]) -> tuple[str, ...]:
     """The names given: a text alone is one name, not the letters in it."""
     return (given,) if isinstance(given, str) else tuple(given)
+
+
+def suggestion(wrong: str, known: Iterable[str]) -> str:
+    """The end of a message about an unknown name: "; did you mean …?", or nothing if no known name is similar."""
+    hint = did_you_mean(wrong, known)
+    return f"; {hint}" if hint else ""

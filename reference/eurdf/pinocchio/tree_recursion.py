@@ -10,11 +10,9 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
-Vector = npt.NDArray[np.float64]
-Matrix = npt.NDArray[np.float64]
+from eurdf.array import Indices, Mask, Matrix, Vector
 
 
 class TreeRecursion:
@@ -97,13 +95,13 @@ class TreeRecursion:
         return placements
 
     @cached_property
-    def _owners(self) -> npt.NDArray[np.intp]:
+    def _owners(self) -> Indices:
         """The joint of each column of J (nvExtended,)."""
         counts = [moving.nvExtended for _, moving, _, _, _ in self._joints]
         return np.repeat(np.arange(1, self.model.njoints), counts)
 
     @cached_property
-    def _carries(self) -> npt.NDArray[np.bool_]:
+    def _carries(self) -> Mask:
         """Whether the joint of a column of J carries that of another, or is the same."""
         n = self.model.njoints
         carries = np.zeros((n, n), dtype=bool)
@@ -113,7 +111,7 @@ class TreeRecursion:
         return np.asarray(carries[np.ix_(self._owners, self._owners)])
 
     @cached_property
-    def _same(self) -> npt.NDArray[np.bool_]:
+    def _same(self) -> Mask:
         return np.asarray(self._owners[:, None] == self._owners)
 
     @cached_property
