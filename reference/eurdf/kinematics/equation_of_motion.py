@@ -76,7 +76,7 @@ class EquationOfMotion:
         if not S.shape[1]:
             return np.zeros((self.N.shape[1], 0)), np.eye(self.N.shape[1])
         basis, values, _ = np.linalg.svd(self.free.T @ S)
-        rank = numerical_rank(values, values.max(initial=0.0))
+        rank = numerical_rank(values)
         return basis[:, :rank], basis[:, rank:]
 
     def differ(self, change: Vector, given: Vector, tolerance: float) -> bool:
