@@ -27,6 +27,7 @@ from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.forward_solver import SOLVED, ForwardSolver
 from eurdf.kinematics.inverse_solver import InverseSolver
 from eurdf.pinocchio.arguments import checked_array, checked_tolerance
+from eurdf.pinocchio.tree_dynamics import TreeDynamics
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -103,14 +104,14 @@ def forward_dynamics(
     """
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"), borrowed(robot, ForwardSolver) as solver:
         q, v = start(robot, q, "q"), checked_array("v", v, (robot.tree.nv,))
-        data = None if data is None else solver.checked(data)
+        dynamics = solver.dynamics(data)
         force = AppliedForce(robot, external, dissipation).total(q, v, u, tau)
         if gains is None:
             each = solver.gains.now()
         else:
             kp, kd = checked_array("gains", gains, (2,)).tolist()
             each = [(kp, kd)] * len(robot.constraints)
-        a, lambdas = solver.solve(robot, q, v, force, each, data)
+        a, lambdas = solver.solve(robot, q, v, force, each, dynamics)
         forces = tuple([lambdas[rows] for rows in solver.rows])
     return ForwardDynamics(a, forces)
 
@@ -167,13 +168,13 @@ def inverse_dynamics(
         borrowed(robot, ForwardSolver) as solver,
         borrowed(robot, InverseSolver) as inverse_solver,
     ):
-        q, v, a, data = _state(robot, q, v, a, solver, data)
+        q, v, a, dynamics = _state(robot, q, v, a, solver, data)
         norm, tolerance = _norm(robot, weights), checked_tolerance(tolerance)
         applied = AppliedForce(robot, external, dissipation).total(q, v, None, tau)
-        found = inverse_solver.solve(solver, q, v, a, applied, tolerance, data)
+        found = inverse_solver.solve(solver, q, v, a, applied, tolerance, dynamics)
         if found is not None:
             return InverseDynamics(found.u, tuple([found.lambdas[rows] for rows in solver.rows]))
-        motion, S = EquationOfMotion(robot, q, v, solver.data if data is None else data), robot.actuation.selection
+        motion, S = EquationOfMotion(robot, q, v, dynamics), robot.actuation.selection
         motion.refuse_open(a, tolerance)
         force = motion.bias - applied
         inertial = motion.mass(a)
@@ -227,8 +228,8 @@ def achievable_acceleration(
         NumericalOverflow: The result is not finite.
     """
     with overflow_refused("the acceleration"), borrowed(robot, ForwardSolver) as solver:
-        q, v, a, data = _state(robot, q, v, a, solver, data)
-        motion = EquationOfMotion(robot, q, v, solver.data if data is None else data)
+        q, v, a, dynamics = _state(robot, q, v, a, solver, data)
+        motion = EquationOfMotion(robot, q, v, dynamics)
         motion.refuse_open(a, checked_tolerance(tolerance))
         force = motion.bias - AppliedForce(robot, external, dissipation).total(motion.q, motion.v, None, tau)
         deviation, missing = _uncontrolled(motion, motion.mass(a), force)
@@ -264,7 +265,7 @@ def mass_matrix(robot: Robot, q: Vector, *, data: Any = None) -> Matrix:
         NumericalOverflow: M is not finite.
     """
     tree = robot.tree
-    M = tree.mass_times(start(robot, q, "q"), np.eye(tree.nv), tree.memory(data))
+    M = tree.dynamics(data).mass_times(start(robot, q, "q"), np.eye(tree.nv))
     symmetric = np.asarray(0.5 * (M + M.T))
     finite("the mass matrix", symmetric)
     return symmetric
@@ -272,10 +273,10 @@ def mass_matrix(robot: Robot, q: Vector, *, data: Any = None) -> Matrix:
 
 def _state(
     robot: Robot, q: Vector, v: Vector, a: Vector, solver: ForwardSolver, data: Any
-) -> tuple[Vector, Vector, Vector, Any]:
-    """Configuration, velocity, acceleration and memory, all checked."""
-    nv, data = (robot.tree.nv,), None if data is None else solver.checked(data)
-    return start(robot, q, "q"), checked_array("v", v, nv), checked_array("a", a, nv), data
+) -> tuple[Vector, Vector, Vector, TreeDynamics]:
+    """Configuration, velocity, acceleration and dynamics of the tree, all checked."""
+    nv, dynamics = (robot.tree.nv,), solver.dynamics(data)
+    return start(robot, q, "q"), checked_array("v", v, nv), checked_array("a", a, nv), dynamics
 
 
 def _uncontrolled(motion: EquationOfMotion, inertial: Vector, force: Vector) -> tuple[Vector, Vector]:

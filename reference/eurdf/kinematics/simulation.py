@@ -171,7 +171,7 @@ class _Motion:
         applied = self._applied.at(q, v, u)
         force = self._applied.with_springs(q, applied)
         # Between the steps, any smooth drift will do that equals K̇ v where the loops are closed.
-        a, _ = self._solver.solve(self._robot, q, v, force, self._gains, nearly_closed=True)
+        a, _ = self._solver.solve(self._robot, q, v, force, self._gains, self._solver.own, nearly_closed=True)
         # The derivative of x = q ⊖ begin is the inverse of that of begin ⊕ x.
         rate = self._tree.difference_derivative(begin, q) @ v if moved else v
         return rate, a, float(applied @ v)
@@ -192,8 +192,8 @@ class _Motion:
 
     def energies(self, q: Vector, v: Vector) -> tuple[float, float]:
         """Kinetic and potential energy, J."""
-        data = self._solver.data
-        return self._tree.kinetic_energy(q, v, data), self._tree.potential_energy(q, data)
+        dynamics = self._solver.own
+        return dynamics.kinetic_energy(q, v), dynamics.potential_energy(q)
 
 
 def _heeding(control: Control | None, errors: Mapping[str, Any]) -> Control | None:

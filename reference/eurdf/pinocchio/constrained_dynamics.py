@@ -14,7 +14,7 @@ import pinocchio as pin
 
 from eurdf.array import Matrix, Vector
 from eurdf.pinocchio.constraint import number_of_models
-from eurdf.pinocchio.tree import MOST_VELOCITIES_WITH_DATA
+from eurdf.pinocchio.tree_dynamics import MOST_VELOCITIES_WITH_DATA
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot

@@ -1,4 +1,4 @@
-"""The spanning tree, as kinematics asks for it: configurations, places and dynamics, by a Pinocchio model."""
+"""The spanning tree by a Pinocchio model, as kinematics asks for it: its joints, configurations and places."""
 
 from __future__ import annotations
 
@@ -18,11 +18,8 @@ from eurdf.pinocchio.arguments import checked_data, suggestion
 from eurdf.pinocchio.configuration import Slot
 from eurdf.pinocchio.frames import body_frame_ids, frame_index, placement_of
 from eurdf.pinocchio.springs import NO_SPRINGS, Springs, build_springs
+from eurdf.pinocchio.tree_dynamics import MOST_VELOCITIES_WITH_DATA, TreeDynamics, TreeRecursion
 from eurdf.pinocchio.tree_few import Site
-from eurdf.pinocchio.tree_recursion import TreeRecursion
-
-#: The dynamics of trees with more velocities do without a `pin.Data`, which would take more than 140 MB.
-MOST_VELOCITIES_WITH_DATA = 130
 
 
 class MovingJoint(NamedTuple):
@@ -48,7 +45,7 @@ class MovingJoint(NamedTuple):
 
 
 class Tree:
-    """The kinematics and dynamics of a spanning tree.
+    """A spanning tree.
 
     Its joints are those of the model, numbered from the root, number 0, to the leaves: a parent has a lower number.
 
@@ -198,11 +195,6 @@ class Tree:
         return found
 
     @cached_property
-    def _upper(self) -> Mask:
-        """Which entries of a matrix (nv, nv) are on or above the diagonal."""
-        return np.triu(np.ones((self.nv, self.nv), dtype=bool))
-
-    @cached_property
     def _neutral(self) -> Vector:
         return np.asarray(pin.neutral(self.model))
 
@@ -259,57 +251,15 @@ class Tree:
         """Whether they are of unit length, to the tolerance."""
         return bool(pin.isNormalized(self.model, q, tolerance))
 
-    def inverse_dynamics(self, q: Vector, v: Vector, a: Vector, data: pin.Data | TreeRecursion) -> Vector:
-        """The generalized force (nv,) M a + h that the acceleration a (nv,) takes; with a = 0 the bias h."""
-        if isinstance(data, TreeRecursion):
-            return data.inverse_dynamics(q, v, a)
-        return np.array(pin.rnea(self.model, data, q, v, a))
-
-    def mass_times(self, q: Vector, motions: Matrix, data: pin.Data | TreeRecursion) -> Matrix:
-        """The mass matrix at q (nq,), the armature included, times the columns (nv, n) of accelerations.
-
-        Up to Pinocchio 4.1, `pin.crba` has wrong entries if a mimic joint carries several branches.
-        """
-        if isinstance(data, TreeRecursion):
-            return data.mass_matrix(q) @ motions
-        if not len(self.model.mimicking_joints):
-            M = pin.crba(self.model, data, q)  # its upper triangle is valid
-            return np.asarray(np.where(self._upper, M, M.T) @ motions)
-        still = np.zeros(self.nv)
-        gravity = self.inverse_dynamics(q, still, still, data)
-        columns = [self.inverse_dynamics(q, still, a, data) - gravity for a in motions.T]
-        return np.array(columns).reshape(motions.T.shape).T
-
-    def inverse_mass_diagonal(self, q: Vector, data: pin.Data) -> Vector:
-        """The diagonal (nv,) of the inverse of the mass matrix at q (nq,), of a tree without mimic joints."""
-        return np.array(pin.computeMinverse(self.model, data, q).diagonal())
-
-    def kinetic_energy(self, q: Vector, v: Vector, data: pin.Data | TreeRecursion) -> float:
-        """The kinetic energy at q (nq,) and v (nv,), J, that of the armature included.
-
-        `pin.computeKineticEnergy` leaves out the armature of some joints, up to Pinocchio 4.1.
-        """
-        still = np.zeros(self.nv)
-        momentum = self.inverse_dynamics(q, still, v, data) - self.inverse_dynamics(q, still, still, data)
-        return 0.5 * float(v @ momentum)
-
-    def potential_energy(self, q: Vector, data: pin.Data | TreeRecursion) -> float:
-        """The potential energy of gravity and springs at q (nq,), J."""
-        if isinstance(data, TreeRecursion):
-            return data.potential_energy(q) + self.springs.energy(q)
-        if len(self.model.mimicking_joints):  # not supported by Pinocchio 4.1
-            return TreeRecursion(self.model).potential_energy(q) + self.springs.energy(q)
-        return float(pin.computePotentialEnergy(self.model, data, q)) + self.springs.energy(q)
-
-    def memory(self, given: pin.Data | None = None) -> pin.Data | TreeRecursion:
-        """Memory of the whole tree: the given `pin.Data`; or a new one, which takes some 8 nv³ numbers, or a recursion.
+    def dynamics(self, data: pin.Data | None = None) -> TreeDynamics:
+        """Its dynamics in the given `pin.Data`; by default in a new one, or joint by joint if the tree is large.
 
         Raises:
             ValueError: It is no `pin.Data`, or one of another model.
         """
-        if given is None and self.nv > MOST_VELOCITIES_WITH_DATA:
-            return TreeRecursion(self.model)
-        return checked_data(self.model, given)
+        if data is None and self.nv > MOST_VELOCITIES_WITH_DATA:
+            return TreeRecursion(self.model, self.springs)
+        return TreeDynamics(self.model, self.springs, checked_data(self.model, data))
 
     def frame_sites(self, names: Sequence[str]) -> list[Site]:
         """Where frames are. A frame is named by a link, a joint (its frame on the child side), or in the description.
