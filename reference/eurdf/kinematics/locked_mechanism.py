@@ -7,13 +7,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
+from eurdf.diagnostics.wording import meant
 from eurdf.kinematics.exceptions import CannotLock
 from eurdf.mechanism.constraint import Constraint
 from eurdf.mechanism.joint import Joint, Mimic, drivers
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 from eurdf.mechanism.spanning_tree import rigid_roots
-from eurdf.pinocchio.arguments import suggestion
 
 #: A named configuration is kept if its pose of each locked joint differs from the locked pose by at most this, m and
 #: rad.
@@ -105,7 +105,7 @@ def _locked(by_name: Mapping[str, Joint], names: Iterable[str], mimics: Mapping[
     """The joints to lock, in the mechanism's order: those named and their mimic joints, without fixed ones."""
     named = set(names)
     for name in sorted(named - by_name.keys()):
-        raise CannotLock(name, f"the robot has no such joint{suggestion(name, by_name)}")
+        raise CannotLock(name, f"the robot has no such joint{meant(name, by_name)}")
     locked = []
     for name in by_name:
         leader = mimics[name].joint if name in mimics else name

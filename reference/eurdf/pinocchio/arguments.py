@@ -15,7 +15,6 @@ import numpy as np
 import pinocchio as pin
 
 from eurdf.array import Matrix
-from eurdf.diagnostics.wording import did_you_mean
 
 _FLOATS = np.dtype(np.float64)
 
@@ -98,9 +97,3 @@ def checked_data(model: Any, data: Any) -> Any:
 def as_names(given: str | Iterable[str]) -> tuple[str, ...]:
     """The names given: a text alone is one name, not the letters in it."""
     return (given,) if isinstance(given, str) else tuple(given)
-
-
-def suggestion(wrong: str, known: Iterable[str]) -> str:
-    """The end of a message about an unknown name: "; did you mean …?", or nothing if no known name is similar."""
-    hint = did_you_mean(wrong, known)
-    return f"; {hint}" if hint else ""

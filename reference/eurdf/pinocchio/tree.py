@@ -12,9 +12,10 @@ import pinocchio as pin
 
 from eurdf.array import Mask, Matrix, Vector
 from eurdf.closures.coupling import Coordinate
+from eurdf.diagnostics.wording import meant
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
-from eurdf.pinocchio.arguments import checked_data, suggestion
+from eurdf.pinocchio.arguments import checked_data
 from eurdf.pinocchio.configuration import Slot
 from eurdf.pinocchio.frames import body_frame_ids, frame_index, placement_of
 from eurdf.pinocchio.springs import NO_SPRINGS, Springs, build_springs
@@ -168,7 +169,7 @@ class Tree:
         if slot is not None and slot.nv:
             return range(slot.idx_v, slot.idx_v + slot.nv)
         if not self.model.existJointName(joint):
-            raise ValueError(f"the model has no joint '{joint}'{suggestion(joint, self.model.names)}")
+            raise ValueError(f"the model has no joint '{joint}'{meant(joint, self.model.names)}")
         index: int = self.model.getJointId(joint)
         return self.moving_velocities[index]
 
