@@ -15,7 +15,6 @@ from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.pinocchio.constrained_dynamics import (
     ConstrainedDynamics,
-    ConstrainedMotion,
     StatedGains,
     build_constrained_dynamics,
 )
@@ -111,37 +110,13 @@ class ForwardSolver:
         *,
         nearly_closed: bool = False,
     ) -> Acceleration | None:
-        """The solution by the tree's own solver; None if it has none, or if the solution is in doubt.
+        """The solution by the tree's own solver, as `solve`; None if it has none, or if the solution is in doubt.
 
-        For the arguments see `solve`.
+        It is, unless the constraints hold, the rank of K is certain, and the solution satisfies both equations.
         """
         if self._solver is None:
             return None
         found = self._solver.solve(q, v, force, gains, dynamics.data, dynamics is self._own)
-        on_a = self._forces_beyond_doubt(found, q, v, force, dynamics, nearly_closed)
-        return None if on_a is None else Acceleration(found.a, -on_a)
-
-    def closures(self, robot: Robot, q: Vector) -> tuple[Vector, Matrix]:
-        """The residual (nc,) at q (nq,), and K (nc, nv), which is its derivative where the closures are closed."""
-        return self.closures_of_tree(q, self.own) or residual_and_jacobian(robot, q)
-
-    def closures_of_tree(self, q: Vector, dynamics: TreeDynamics) -> tuple[Vector, Matrix] | None:
-        """The same by the tree's own solver; None if it has none."""
-        return None if self._solver is None else self._solver.closures(q, dynamics.data)
-
-    def _forces_beyond_doubt(
-        self,
-        found: ConstrainedMotion,
-        q: Vector,
-        v: Vector,
-        force: Vector,
-        dynamics: TreeDynamics,
-        nearly_closed: bool,
-    ) -> Vector | None:
-        """The forces on bodies A (nc,) with the least norm.
-
-        They are None unless the constraints hold, the rank of K is certain, and the solution satisfies both equations.
-        """
         # By dot, which takes half the time of @ for small matrices.
         a, on_a, J, target = found.a, found.on_a, found.J, found.target
         if not nearly_closed and not (found.closed_to(CLOSED) and norm(J.dot(v)) <= CLOSED * (1.0 + norm(v))):
@@ -158,7 +133,16 @@ class ForwardSolver:
         terms = norm(carried)
         if not (_is_small(error, terms) or _is_small(error, terms + norm(force)) or _is_small(error, norm(found.bias))):
             return None
-        return self._independence.least_forces(J, on_a)
+        least = self._independence.least_forces(J, on_a)
+        return None if least is None else Acceleration(a, -least)
+
+    def closures(self, robot: Robot, q: Vector) -> tuple[Vector, Matrix]:
+        """The residual (nc,) at q (nq,), and K (nc, nv), which is its derivative where the closures are closed."""
+        return self.closures_of_tree(q, self.own) or residual_and_jacobian(robot, q)
+
+    def closures_of_tree(self, q: Vector, dynamics: TreeDynamics) -> tuple[Vector, Matrix] | None:
+        """The same by the tree's own solver; None if it has none."""
+        return None if self._solver is None else self._solver.closures(q, dynamics.data)
 
 
 def _is_small(error: float, terms: float) -> bool:

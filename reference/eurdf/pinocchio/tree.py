@@ -117,7 +117,7 @@ class Tree:
 
     def translates(self, joint: int) -> Mask:
         """Which of the velocities of a joint only translate, m/s; the others turn, rad/s."""
-        return np.asarray(~self._subspace(joint)[3:].any(axis=0))
+        return np.asarray(~self.moving_joints[joint - 1].subspace[3:].any(axis=0))
 
     @cached_property
     def velocity_names(self) -> list[str]:
@@ -154,7 +154,7 @@ class Tree:
         turns: Mask = np.zeros(self.nv, dtype=bool)
         for joint, (q, v) in enumerate(zip(self.own_coordinates, self.own_velocities, strict=True)):
             if len(v) and len(q) == len(v):
-                turns[v.start : v.stop] = ~self._subspace(joint)[:3].any(axis=0)
+                turns[v.start : v.stop] = ~self.moving_joints[joint - 1].subspace[:3].any(axis=0)
         for joint in self.model.mimicking_joints:  # a multiplier of 0.5 makes whole turns matter
             turns[self.model.idx_vs[joint]] = False
         return turns
@@ -173,31 +173,20 @@ class Tree:
         index: int = self.model.getJointId(joint)
         return self.moving_velocities[index]
 
-    def _subspace(self, joint: int) -> Matrix:
-        """Motion subspace (6, n) of a joint at zero: rows linear, then angular."""
-        moving = self.model.joints[joint]
-        data = moving.createData()
-        moving.calc(data, self._neutral)
-        return np.array(data.S.reshape(6, -1))
-
-    @property
+    @cached_property
     def moving_joints(self) -> list[MovingJoint]:
         """Its joints but the universe; a mimic joint has the first coordinate and the velocity of its leader."""
-        model, found = self.model, []
+        model, found, neutral = self.model, [], pin.neutral(self.model)
         for index in range(1, model.njoints):
             moving = model.joints[index]
             data = moving.createData()
-            moving.calc(data, self._neutral)
+            moving.calc(data, neutral)
             placement = (model.jointPlacements[index] * data.M).homogeneous
             S, first = np.array(data.S.reshape(6, -1)), moving.idx_v
             idx_v = tuple(range(first, first + moving.nvExtended))
             name, parent = model.names[index], self.parents[index]
             found.append(MovingJoint(name, parent, placement, S, moving.nq, moving.idx_q, idx_v))
         return found
-
-    @cached_property
-    def _neutral(self) -> Vector:
-        return np.asarray(pin.neutral(self.model))
 
     def joint_of(self, anchor: Anchor) -> int:
         """The joint that carries an anchor; 0 if nothing moves it."""
