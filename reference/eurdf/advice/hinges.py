@@ -12,7 +12,8 @@ import pinocchio as pin
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.hinge import HingeClosure
 from eurdf.closures.point import PointClosure
-from eurdf.kinematics.analysis import LoopAnalysis, analyze
+from eurdf.kinematics.analysis import analyze
+from eurdf.kinematics.loop_analysis import LoopAnalysis
 from eurdf.mechanism.constraint import Closure
 from eurdf.pinocchio.robot import build_robot
 

@@ -11,7 +11,8 @@ import numpy as np
 
 from eurdf.closures import REGISTRY
 from eurdf.json_schema import Count, Keywords, NullIfInfinite
-from eurdf.kinematics.analysis import Analysis, LoopAnalysis, Motion
+from eurdf.kinematics.analysis import Analysis
+from eurdf.kinematics.loop_analysis import LoopAnalysis, Motion
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import root_joint
 

@@ -5,17 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
+from eurdf.array import Matrix, Vector
 from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.pose import Quaternion
 
 _UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 _Row = tuple[float, float, float]
 _Matrix3 = tuple[_Row, _Row, _Row]
-Vector = npt.NDArray[np.float64]
-Matrix = npt.NDArray[np.float64]
 
 
 _MASSLESS = pin.Inertia.Zero()

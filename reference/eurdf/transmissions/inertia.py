@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from eurdf.kinematics.tolerances import FLOOR
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.pinocchio.robot import build_robot
+from eurdf.pinocchio.tree_dynamics import TreeDynamics
 from eurdf.transmissions.exceptions import NoTransmission
 from eurdf.transmissions.linkage_bodies import linkage_bodies
 from eurdf.transmissions.motors import motors_of
@@ -129,12 +130,12 @@ def _terms(robot: Robot, linkage: Robot, at: Transmission, rotors: Vector) -> tu
 
 
 def _mass_matrix(robot: Robot, q: Vector) -> Matrix:
-    with borrowed(robot, _memory) as memory:
-        return robot.tree.mass_times(q, np.eye(robot.tree.nv), memory)
+    with borrowed(robot, _dynamics) as dynamics:
+        return dynamics.mass_times(q, np.eye(robot.tree.nv))
 
 
-def _memory(robot: Robot) -> Any:
-    return robot.tree.memory()
+def _dynamics(robot: Robot) -> TreeDynamics:
+    return robot.tree.dynamics()
 
 
 def _embedding(robot: Robot, at: Transmission, M: Matrix) -> Matrix:

@@ -436,7 +436,7 @@ class _Holding:
 
     def __init__(self, robot: Robot, joints: Sequence[str], others: Sequence[str]) -> None:
         self._tree = robot.tree
-        self._memory = robot.tree.memory()
+        self._dynamics = robot.tree.dynamics()
         driven = [velocity for name in (*joints, *others) for velocity in robot.tree.velocities_of(name)]
         self._motion = Problem(robot, driven)
         self._count = sum(len(robot.tree.velocities_of(name)) for name in joints)
@@ -447,7 +447,7 @@ class _Holding:
         if not sure:
             return np.full(self._count, np.nan)
         zero = np.zeros(self._tree.nv)
-        return np.asarray(D[:, : self._count].T @ self._tree.inverse_dynamics(q, zero, zero, self._memory))
+        return np.asarray(D[:, : self._count].T @ self._dynamics.inverse_dynamics(q, zero, zero))
 
 
 def _fit(
