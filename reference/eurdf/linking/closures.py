@@ -18,10 +18,7 @@ _COMMON = frozenset(each.name for each in fields(Closure))
 
 
 def link_closures(
-    entries: Iterable[AnyClosure],
-    names: FrameNames,
-    rigid: Mapping[str, str],
-    reporter: YamlReporter,
+    entries: Iterable[AnyClosure], names: FrameNames, rigid: Mapping[str, str], reporter: YamlReporter
 ) -> tuple[Closure, ...]:
     """Look the frames of every closure up and check what two frames can have wrong together.
 
@@ -82,13 +79,12 @@ def _compliance(entry: AnyClosure) -> Compliance:
 
 def _fits(kind: type[Closure], entry: AnyClosure, reporter: YamlReporter) -> bool:
     """EU-CLO-020, EU-CLO-021: only a closure that holds an orientation has an angular compliance."""
-    pointer = (*entry.pointer, "compliance", "angular")
     if not _compliance(entry).angular or "rad" in kind.units:
         return True
     reporter.report(
         "closure-compliance",
         f"closure '{entry.name}' of type {kind.type} holds no orientation, and cannot have an angular compliance",
-        pointer,
+        (*entry.pointer, "compliance", "angular"),
         "remove 'angular', or use type 6d or hinge",
     )
     return False
@@ -106,13 +102,7 @@ def _have_directions(entry: AnyClosure, reporter: YamlReporter) -> bool:
     return False
 
 
-def _movable(
-    entry: AnyClosure,
-    a: Anchor,
-    b: Anchor,
-    rigid: Mapping[str, str],
-    reporter: YamlReporter,
-) -> bool:
+def _movable(entry: AnyClosure, a: Anchor, b: Anchor, rigid: Mapping[str, str], reporter: YamlReporter) -> bool:
     """EU-CLO-002, EU-CLO-003: the two frames are not one, and not fixed to one another."""
     if a.body == b.body and a.pose == b.pose:
         same = not a.frame or not b.frame or a.frame == b.frame

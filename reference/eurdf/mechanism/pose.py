@@ -115,6 +115,11 @@ def direction(axis: Vector3) -> Vector3:
     return x / norm, y / norm, z / norm
 
 
+def cross(a: Vector3, b: Vector3) -> Vector3:
+    """The vector product."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
 def turn_from_x(axis: Vector3) -> Quaternion:
     """The shortest rotation that takes x to an axis of any length but zero; about z where the axis is opposite."""
     x, y, z = direction(axis)

@@ -11,9 +11,9 @@ from eurdf.diagnostics import Diagnostics, enumerated
 from eurdf.format.conventions import VERSION2_0, VERSION2_1, is_own_key
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.yaml_text import Entry, Value, entries_of, lines_of, modeline, text_of
+from eurdf.linking.joints import joint_of
+from eurdf.linking.link import reread
 from eurdf.linking.merging import find_chains
-from eurdf.linking.rereading import reread
-from eurdf.linking.urdf_tree import joint_of
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.mechanism import Mechanism, Root
 from eurdf.mechanism.spanning_tree import rigid_poses

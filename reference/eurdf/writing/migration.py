@@ -8,7 +8,7 @@ from eurdf.diagnostics import Diagnostics
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.urdf.elements import UrdfReader
 from eurdf.format.urdf.mimics import check_mimics
-from eurdf.linking.rereading import reread
+from eurdf.linking.link import reread
 from eurdf.linking.robot_files import ReadRobot
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism

@@ -12,7 +12,7 @@ from eurdf.diagnostics import Diagnostics
 from eurdf.exceptions import EurdfError
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.residual import residual
-from eurdf.linking.rereading import reread
+from eurdf.linking.link import reread
 from eurdf.linking.robot_files import ReadRobot
 from eurdf.mechanism.mechanism import ROOT_JOINT, root_joint
 from eurdf.pinocchio.configuration import configuration_vector
