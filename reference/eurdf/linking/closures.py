@@ -22,13 +22,7 @@ def link_closures(
 ) -> tuple[Closure, ...]:
     """Look the frames of every closure up and check what two frames can have wrong together.
 
-    A closure of a type that begins with ``x-`` is left out (EU-CLO-012).
-
-    Args:
-        entries: As written.
-        names: Finds frames.
-        rigid: For each body, the body it is rigidly fixed to.
-        reporter: Gets what is found.
+    A closure of a type that begins with ``x-`` is left out (EU-CLO-012). ``rigid`` has the body that each is fixed to.
     """
     closures: list[Closure] = []
     taken: dict[str, AnyClosure] = {}

@@ -50,12 +50,9 @@ class BeyondLimit(NamedTuple):
 def link_configurations(
     stated: Mapping[str, Mapping[str, tuple[float, ...]]], named: Mapping[str, Joint], joints: Joints
 ) -> dict[str, dict[str, tuple[float, ...]]]:
-    """Check every configuration against the joints of the mechanism; EU-CFG-006: quaternions come back of unit length.
+    """Check every configuration against ``named``, the joints of the mechanism and that of a floating root.
 
-    Args:
-        stated: As written, by name.
-        named: Joints of the mechanism, and that of a floating root.
-        joints: What the description made of them.
+    EU-CFG-006: quaternions come back of unit length.
     """
     configurations = {}
     for configuration, written in stated.items():

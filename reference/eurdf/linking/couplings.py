@@ -16,13 +16,7 @@ _EQUAL = 1e-9
 
 
 def link_couplings(entries: Iterable[CouplingEntry], closures: Iterable[str], joints: Joints) -> tuple[Coupling, ...]:
-    """Look the joints of every coupling up, and check that no coupling states what another one does.
-
-    Args:
-        entries: As written.
-        closures: Names of the closures.
-        joints: Joints of the mechanism.
-    """
+    """Look the joints of every coupling up, and check that no coupling states what another one does."""
     report = joints.reporter.report
     couplings: list[Coupling] = []
     taken: dict[str, str] = dict.fromkeys(closures, "closure")

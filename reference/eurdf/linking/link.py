@@ -84,11 +84,6 @@ def link(
 def reread(text: str, urdf: Urdf, file: str) -> tuple[Mechanism | None, Diagnostics]:
     """Read and link the text of a description, before it is written to a file.
 
-    Args:
-        text: The description.
-        urdf: The URDF it extends, whichever it names.
-        file: What the findings call it.
-
     Returns:
         The mechanism, or None where an error was found; and what was found.
     """

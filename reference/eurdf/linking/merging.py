@@ -13,7 +13,7 @@ import numpy as np
 from eurdf.format.urdf.data import Urdf
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import ROTARY, JointType
-from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, cross, direction, squarable
+from eurdf.mechanism.pose import IDENTITY, ORIGIN, Pose, Vector3, cross, direction, squarable
 
 #: A link lighter than this, in kg, counts as being without inertia (EU-JNT-012).
 MASSLESS = 1e-5
@@ -122,14 +122,7 @@ def merge(chain: Chain, name: str) -> tuple[Joint, Joint, Joint]:
 def find_chains(
     urdf: Urdf, joints: Mapping[str, Joint], excluded: Collection[str], closure_links: Collection[str]
 ) -> list[Chain]:
-    """EU-ONE-007: the chains that version 1 merges by itself, greedily from the root outwards.
-
-    Args:
-        urdf: The URDF.
-        joints: Its joints by name.
-        excluded: Joints that the description replaces.
-        closure_links: Links that carry a frame of a closure.
-    """
+    """EU-ONE-007: the chains that version 1 merges by itself, greedily from the root outwards."""
     revolute = (JointType.REVOLUTE,)
     taken: set[str] = set()
     chains = []
@@ -191,7 +184,7 @@ def _meeting_point(lines: list[tuple[Vector3, Vector3]]) -> Vector3:
 
 def _nearest_axes(chain: Chain) -> tuple[Joint, ...]:
     """For x, y, z of the last joint's frame at zero, the joint whose axis is nearest; each joint once."""
-    back = replace(chain.zero, xyz=(0.0, 0.0, 0.0)).inverse()
+    back = replace(chain.zero, xyz=ORIGIN).inverse()
     near = [tuple(map(abs, back.rotate(axis))) for axis in chain.directions]
     sums = [near[x][0] + near[y][1] + near[z][2] for x, y, z in _ORDERS]
     least = max(sums) - _AS_LARGE

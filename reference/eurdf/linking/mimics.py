@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import partial
 from types import MappingProxyType
 
-from eurdf.diagnostics import Diagnostics
+from eurdf.diagnostics import Diagnostics, quoted
 from eurdf.format.conventions import HINT, LARGEST, is_too_small, too_large, too_small
 from eurdf.format.joint_model import Joint
 from eurdf.format.urdf.data import Urdf
@@ -78,3 +79,25 @@ def check_chains(mechanism: Mechanism, urdf: Urdf, diagnostics: Diagnostics) -> 
             element = next(urdf.joints[name].element.iterchildren("mimic"))
             diagnostics.report("number-out-of-bounds", message, urdf.document.place(element, attribute), HINT)
             return
+
+
+def warn_of_ignored_mimics(mechanism: Mechanism, urdf: Urdf, diagnostics: Diagnostics) -> None:
+    """Report mimic joints that a description of version 1 leaves free (EU-ONE-009) and that no motor moves.
+
+    One that is actuated, locked or replaced is meant to be a joint of its own. A description without actuators leaves
+    open which joints move by themselves.
+    """
+    if mechanism.version != "1" or not mechanism.actuators:
+        return
+    free = {joint.name for joint in mechanism.joints if joint.type.is_axial} - set(mechanism.actuators)
+    found = [joint for joint in urdf.joints.values() if joint.mimic is not None and joint.name in free]
+    if not found:
+        return
+    names = quoted([joint.name for joint in found])
+    count = "1 joint has" if len(found) == 1 else f"{len(found)} joints have"
+    diagnostics.report(
+        "x-mimic-ignored",
+        f"{count} a <mimic> but no actuator, and version 1 ignores <mimic>: {names}",
+        partial(urdf.document.place, next(found[0].element.iterchildren("mimic"))),
+        "actuate the joints that move freely, remove <mimic>, or use version 2, which respects it",
+    )

@@ -194,14 +194,7 @@ class _Replacement(NamedTuple):
         axes: tuple[Vector3, ...],
         limits: tuple[tuple[float, ...], tuple[float, ...]] | None = None,
     ) -> Joint:
-        """EU-JNT-020, -021: the joint with another type; its rates and dynamics are those of each of its velocities.
-
-        Args:
-            joint: The joint of the URDF.
-            kind: The new type.
-            axes: The new axes.
-            limits: Lower and upper position limits; None if there are none.
-        """
+        """EU-JNT-020, -021: the joint with another type; its rates and dynamics are those of each of its velocities."""
         own, properties = joint.properties, JointProperties.unlimited(kind)
         if own is not JointProperties.unlimited(joint.type):
             lower, upper = limits or (properties.lower, properties.upper)

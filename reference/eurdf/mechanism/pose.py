@@ -98,6 +98,8 @@ class Pose:
 
 IDENTITY = Pose()
 
+ORIGIN: Vector3 = (0.0, 0.0, 0.0)
+
 
 def squarable(axis: Vector3) -> Vector3:
     """The axis, rescaled if the square of its length is out of range."""
