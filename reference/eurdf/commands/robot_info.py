@@ -177,12 +177,7 @@ class RobotInfo:
 
 
 def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
-    """The output for one robot.
-
-    Args:
-        robot: The robot.
-        analysis: The result of `eurdf.analyze`.
-    """
+    """The output for one robot."""
     from eurdf.kinematics.residual import residual
 
     mechanism = robot.mechanism
