@@ -9,7 +9,7 @@ from eurdf.exceptions import EurdfError
 from eurdf.kinematics.exceptions import NotClosable
 
 if TYPE_CHECKING:
-    from eurdf.kinematics.array import Vector
+    from eurdf.array import Vector
     from eurdf.kinematics.opening import Opening
 
 

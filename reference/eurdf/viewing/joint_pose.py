@@ -12,8 +12,8 @@ from collections.abc import Iterator
 import numpy as np
 import pinocchio as pin
 
+from eurdf.array import Matrix, Vector
 from eurdf.closures.se3 import quaternion_log
-from eurdf.kinematics.array import Matrix, Vector
 from eurdf.mechanism.joint_types import JointType
 
 #: Names of the coordinates of a rotation.

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eurdf.kinematics.array import Vector
+from eurdf.array import Vector
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
 from eurdf.mechanism.body import Anchor

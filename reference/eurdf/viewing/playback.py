@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pinocchio as pin
 
-from eurdf.kinematics.array import Vector
+from eurdf.array import Vector
 from eurdf.kinematics.exceptions import NotClosable, SimulationDiverged
 from eurdf.kinematics.forward import forward_kinematics
 from eurdf.kinematics.residual import residual

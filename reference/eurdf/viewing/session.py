@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from eurdf.array import Mask, Vector
 from eurdf.kinematics.analysis import Analysis, analyze
-from eurdf.kinematics.array import Mask, Vector
 from eurdf.kinematics.assembly import Assembly, assemble, start
 from eurdf.kinematics.branch import Branch, Point
 from eurdf.kinematics.derived import derived

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eurdf.kinematics.array import Vector
+from eurdf.array import Vector
 from eurdf.viewing.figure import Figure
 from eurdf.viewing.scene import Placed, Scene
 from eurdf.viewing.session import Session

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from eurdf.array import Vector
 from eurdf.exceptions import EurdfError
-from eurdf.kinematics.array import Vector
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.pinocchio.robot import Robot
 from eurdf.reading.robot_source import RobotSource
