@@ -11,7 +11,7 @@ import pytest
 import eurdf
 from eurdf.kinematics.assembly import close
 from eurdf.kinematics.split import split_configuration
-from eurdf.kinematics.spring_equilibrium import spring_equilibrium
+from eurdf.kinematics.springs import spring_equilibrium
 from support.described import load
 from support.linkage import described, n_bar
 
@@ -174,7 +174,7 @@ def test_rod_that_spins_does_not_delay_the_springs(monkeypatch: pytest.MonkeyPat
         steps.append(q)
         return close(problem, q, tolerance)
 
-    for module in ("path", "spring_equilibrium"):
+    for module in ("path", "springs"):
         monkeypatch.setattr(f"eurdf.kinematics.{module}.close", counted)
     q = eurdf.forward_kinematics(robot, [0.05] * 5)
     assert eurdf.spring_energy(robot, q) == pytest.approx(0.0, abs=1e-12)

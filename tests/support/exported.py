@@ -125,7 +125,7 @@ class InPinocchio:
         self.coordinates = export.coordinates
         self.model = pinocchios_own(export.main.decode(), robot.mechanism.root)
         self.data = self.model.createData()
-        assert (self.model.nq, self.model.nv) == (self.coordinates.nq, self.type.nv)
+        assert (self.model.nq, self.model.nv) == (self.coordinates.nq, self.coordinates.nv)
 
     @property
     def names(self) -> list[str]:

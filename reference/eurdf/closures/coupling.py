@@ -1,4 +1,4 @@
-"""coupling: a linear relation of joint coordinates (EU-CPL-005)."""
+"""coupling: a linear relation of joint coordinates."""
 
 from __future__ import annotations
 
@@ -32,11 +32,10 @@ class Coordinate(Protocol):
 
 
 class Couplings:
-    """k couplings: r = Σ cᵢ qᵢ - offset, each in the unit of its cᵢ qᵢ.
+    """EU-CPL-005: k couplings: r = Σ cᵢ qᵢ - offset, each in the unit of its cᵢ qᵢ.
 
     Attributes:
         K: The derivative (k, n) of r by the velocities, which is constant: r̈ is 0 while every joint keeps its velocity.
-        moving: Indices in v of the joints that they relate.
     """
 
     def __init__(
@@ -57,8 +56,8 @@ class Couplings:
                 C[row, place[name]] += coefficient
         self._C, self._offsets = C, np.array([coupling.offset for coupling in couplings])
         self._coordinates = np.array([each.idx_q for each in at.values()], dtype=np.intp)
-        self.moving = np.array([each.idx_v for each in at.values()], dtype=np.intp)
-        self.K = C @ np.equal(self.moving[:, None], velocities)
+        idx_v = np.array([each.idx_v for each in at.values()], dtype=np.intp)
+        self.K = C @ np.equal(idx_v[:, None], velocities)
         largest = np.abs(C).argmax(axis=1)
         self._largest = np.abs(C).max(axis=1)
         self._translates = np.array([each.translates for each in at.values()])[largest]

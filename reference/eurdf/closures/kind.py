@@ -65,8 +65,13 @@ class RelativePoses:
 class PoseArrays(RelativePoses):
     """Poses that were computed."""
 
-    def __init__(self, rotation: Matrix, position: Matrix) -> None:
-        self.rotation, self.position = rotation, position
+    def __init__(self, rotation: Matrix, position: Matrix, logarithm: Matrix | None = None) -> None:
+        self.rotation, self.position, self._logarithm = rotation, position, logarithm
+
+    def of(self, which: slice) -> PoseArrays:
+        """Those of some of the pairs."""
+        logarithm = None if self._logarithm is None else self._logarithm[:, which]
+        return PoseArrays(self.rotation[:, which], self.position[:, which], logarithm)
 
 
 class RelativeMotions(NamedTuple):

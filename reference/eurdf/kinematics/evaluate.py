@@ -120,12 +120,6 @@ class Evaluator:
         return _few_pairs(self._tree, self._sites, self.velocities)
 
     @property
-    def moving(self) -> Indices:
-        """Indices in v of all velocities that move joints of the constraints, also of those without a column in K."""
-        related = np.empty(0, np.intp) if self._couplings is None else self._couplings[0].moving
-        return np.union1d(self._pairs.moving, related)
-
-    @property
     def numbers(self) -> int:
         """Numbers that the residual and K of one element take, roughly."""
         return self.numbers_of_residual + 3 * self.m * self.n + 2 * self.m * self.m
@@ -201,7 +195,7 @@ class Evaluator:
 
     def _state(self, q: Matrix, poses: RelativePoses | None = None) -> State:
         poses = self._pairs.at(q) if poses is None else poses
-        return State(q, poses, [poses.of(group.pairs) for group in self._groups])
+        return State(q, poses, [poses] if self._is_plain else [poses.of(group.pairs) for group in self._groups])
 
 
 def evaluator(
@@ -297,6 +291,10 @@ class TreeFew:
     def difference_derivative(self, q: Matrix, other: Matrix) -> Matrix:
         """See `TreeMany.difference_derivative`."""
         return _each(self._tree.difference_derivative, (self.nv, self.nv), q, other)
+
+    def difference_derivative_times(self, q: Matrix, other: Matrix, forces: Matrix) -> Matrix:
+        """See `TreeMany.difference_derivative_times`."""
+        return (forces[:, None] @ self.difference_derivative(q, other))[:, 0]
 
     def normalized(self, q: Matrix) -> Matrix:
         """See `TreeMany.normalized`."""

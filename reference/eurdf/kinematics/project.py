@@ -126,8 +126,7 @@ def _distance(task: ProjectionTask, q: Matrix, at: Matrix) -> Vector:
 def _gradient(task: ProjectionTask, q: Matrix, at: Matrix) -> Matrix:
     """The derivative (B, nv) of `_distance` by the motion of ``at``."""
     tree = task.problem.tree
-    slope = (tree.difference(q, at) @ task.W)[:, None]
-    return np.asarray((slope @ tree.difference_derivative(q, at))[:, 0])
+    return np.asarray(tree.difference_derivative_times(q, at, tree.difference(q, at) @ task.W))
 
 
 def _step(task: ProjectionTask, q: Matrix, here: Matrix) -> tuple[Matrix, Vector]:

@@ -125,6 +125,14 @@ class TreeMany:
             J[:, joints.v[:, :, None], joints.v[:, None, :]] = joints.difference_derivative(v)
         return J
 
+    def difference_derivative_times(self, q: Matrix, other: Matrix, forces: Matrix) -> Matrix:
+        """Jᵀ f (B, nv) of this derivative J and forces (B, nv)."""
+        times = np.array(forces)
+        for joints in self._curved:
+            v = joints.difference(q[:, joints.q], other[:, joints.q])
+            times[:, joints.v] = (forces[:, joints.v][..., None, :] @ joints.difference_derivative(v))[..., 0, :]
+        return times
+
     def normalized(self, q: Matrix) -> Matrix:
         """The configurations with quaternions, and cosines and sines, of unit length."""
         result = np.array(q)

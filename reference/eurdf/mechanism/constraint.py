@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from eurdf.mechanism.body import Anchor
 
@@ -49,29 +49,9 @@ class Constraint:
         return self
 
 
-class Key(NamedTuple):
-    """What a file states of a closure in one of its keys, beside the frames.
-
-    Attributes:
-        title: Its name for readers.
-        description: What it is, with its unit.
-        unit: Its unit; empty if it has none.
-        least: The least value, or None.
-        examples: Values as files have them.
-    """
-
-    title: str
-    description: str
-    unit: str = ""
-    least: float | None = None
-    examples: tuple[Any, ...] = ()
-
-
-def key(
-    title: str, description: str, *, unit: str = "", least: float | None = None, example: Any, **options: Any
-) -> Any:
-    """A field of a kind that a file states in a key; ``options`` are those of `dataclasses.field`."""
-    return field(metadata={"key": Key(title, description, unit, least, (example,))}, **options)
+def key(**options: Any) -> Any:
+    """A field of a kind of closure that a file states in a key of the same name; ``options`` as `dataclasses.field`."""
+    return field(metadata={"key": True}, **options)
 
 
 @dataclass(frozen=True, slots=True)

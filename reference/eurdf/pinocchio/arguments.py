@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 import operator
 import reprlib
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -90,3 +91,8 @@ def checked_data(model: Any, data: Any) -> Any:
     if not isinstance(data, pin.Data) or not model.check(data):
         raise ValueError("data is not a pin.Data of the robot's model; pass robot.data or robot.model.createData()")
     return data
+
+
+def as_names(given: str | Iterable[str]) -> tuple[str, ...]:
+    """The names given: a text alone is one name, not the letters in it."""
+    return (given,) if isinstance(given, str) else tuple(given)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from eurdf.array import Indices, Mask, Vector
-from eurdf.kinematics.several import several
+from eurdf.pinocchio.arguments import as_names
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.configuration import Slot
@@ -81,7 +81,7 @@ def selection(robot: Robot, joints: str | Iterable[str], argument: str = "joints
         ValueError: A name is unknown or given twice, or its joint has no coordinate of its own whose rate is its
             velocity.
     """
-    given = several(joints)
+    given = as_names(joints)
     if not given:
         raise ValueError(f"{argument} is empty; name at least one joint")
     twice = next((name for name in given if given.count(name) > 1), None)

@@ -10,14 +10,14 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from lxml import etree
 
 from eurdf.closures.hinge import HingeClosure
-from eurdf.closures.point import PointClosure
-from eurdf.convert.coordinates import Coordinates
+from eurdf.convert.conventions import opening_of
+from eurdf.convert.coordinates import Coordinates, homogeneous
 from eurdf.convert.exceptions import CannotExport
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format, coordinates_at
 from eurdf.convert.inertia import accepted_inertia
@@ -26,8 +26,8 @@ from eurdf.convert.meshes import MeshFiles
 from eurdf.convert.names import UniqueNames
 from eurdf.convert.parts import Part, part_of
 from eurdf.convert.sdf.facts import CLOSURES, EXACT, LEAST, ROWS, VERSION
-from eurdf.convert.steps import AXES, in_series, turn_type
-from eurdf.mechanism.body import Anchor, Body, Inertia, Shape
+from eurdf.convert.steps import in_series, turn_type
+from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.joint_types import ROTARY, JointType
@@ -243,21 +243,13 @@ class _SdfWriter:
         _add(engine, "must_be_loop_joint").text = "true"
 
     def _must_be_closed(self, closure: Closure) -> None:
-        a, b = (self._in_world(end) for end in closure.anchors)
-        pairs: Iterable[tuple[Vector3, Vector3]] = ()
-        if isinstance(closure, HingeClosure):
-            pairs = [(a.rotate(direction(closure.axes[0])), b.rotate(direction(closure.axes[1])))]
-        elif not isinstance(closure, PointClosure):
-            pairs = [(a.rotate(axis), b.rotate(axis)) for axis in AXES]
-        opening = max(math.dist(a.xyz, b.xyz), *(math.dist(*pair) for pair in pairs), 0.0)
+        a, b = (homogeneous(self.poses[end.body] * end.pose) for end in closure.anchors)
+        opening = max(opening_of(closure, a, b))
         if opening > 2.0 * CLOSED:
             raise CannotExport(
                 f"closure '{closure.name}' is open by {opening:.1e} m or rad at the chosen configuration; SDFormat "
                 "closes loops where the links are placed: choose a closed one"
             )
-
-    def _in_world(self, anchor: Anchor) -> Pose:
-        return self.poses[anchor.body] * anchor.pose
 
 
 def _axes(joint: Joint, at: Sequence[float]) -> list[Vector3]:

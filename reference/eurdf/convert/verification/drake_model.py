@@ -23,7 +23,7 @@ from eurdf.convert.verification.read_model import (
     Range,
     ReadModel,
     anchored,
-    opening_of,
+    opening_between,
 )
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.residual import closure_openings
@@ -211,7 +211,7 @@ class SdfTree(ReadModel):
         self.at(q)
         written = {(loop.findtext("parent"), loop.findtext("child")) for loop in self.loops}
         return tuple(
-            opening_of(closure, *(anchored(anchor, self.there.pose) for anchor in closure.anchors))
+            opening_between(closure, *(anchored(anchor, self.there.pose) for anchor in closure.anchors))
             for closure in self._exported.robot.mechanism.closures
             if (closure.a.body, closure.b.body) in written
         )

@@ -11,14 +11,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import pinocchio as pin
 
-from eurdf.closures.distance import DistanceClosure
-from eurdf.closures.frame import FrameClosure
-from eurdf.closures.hinge import HingeClosure
+from eurdf.convert.conventions import opening_of
 from eurdf.convert.coordinates import Coordinates, Matrix, Vector
 from eurdf.kinematics.opening import Opening
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Closure
-from eurdf.mechanism.pose import direction
 from eurdf.pinocchio.robot import Robot, build_robot
 
 
@@ -181,17 +178,9 @@ def without_armature(robot: Robot, names: Sequence[str] | None = None) -> Robot:
     return build_robot(replace(robot.mechanism, joints=joints), geometry=False)
 
 
-def opening_of(closure: Closure, a: Matrix, b: Matrix) -> Opening:
+def opening_between(closure: Closure, a: Matrix, b: Matrix) -> Opening:
     """How far a closure is open, with its frames at poses (4, 4) in the world."""
-    distance, angle = float(np.linalg.norm(b[:3, 3] - a[:3, 3])), 0.0
-    if isinstance(closure, DistanceClosure):
-        distance = abs(distance - closure.length)
-    elif isinstance(closure, HingeClosure):
-        one, other = (M[:3, :3] @ direction(axis) for M, axis in zip((a, b), closure.axes, strict=True))
-        angle = float(np.arctan2(np.linalg.norm(np.cross(one, other)), one @ other))
-    elif isinstance(closure, FrameClosure):
-        angle = float(np.linalg.norm(pin.log3(a[:3, :3].T @ b[:3, :3])))
-    return Opening(closure.name, distance, angle)
+    return Opening(closure.name, *opening_of(closure, a, b))
 
 
 def anchored(anchor: Anchor, pose: Callable[[str], Any]) -> Matrix:
