@@ -16,7 +16,6 @@ from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Closure, Constraint, Coupling
-from eurdf.mechanism.joint import drivers
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, root_joint
 from eurdf.mechanism.pose import IDENTITY, Pose, direction
 from eurdf.viewing.scene import Scene
@@ -136,7 +135,7 @@ def _moving(robot: Robot) -> Iterable[str]:
 def _joints(
     mechanism: Mechanism, bodies: Mapping[str, int], velocities: Mapping[str, list[int]]
 ) -> list[dict[str, Any]]:
-    leaders = drivers({joint.name: joint.mimic for joint in mechanism.joints if joint.mimic is not None})
+    leaders = mechanism.leaders
     joints = list(mechanism.joints)
     parents = [bodies[joint.parent] for joint in joints]
     if mechanism.root == "floating":

@@ -11,8 +11,8 @@ import pinocchio as pin
 
 from eurdf.diagnostics.wording import visible
 from eurdf.kinematics.assembly import Assembly
-from eurdf.viewing.page import Page
 from eurdf.viewing.scene import Placed, wxyz
+from eurdf.viewing.shown import Page
 from eurdf.writing.saved_configuration import CannotSave, ConfigurationExists
 
 # Steps of a slider over its range, and decimals of its number.

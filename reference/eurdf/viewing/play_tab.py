@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any, Literal
 
-from eurdf.viewing.page import Page
 from eurdf.viewing.playback import gravity_frames, sweep_frames, trajectory_frames
+from eurdf.viewing.shown import Page
 from eurdf.viewing.trajectory import Trajectory, read_trajectory
 
 #: What can be played.
