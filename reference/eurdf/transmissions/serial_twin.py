@@ -15,7 +15,7 @@ import numpy as np
 from eurdf.array import Mask, Matrix, Vector
 from eurdf.convert.export import export, files_of_meshes
 from eurdf.diagnostics import enumerated
-from eurdf.json_schema import PAIRS, ROW, ROWS, Keywords
+from eurdf.json_schema import PAIRS, ROW, ROWS, Keywords, to_json
 from eurdf.kinematics.problem import Problem
 from eurdf.mechanism.joint import JointProperties
 from eurdf.mechanism.mechanism import ROOT_JOINT
@@ -119,21 +119,22 @@ class SerialTwin:
 
     def report(self) -> dict[str, Any]:
         """The numbers as plain values, for JSON; infinite ones are None."""
-        lost = {name: getattr(self.neglected, name) for name in self.neglected.__slots__}
-        fit = {name: getattr(self.map, name) for name in self.map.__slots__ if name not in ("joints", "motors")}
         q = self.workspace.robot.coordinates(self.q)
-        return {
-            "joints": list(self.joints),
-            "motors": list(self.motors),
-            "lumped": list(self.bodies),
-            "lumped_at": {name: list(values) for name, values in q.items()},
-            "chosen": self.chosen,
-            **{name: _plain(getattr(self, name)) for name in _NUMBERS},
-            "neglected": {name: _plain(value) for name, value in lost.items()},
-            "stops": {str(stop): count for stop, count in self.workspace.stops.items()},
-            "map": {name: _plain(value) for name, value in fit.items()},
-            "notes": list(self.notes),
-        }
+        found: dict[str, Any] = to_json(
+            {
+                "joints": self.joints,
+                "motors": self.motors,
+                "lumped": self.bodies,
+                "lumped_at": q,
+                "chosen": self.chosen,
+                **{name: getattr(self, name) for name in _NUMBERS},
+                "neglected": self.neglected,
+                "stops": {str(stop): count for stop, count in self.workspace.stops.items()},
+                "map": self.map,
+                "notes": self.notes,
+            }
+        )
+        return found
 
     def files(self) -> dict[str, bytes]:
         """The twin as URDF and MJCF, and its report: the content by path."""
@@ -392,12 +393,3 @@ def _holding(robot: Robot, q: Matrix, joints: Selection, motors: Selection) -> M
 def _extent(values: Matrix) -> Matrix:
     """Smallest and largest (n, 2) of values (B, n)."""
     return np.stack((values.min(axis=0), values.max(axis=0)), axis=1)
-
-
-def _plain(value: Any) -> Any:
-    """Numbers and arrays as plain values; None for those that are not finite."""
-    if isinstance(value, np.ndarray):
-        return _plain(value.tolist())
-    if isinstance(value, list):
-        return [_plain(each) for each in value]
-    return None if isinstance(value, float) and not np.isfinite(value) else value

@@ -15,15 +15,15 @@ from eurdf.array import Mask, Vector
 from eurdf.kinematics.analysis import Analysis, analyze
 from eurdf.kinematics.assembly import Assembly, assemble, start
 from eurdf.kinematics.branch import Branch, Point
-from eurdf.kinematics.derived import derived
 from eurdf.kinematics.inverse import inverse_kinematics
 from eurdf.kinematics.path import Elements, follow
-from eurdf.kinematics.position_limit import driven_coordinates, position_limits
+from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.residual import residual
 from eurdf.kinematics.sweep import sweep
 from eurdf.kinematics.tolerances import CLOSED, DEAD, START
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array
+from eurdf.transmissions.selection import selection
 from eurdf.viewing.sliders import LONGEST, NAMES, ROTATION, Slider, motions, sliders_of, values_at
 from eurdf.viewing.spring_rest import SpringRest
 
@@ -111,16 +111,11 @@ class Session:
 
     def value(self, index: int) -> float:
         """The coordinate of a slider, rad or m; the angle of a joint without limits is from -pi to pi."""
-        slider, tree = self.sliders[index], self.robot.tree
-        velocity = slider.velocity
-        if velocity is None:
-            return float(self._pose(slider, self.q)[slider.number])
-        driven, coordinates = derived(self.robot, driven_coordinates)
-        if velocity in driven:
-            return float(self.q[coordinates[velocity]])
-        own = zip(tree.own_coordinates, tree.own_velocities, strict=True)
-        cosine, sine = next(self.q[list(places)] for places, velocities in own if velocity in velocities)
-        return math.atan2(sine, cosine)
+        slider = self.sliders[index]
+        values = (
+            self._pose(slider, self.q) if slider.velocity is None else selection(self.robot, slider.joint).read(self.q)
+        )
+        return float(values[slider.number])
 
     def move(self, index: int, value: float) -> Stop | None:
         """Move a coordinate; the passive joints follow on the same branch.

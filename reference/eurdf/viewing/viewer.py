@@ -18,9 +18,9 @@ from eurdf.pinocchio.robot import Robot
 from eurdf.reading.robot_source import RobotSource
 from eurdf.viewing.files import RobotOnDisk
 from eurdf.viewing.panel import Panel
+from eurdf.viewing.playback import read_trajectory
 from eurdf.viewing.server import LOOPBACK, start_server, stop_server, url_of
 from eurdf.viewing.shown import Page, ShownRobot
-from eurdf.viewing.trajectory import read_trajectory
 from eurdf.viewing.worker import Worker
 from eurdf.writing.atomic_file import write_atomically
 
