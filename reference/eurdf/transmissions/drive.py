@@ -27,7 +27,7 @@ from eurdf.kinematics.tolerances import (
     MOVES,
 )
 from eurdf.pinocchio.arguments import checked_array
-from eurdf.transmissions.exceptions import NoTransmission
+from eurdf.transmissions.exceptions import NoTransmission, shown
 from eurdf.transmissions.selection import Selection, listed
 from eurdf.transmissions.transmission import Transmission, at_one
 
@@ -215,12 +215,11 @@ class Drive:
         there = np.array(q)
         self.given.write(positions, there)
         anywhere = assemble(self._robot, there, (*self.given.joints, *self._held))
-        values = zip(self.given.names, positions.tolist(), strict=True)
-        shown = ", ".join(f"{name} {value + 0.0:.6g}" for name, value in values)
+        at = shown(zip(self.given.names, positions.tolist(), strict=True))
         if not anywhere.closes:
-            return NotClosable(f"the loops cannot be closed at {shown}", anywhere.open, anywhere.q)
+            return NotClosable(f"the loops cannot be closed at {at}", anywhere.open, anywhere.q)
         reason = (
-            f"the loops can be closed at {shown}, but a straight path does not lead there on this branch; "
+            f"the loops can be closed at {at}, but a straight path does not lead there on this branch; "
             "give positions in between"
         )
         return TooFar(reason, all_openings(self._robot, there), there)
