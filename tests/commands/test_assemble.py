@@ -16,10 +16,8 @@ import pytest
 import eurdf
 from eurdf.commands.main import main
 from eurdf.commands.output import output_schemas
+from support.places import DATA, ROBOTS
 from support.processes import on_a_terminal
-
-DATA = Path(__file__).parents[1] / "data"
-ROBOTS = Path(__file__).parents[2] / "robots"
 
 Run = Callable[..., tuple[int, str, str]]
 

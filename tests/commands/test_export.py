@@ -18,6 +18,7 @@ from eurdf.convert.formats import EXPORTS
 from eurdf.convert.losses import ELEMENTS, Effect
 from eurdf.convert.table import page_of, written
 from eurdf.writing.output_folder import write_files
+from support.places import ROBOTS, ROOT
 
 
 @pytest.fixture(autouse=True)
@@ -113,7 +114,7 @@ def test_name_of_the_robot_leads_to_no_other_folder(here: Path) -> None:
 
 
 def test_robot_without_assembled_gets_a_closed_keyframe(here: Path) -> None:
-    source = Path(eurdf.__file__).parents[2] / "robots" / "four_bar"
+    source = ROBOTS / "four_bar"
     text = re.sub(r"(?m)^configurations:\n(  .*\n)+", "", (source / "robot.yaml").read_text())
     assert "assembled" not in text
     given = eurdf.load(text, urdf=(source / "robot.urdf").read_text())
@@ -151,7 +152,7 @@ def test_nothing_is_written_outside_the_folder(here: Path, name: str) -> None:
 
 
 def test_tables_of_losses_are_current() -> None:
-    docs = Path(eurdf.__file__).parents[2] / "docs"
+    docs = ROOT / "docs"
     for page, text in written(docs).items():
         assert page.read_text(encoding="utf-8") == text
     for name, each in ((name, export_format(name)) for name in EXPORTS):

@@ -14,6 +14,7 @@ import eurdf
 from eurdf.commands.main import main
 from eurdf.mechanism.constraint import RIGID, Compliance, Coupling
 from support.described import body, revolute
+from support.places import ROBOTS
 from support.plain_urdf import joint_element
 from support.plain_urdf import robot as urdf
 
@@ -187,9 +188,6 @@ def test_info_shows_the_distance(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert "1 of distance" in capsys.readouterr().out
 
 
-ROBOTS = Path(__file__).parents[2] / "robots"
-
-
 def hinged(folder: Path, name: str, closure: str) -> Path:
     """A robot of the collection, with its 3d closure as a hinge."""
     source = ROBOTS / name
@@ -242,7 +240,7 @@ def test_schema_of_version_2_1_knows_hinges(capsys: pytest.CaptureFixture[str]) 
     assert "axis" in schema["$defs"]["Hinge"]["properties"]
 
 
-FOUR_BAR = Path(__file__).parents[2] / "robots" / "four_bar"
+FOUR_BAR = ROBOTS / "four_bar"
 
 
 def compliant(folder: Path, compliance: str) -> Path:

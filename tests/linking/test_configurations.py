@@ -18,8 +18,9 @@ from eurdf.pinocchio.configuration import configuration_vector
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand
 from support.described import STAR, at, codes, load, written
+from support.places import DATA
 
-WORKBENCH = Path(__file__).parents[1] / "data" / "workbench.yaml"
+WORKBENCH = DATA / "workbench.yaml"
 
 JOINTS = "joints: {d: spherical}\n"
 

@@ -1,8 +1,6 @@
 """The builder of the collection: what is drawn weighs what it weighs, and is written as it is meant."""
 
 import math
-import sys
-from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
@@ -11,8 +9,6 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
-
-sys.path.insert(0, str(Path(__file__).parents[2]))
 
 import eurdf
 from eurdf.pinocchio.configuration import configuration_vector

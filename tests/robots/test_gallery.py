@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
-
-sys.path.insert(0, str(Path(__file__).parents[2]))
-
 import eurdf
 from eurdf.mechanism.joint_types import JointType
 from robots.features import FEATURES, features_of
 from robots.gallery import FILE, gallery
-
-ROOT = Path(__file__).parents[2]
+from support.places import ROOT
 
 
 def test_gallery_is_current():

@@ -10,8 +10,9 @@ import pytest
 from eurdf.commands.main import main
 from eurdf.writing.naming_conventions import conventions
 from support.page_reader import PageReader
+from support.places import ROOT
 
-SPEC = Path(__file__).parents[2] / "spec"
+SPEC = ROOT / "spec"
 PAGES = ("solidworks", "onshape")
 
 

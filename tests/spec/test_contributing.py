@@ -14,8 +14,8 @@ import pytest
 from eurdf_conformance.corpus import lint, show
 from eurdf_conformance.corpus.read import CASES
 from eurdf_conformance.strict_yaml import load_strictly
+from support.places import ROOT
 
-ROOT = Path(__file__).parents[2]
 SECTION = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8").partition("\n## A case for the suite\n")[2]
 SECTION = SECTION.partition("\n## ")[0]
 NAME = "urdf/damping-fortran-exponent"

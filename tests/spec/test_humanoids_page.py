@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 
 from support.page_reader import PageReader
-
-ROOT = Path(__file__).parents[2]
+from support.places import ROOT
 
 
 @pytest.mark.slow

@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from support.page_reader import PageReader
+from support.places import ROOT
 
-DOCS = Path(__file__).parents[2] / "docs"
+DOCS = ROOT / "docs"
 
 
 @pytest.mark.parametrize("name", ["from_mjcf", "from_sdf", "from_toolbox", "from_urdf_plus"])

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from eurdf.commands.main import main
+from support.places import ROOT
 
-ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import pytest
 
 from spec.figures import draw
 from support.page_reader import PageReader
+from support.places import ROOT
 
-SPEC = Path(__file__).parents[2] / "spec"
+SPEC = ROOT / "spec"
 TUTORIAL = SPEC / "tutorial.md"
 ROBOT = SPEC / "examples" / "tutorial"
 

@@ -13,9 +13,9 @@ from eurdf_conformance.corpus import archive
 from eurdf_conformance.corpus.read import all_cases
 from eurdf_conformance.judging.known_failures import read_known_failures
 from eurdf_conformance.suite.item import planned_items
+from support.places import ROOT
 from support.warm import run_module
 
-ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "write_an_adapter.md"
 TEXT = PAGE.read_text(encoding="utf-8")
 
