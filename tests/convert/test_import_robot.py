@@ -196,19 +196,6 @@ def test_random_mechanism_is_the_same_in_poses_and_closures(
     assert_same_properties(robot, found, export)
 
 
-@pytest.mark.parametrize("to", ["loop-joint", "drake", "sdf"])
-def test_robot_of_the_collection_is_the_same(to: str, tmp_path: Path) -> None:
-    robot = eurdf.load("digit_leg", geometry=False)
-    export, imported = round_trip("digit_leg", to, tmp_path)
-    found = build_robot(replace(imported.mechanism, root="fixed"), geometry=False)
-    assert imported.closes
-    assert [(each.name, each.type) for each in robot.constraints] == [
-        (each.name, each.type) for each in found.constraints
-    ]
-    assert_same_robot(robot, found, export, 1)
-    assert_same_properties(robot, found, export)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("to", ["mjcf", "loop-joint", "drake", "sdf"])
 @pytest.mark.parametrize("name", eurdf.collection_names())

@@ -226,20 +226,6 @@ def test_info_shows_version_and_hinge(tmp_path: Path, capsys: pytest.CaptureFixt
     assert "1 of hinge" in shown
 
 
-def test_migrate_has_nothing_to_do_on_version_2_1(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = hinged(tmp_path, "four_bar", "3d")
-    assert main(["migrate", str(path), "--json"]) == 0
-    answer = json.loads(capsys.readouterr().out)
-    assert (answer["from"], answer["to"], answer["text"]) == ("2.1", "2.1", path.read_text(encoding="utf-8"))
-
-
-def test_schema_of_version_2_1_knows_hinges(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["schema", "--version", "2.1"]) == 0
-    schema = json.loads(capsys.readouterr().out)
-    assert schema["$id"] == "urn:extended-urdf:schema:2.1"
-    assert "axis" in schema["$defs"]["Hinge"]["properties"]
-
-
 FOUR_BAR = ROBOTS / "four_bar"
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import numpy as np
@@ -47,30 +46,6 @@ def test_version_1_advises_on_unmentioned_mimic_joint() -> None:
     assert codes(gripper(), "name_mot: [drive]\n") == ["x-mimic-ignored"]
     assert codes(gripper(), "name_mot: [drive]\njoint_name: [left]\njoint_type: [SPHERICAL]\n") == []
     assert codes(gripper(), "note: 1\n") == codes(gripper(), "actuators: [drive]\n") == codes(gripper()) == []
-
-
-def test_migrate_frees_mimic_joints_that_version_1_ignores(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    folder = written(tmp_path, gripper(), "name_mot: [left]\n").parent
-    before = eurdf.load(folder, geometry=False)
-    out = folder / "new.yaml"
-    assert main(["migrate", str(folder), "-o", str(out), "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["to"] == "2.1"
-    assert (folder / "extended-urdf-2.1.schema.json").exists()
-    after = eurdf.load(out, geometry=False)
-    assert after.model == before.model
-    assert after.actuation.joints == ("left",)
-
-
-def test_migrate_refuses_mimic_joint_that_version_2_refuses(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    text = gripper("nobody")
-    folder = written(tmp_path, text, "name_mot: [left]\n").parent
-    assert main(["migrate", str(folder)]) == 2
-    printed = capsys.readouterr()
-    assert printed.out == ""
-    assert "joint 'left' mimics 'nobody', which does not exist" in printed.err
-    assert "remove it from the URDF (line 1) and migrate again" in printed.err
-    (folder / "robot.urdf").write_text(text.replace(MIMIC.format("nobody", -2, 0.1), ""), encoding="utf-8")
-    assert main(["migrate", str(folder)]) == 0
 
 
 def test_migrate_keeps_mimic_of_fixed_joint(tmp_path: Path) -> None:

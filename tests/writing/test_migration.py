@@ -624,10 +624,6 @@ def test_mimic_joint_without_leader_is_not_migrated() -> None:
     assert "remove it from the URDF (line 65)" in str(found.value)
 
 
-def test_version_2_0_is_written_where_it_suffices() -> None:
-    assert migrated("name_mot: [motor]\n").text.startswith('extended_urdf: "2.0"\n')
-
-
 def test_first_line_names_the_schema_of_the_version_written() -> None:
     text = "# yaml-language-server: $schema=../schema/extended-urdf-1.schema.json\nname_mot: [follow]\n"
     description = with_mimics(text)

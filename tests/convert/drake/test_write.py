@@ -2,51 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
-from xml.etree import ElementTree as ET
-
 import numpy as np
 import pinocchio as pin
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 import eurdf
-from eurdf.pinocchio.robot import Robot
 from support.drake_witness import InDrake
 from support.exported import random_robot
 from support.plain_urdf import inertial, joint_element, link_element
 from support.plain_urdf import robot as robot_element
-
-#: Constraints that a closure is in Drake.
-CONSTRAINTS = {"3d": 1, "6d": 3, "hinge": 2, "distance": 0}
-
-_DRAKE = "{http://drake.mit.edu}"
-
-
-def assert_balls_are_closed(robot: Robot, export: eurdf.Export, q: Any) -> None:
-    there = InDrake(robot, export)
-    there.at(q)
-    balls = ET.fromstring(export.main).findall(f"{_DRAKE}ball_constraint")
-    for ball in balls:
-        link_a, link_b, p, r = (
-            ball.find(f"{_DRAKE}ball_constraint_{each}") for each in ("body_A", "body_B", "p_AP", "p_BQ")
-        )
-        ends = [
-            there.pose(link.get("name")) @ [*map(float, point.get("value").split()), 1.0]
-            for link, point in ((link_a, p), (link_b, r))
-        ]
-        np.testing.assert_allclose(ends[0], ends[1], atol=1e-6)
-    assert len(balls) == sum(CONSTRAINTS[each.type] for each in robot.mechanism.closures)
-    relations = len(robot.mechanism.couplings) + sum(joint.mimic is not None for joint in robot.mechanism.joints)
-    assert there.plant.num_constraints() == len(balls) + relations
-
-
-@given(seed=st.integers(0, 2**32 - 1), root=st.sampled_from(["fixed", "floating"]))
-@settings(max_examples=10)
-def test_points_of_random_closures_are_closed(seed: int, root: Any) -> None:
-    robot, q = random_robot(seed, root)
-    assert_balls_are_closed(robot, eurdf.export(robot, "drake"), q)
-
 
 LIMIT = '<limit lower="-1" upper="2" effort="7" velocity="3"/>'
 BODY = inertial(1.5, '<origin xyz="0.1 0.2 0.3"/>')

@@ -4,66 +4,15 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Any
 
-import numpy as np
-import pinocchio as pin
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from lxml import etree
 
 import eurdf
-from eurdf.mechanism.joint_types import JointType
-from eurdf.pinocchio.robot import Robot
-from support.drake_witness import InDrake, TreeInDrake
+from support.drake_witness import InDrake
 from support.exported import random_robot
 from support.plain_urdf import inertial, joint_element, link_element
 from support.plain_urdf import robot as robot_element
-
-TYPES = {"3d": "ball", "6d": "fixed", "hinge": "continuous"}
-
-
-def assert_same_loops(robot: Robot, export: eurdf.Export, q: Any) -> None:
-    """At q, where the links are placed: no coordinate differs from zero, and loops are at both ends of closures."""
-    there = TreeInDrake(robot, export)
-    map_ = export.coordinates
-    zeros = np.concatenate([_zero(part) for part in map_.parts[robot.mechanism.root == "floating" :]] or [np.zeros(0)])
-    np.testing.assert_allclose(map_.to_q(q)[-len(zeros) or map_.nq :], zeros, atol=1e-12)
-    closures = [closure for closure in robot.mechanism.closures if closure.type in TYPES]
-    # A closure that has the name of a link gets another one.
-    found = [(loop.get("name").removesuffix("_"), loop.get("type")) for loop in there.loops]
-    assert found == [(closure.name, TYPES[closure.type]) for closure in closures]
-    there.at(q)
-    pin.framesForwardKinematics(robot.model, robot.data, q)
-    for loop, closure in zip(there.loops, closures, strict=True):
-        assert (loop.findtext("parent"), loop.findtext("child")) == (closure.a.body, closure.b.body)
-        *xyz, roll, pitch, yaw = map(float, (loop.findtext("pose") or "0 0 0 0 0 0").split())
-        placed = pin.SE3(there.pose(closure.b.body)) * pin.SE3(pin.rpy.rpyToMatrix(roll, pitch, yaw), np.array(xyz))
-        joint, placement = robot.tree.site(closure.a)
-        oMa = robot.data.oMi[joint] * placement
-        np.testing.assert_allclose(placed.translation, oMa.translation, atol=1e-6)
-        if closure.type == "6d":
-            np.testing.assert_allclose(placed.rotation, oMa.rotation, atol=1e-6)
-        if closure.type == "hinge":
-            axis = placed.rotation @ np.array(loop.findtext("axis/xyz").split(), float)
-            expected = oMa.rotation @ np.array(closure.axes[0]) / np.linalg.norm(closure.axes[0])
-            np.testing.assert_allclose(axis, expected, atol=1e-6)
-
-
-def _zero(part: Any) -> Any:
-    zero = np.zeros(part.nq)
-    if part.type in (JointType.SPHERICAL, JointType.FLOATING):
-        zero[-4] = 1.0
-    return zero
-
-
-@given(seed=st.integers(0, 2**32 - 1), root=st.sampled_from(["fixed", "floating"]))
-@settings(max_examples=10)
-def test_loops_of_a_random_robot_are_where_the_links_are(seed: int, root: Any) -> None:
-    robot, q = random_robot(seed, root)
-    assert_same_loops(robot, eurdf.export(robot, "sdf"), q)
-
 
 BODY = inertial(1.5, '<origin xyz="0.1 0.2 0.3"/>')
 LIMIT = '<limit lower="-1" upper="2" effort="7" velocity="3"/>'
