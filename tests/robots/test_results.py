@@ -35,10 +35,11 @@ WITHOUT_DATA = {"view", "plot_workspace"}
 
 #: Methods that change the object, write files, or return texts; and what is shared by design: the memory of a robot.
 NOT_CALLED = {"reset", "write", "start_at_joints", "start_at_motors", "c_source", "passes", "followed_by", "to_json"}
-NOT_CALLED |= {"on_grid", "derived", "data", "tree", "diagnose", "no_geometry"}
+NOT_CALLED |= {"on_grid", "derived", "data", "tree", "diagnose", "no_geometry", "of"}
 
 #: Objects of other libraries, and what a result refers to and does not own.
-NOT_OWNED = ("pinocchio", "coal", "lxml", "eurdf.pinocchio.tree", "eurdf.mechanism", "eurdf.diagnostics")
+NOT_OWNED = ("pinocchio", "coal", "lxml")
+NOT_OWNED += ("eurdf.pinocchio.tree", "eurdf.closures", "eurdf.mechanism", "eurdf.diagnostics")
 
 
 class Case:
@@ -151,6 +152,8 @@ def members(value: Any, path: str, case: Case, seen: dict[int, Any]) -> Iterator
         except (EurdfError, ValueError):  # there is no such thing here
             continue
         if callable(member):
+            if isinstance(inspect.getattr_static(value, name), staticmethod | classmethod):
+                continue  # a function of its class
             needed = {each.name for each in inspect.signature(member).parameters.values() if each.default is each.empty}
             assert needed <= {*case.arguments, *case.of.get(name, ())}, f"{path}.{name} needs {needed}"
             member = case.call(member, name)

@@ -1,4 +1,4 @@
-"""coupling: a linear relation of joint coordinates (EU-CPL-005)."""
+"""coupling: a linear relation of joint coordinates."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Coordinate(Protocol):
 
 
 class Couplings:
-    """k couplings: r = Σ cᵢ qᵢ - offset, each in the unit of its cᵢ qᵢ.
+    """EU-CPL-005: k couplings: r = Σ cᵢ qᵢ - offset, each in the unit of its cᵢ qᵢ.
 
     Attributes:
         K: The derivative (k, n) of r by the velocities, which is constant: r̈ is 0 while every joint keeps its velocity.

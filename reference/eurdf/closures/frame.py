@@ -1,4 +1,4 @@
-"""6d: B is at A, in position and orientation: a weld (EU-CLO-008)."""
+"""6d: B is at A, in position and orientation: a weld."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from eurdf.mechanism.constraint import Unit
 
 @dataclass(frozen=True, slots=True)
 class FrameClosure(ClosureKind):
-    """B is at A in position and orientation: a weld. r = log6(ᴬM_B), linear and angular, m and rad."""
+    """EU-CLO-008: B is at A in position and orientation: a weld. r = log6(ᴬM_B), linear and angular, m and rad."""
 
     type: ClassVar[str] = "6d"
     units: ClassVar[tuple[Unit, ...]] = ("m",) * 3 + ("rad",) * 3
