@@ -471,16 +471,6 @@ def test_printed_command_reproduces_a_failure() -> None:
 
 
 @pytest.mark.slow
-def test_a_crash_is_not_a_rejection() -> None:
-    code, out = suite("-k", FEW, parser="Crashing")
-    assert code == 1
-    assert "5 failed, 2 passed" in out
-    assert (
-        "closures/parallelogram-3d-closure/accept: crashed: the process ended with exit code 3 without answering" in out
-    )
-
-
-@pytest.mark.slow
 def test_unclaimed_level_is_skipped_and_unsupported_claim_fails() -> None:
     code, out = suite("-k", FEW, parser="Modest")
     assert code == 0
@@ -491,22 +481,6 @@ def test_unclaimed_level_is_skipped_and_unsupported_claim_fails() -> None:
     assert "7 failed" in out
     assert "closures/parallelogram-3d-closure/accept: unsupported: closures: not written yet" in out
     assert "frames/closure-at-unknown-frame/accept: skipped: it is Sunday" in out
-
-
-@pytest.mark.slow
-def test_levels_and_a_version_can_be_chosen() -> None:
-    few = [item for item in planned_items(CASES.values()) if not item.id.startswith(("properties/", "fresh/"))]
-    chosen = [item for item in few if item.version == "1" and item.level in ("structure", "diagnose")]
-    arguments = [
-        "--level=structure",
-        "--level=diagnose",
-        "--format-version=1",
-        "-k",
-        "not [properties/ and not [fresh/",
-    ]
-    code, out = suite(*arguments, parser="Right")
-    assert code == 0
-    assert f"{len(chosen)} passed" in out
 
 
 KNOWN = """

@@ -124,22 +124,6 @@ def test_robot_without_assembled_gets_a_closed_keyframe(here: Path) -> None:
     assert abs(eurdf.residual(given, q)).max() < 1e-9
 
 
-def test_nothing_is_written_if_one_file_exists(here: Path) -> None:
-    (here / "b").write_bytes(b"mine")
-    with pytest.raises(FileExistsError):
-        write_files(here, {"a": b"1", "b": b"2"})
-    assert os.listdir(here) == ["b"]
-
-
-def test_failed_write_restores_everything(here: Path) -> None:
-    (here / "a").write_bytes(b"mine")
-    (here / "c").write_bytes(b"a file, so no folder")
-    with pytest.raises(OSError):
-        write_files(here, {"a": b"1", "new/b": b"2", "c/d": b"3"}, force=True)
-    assert (here / "a").read_bytes() == b"mine"
-    assert sorted(os.listdir(here)) == ["a", "c"]
-
-
 @pytest.mark.parametrize("name", ["../a", "link/a"])
 def test_nothing_is_written_outside_the_folder(here: Path, name: str) -> None:
     (here / "out").mkdir()

@@ -16,11 +16,9 @@ import pytest
 import eurdf
 from eurdf.commands.main import main
 from eurdf.commands.output import output_schemas
-from eurdf.commands.output_file import write_new
 from eurdf.commands.selection import select
 from eurdf.diagnostics import Diagnostic, Place
 from eurdf.diagnostics.report import Report
-from eurdf.exceptions import CannotRun
 from support.described import ARM as URDF
 from support.described import ARM_DESCRIPTION as DESCRIPTION
 from support.processes import on_a_terminal
@@ -109,10 +107,6 @@ def test_every_robot_below_a_folder_is_checked(folder: Path, run: Run) -> None:
 def test_duplicate_robot_is_checked_once(folder: Path, run: Run) -> None:
     robot(folder / "arm")
     assert run("check", "arm", "arm")[1] == "arm: sound\n"
-
-
-def test_collection_robot_is_checked_by_name(folder: Path, run: Run) -> None:
-    assert run("check", "four_bar") == (0, "four_bar: sound\n", "")
 
 
 def test_urdf_option_replaces_named_urdf(folder: Path, run: Run) -> None:
@@ -405,18 +399,6 @@ def test_info_of_several_robots_asks_for_one(folder: Path, run: Run) -> None:
 # --- schema ----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("version", ["1", "2"])
-def test_schema_of_each_version_is_written(run: Run, version: str) -> None:
-    code, out, _ = run("schema", "--version", version)
-    assert code == 0
-    jsonschema.Draft202012Validator.check_schema(json.loads(out))
-
-
-def test_default_schema_is_version_2(run: Run) -> None:
-    schema = json.loads(run("schema")[1])
-    assert jsonschema.Draft202012Validator(schema).is_valid({"extended_urdf": "2.0"})
-
-
 def test_schema_for_robot_contains_its_joints(folder: Path, run: Run) -> None:
     robot(folder)
     code, out, _ = run("schema", "--for", "robot.urdf")
@@ -587,58 +569,3 @@ def test_terminal_shows_progress_of_many_robots(folder: Path) -> None:
     _, seen = on_a_terminal(["-c", _CHECK_QUICKLY, "."])
     assert "checking" in seen
     assert seen.index("checking") < seen.index("error")
-
-
-# --- files written ---------------------------------------------------------------------------------------------------
-
-
-def test_new_file_is_utf8_with_default_permissions(folder: Path) -> None:
-    (folder / "plain").touch()
-    write_new("new.yaml", "é: 1\r\n")
-    assert (folder / "new.yaml").read_bytes() == "é: 1\r\n".encode()
-    assert (folder / "new.yaml").stat().st_mode == (folder / "plain").stat().st_mode
-    assert sorted(os.listdir()) == ["new.yaml", "plain"]
-
-
-def test_existing_file_is_replaced_only_with_force(folder: Path) -> None:
-    file = folder / "old.yaml"
-    file.write_text("old", encoding="utf-8")
-    file.chmod(0o600)
-    with pytest.raises(CannotRun, match=r"'old\.yaml' already exists"):
-        write_new("old.yaml", "new")
-    assert file.read_text(encoding="utf-8") == "old"
-    write_new("old.yaml", "new", force=True)
-    assert file.read_text(encoding="utf-8") == "new"
-    assert file.stat().st_mode & 0o777 == 0o600
-
-
-def test_replacing_a_file_follows_its_link(folder: Path) -> None:
-    (folder / "file.yaml").write_text("old", encoding="utf-8")
-    (folder / "link.yaml").symlink_to("file.yaml")
-    write_new("link.yaml", "new", force=True)
-    assert (folder / "link.yaml").is_symlink()
-    assert (folder / "file.yaml").read_text(encoding="utf-8") == "new"
-
-
-def test_failed_write_leaves_nothing_behind(folder: Path) -> None:
-    (folder / "sub").mkdir()
-    with pytest.raises(CannotRun, match=r"cannot write 'missing/new\.yaml'"):
-        write_new("missing/new.yaml", "new")
-    with pytest.raises(CannotRun, match="cannot write 'sub'"):
-        write_new("sub", "new", force=True)
-    with pytest.raises(UnicodeEncodeError):
-        write_new("new.yaml", "half \udc80" * 10)
-    assert os.listdir() == ["sub"]
-
-
-def test_interrupted_write_keeps_old_file(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (folder / "old.yaml").write_text("old", encoding="utf-8")
-
-    def full(self: Path, target: Path) -> Path:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(Path, "replace", full)
-    with pytest.raises(CannotRun, match="No space left on device"):
-        write_new("old.yaml", "new", force=True)
-    assert (folder / "old.yaml").read_text(encoding="utf-8") == "old"
-    assert os.listdir() == ["old.yaml"]

@@ -12,7 +12,6 @@ import urllib.request
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import numpy as np
@@ -370,26 +369,6 @@ def test_trajectory_with_an_error_ends_the_command(tmp_path: Path, capsys: pytes
     file.write_text("time,motor\n0,0\n")
     assert main(["view", "four_bar", "--no-browser", "--port", "0", "--trajectory", os.fspath(file)]) == 2
     assert f"'{file}': line 1: there is no joint 'motor'" in capsys.readouterr().err
-
-
-def test_dragged_handle_moves_its_frame_and_returns_to_it(viewer: eurdf.Viewer) -> None:
-    gizmo, session = viewer._panel._move._gizmo, viewer._first.session
-    joint = next(joint for joint in viewer.robot.mechanism.joints if joint.name == "motor_crank")
-    viewer._worker.call(lambda: session.move(0, 0.3))
-    frame = next(each.child for each in viewer.robot.mechanism.joints if each.parent == joint.child)
-    body = viewer._first.figure.scene.bodies.index(frame)
-    there = viewer._first.figure.scene.at(session.q).origins[body]
-    viewer._worker.call(session.reset)
-    gizmo._choice.value = frame
-    viewer._worker.call(gizmo._put)
-    assert gizmo._handle is not None
-    target = SimpleNamespace(position=there, wxyz=(1.0, 0.0, 0.0, 0.0))
-    gizmo._dragged(SimpleNamespace(target=target, phase="end"))
-    viewer._worker.call(lambda: None)  # after the drag
-    assert session.value(0) == pytest.approx(0.3, abs=1e-4)
-    assert session.residual < 1e-9
-    assert gizmo._handle.position == pytest.approx(there, abs=1e-4)
-    assert viewer._page.messages == ()
 
 
 @pytest.mark.parametrize("port", ["-1", "65536", "a"])
