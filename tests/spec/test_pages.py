@@ -84,53 +84,28 @@ def test_first_command_runs_main_job(monkeypatch: pytest.MonkeyPatch, capsys: py
     assert "sound" in capsys.readouterr().out
 
 
-# -- The pages for those who come from another format: what their commands print and write is what they show
+SPEC = ROOT / "spec"
+PAGES = ("solidworks", "onshape")
+#: Pages whose commands and code are run, as whoever follows them does.
+FOLLOWED = [
+    *(f"docs/{name}" for name in ("from_mjcf", "from_sdf", "from_toolbox", "from_urdf_plus")),
+    pytest.param("docs/humanoids", marks=pytest.mark.slow),
+    *(f"spec/{name}" for name in (*PAGES, "tutorial")),
+]
 
 
-DOCS = ROOT / "docs"
-
-
-@pytest.mark.parametrize("name", ["from_mjcf", "from_sdf", "from_toolbox", "from_urdf_plus"])
-def test_files_and_output_are_as_shown(name: str, tmp_path: Path) -> None:
-    if name == "from_mjcf" and importlib.util.find_spec("mujoco") is None:
+@pytest.mark.parametrize("page", FOLLOWED)
+def test_commands_code_and_files_give_what_the_page_shows(page: str, tmp_path: Path) -> None:
+    if "mjcf" in page and importlib.util.find_spec("mujoco") is None:
         pytest.skip("mujoco is not installed: pip install -e '.[mujoco]'")
-    reader = PageReader(DOCS / f"{name}.md", tmp_path)
+    reader = PageReader(ROOT / f"{page}.md", tmp_path)
     reader.follow()
     assert len(reader.told) >= 2
     for line, shown, given in reader.told:
-        assert given == shown, f"docs/{name}.md:{line}"
-
-
-# -- The page for engineers of humanoids: its commands and code give what it shows
-
-
-@pytest.mark.slow
-def test_commands_and_code_give_what_page_shows(tmp_path: Path) -> None:
-    reader = PageReader(ROOT / "docs" / "humanoids.md", tmp_path)
-    reader.follow()
-    assert len(reader.told) > 6
-    for line, shown, given in reader.told:
-        assert given == shown, f"docs/humanoids.md:{line}"
-
-
-# -- The pages that lead from a CAD program to a checked robot: done as they show, they give what they show
-
-
-SPEC = ROOT / "spec"
-PAGES = ("solidworks", "onshape")
-
-
-@pytest.mark.parametrize("name", PAGES)
-def test_commands_give_what_page_shows(name: str, tmp_path: Path) -> None:
-    page = SPEC / f"{name}.md"
-    reader = PageReader(page, tmp_path)
-    reader.follow()
-    assert len(reader.told) >= 3
-    for line, shown, given in reader.told:
-        assert given == shown, f"spec/{page.name}:{line}"
-    for file in ("robot.urdf", "robot.yaml"):
-        ended_with = (tmp_path / file).read_text(encoding="utf-8")
-        assert ended_with == (SPEC / "examples" / name / file).read_text(encoding="utf-8"), file
+        assert given == shown, f"{page}.md:{line}"
+    example = SPEC / "examples" / Path(page).name
+    for file in ("robot.urdf", "robot.yaml") if example.is_dir() else ():
+        assert (tmp_path / file).read_text(encoding="utf-8") == (example / file).read_text(encoding="utf-8"), file
 
 
 @pytest.mark.parametrize("name", PAGES)
@@ -164,31 +139,7 @@ def test_site_shows_the_pages() -> None:
     assert set(PAGES) <= set(index)
 
 
-# -- The tutorial of the specification: done from its first block to its last, it gives what it shows
-
-
-SPEC = ROOT / "spec"
-TUTORIAL = SPEC / "tutorial.md"
-ROBOT = SPEC / "examples" / "tutorial"
-
-
-@pytest.fixture(scope="module")
-def reader(tmp_path_factory: pytest.TempPathFactory) -> PageReader:
-    """Who has done the tutorial."""
-    reader = PageReader(TUTORIAL, tmp_path_factory.mktemp("tutorial"))
-    reader.follow()
-    return reader
-
-
-def test_commands_and_code_give_what_tutorial_shows(reader: PageReader) -> None:
-    assert len(reader.told) > 10
-    for line, shown, given in reader.told:
-        assert given == shown, f"spec/tutorial.md:{line}"
-
-
-def test_final_tutorial_robot_is_the_example(reader: PageReader) -> None:
-    for name in ("robot.urdf", "robot.yaml"):
-        assert (reader.folder / name).read_text(encoding="utf-8") == (ROBOT / name).read_text(encoding="utf-8"), name
+# -- Figures of the specification
 
 
 @pytest.mark.parametrize("name", sorted(draw.FIGURE))
@@ -221,8 +172,8 @@ SECTION = SECTION.partition("\n## ")[0]
 NAME = "urdf/damping-fortran-exponent"
 
 
-def blocks(language: str) -> list[str]:
-    return re.findall(rf"^```{language}\n(.*?)^```$", SECTION, re.DOTALL | re.MULTILINE)
+def blocks(language: str, text: str = SECTION) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
 
 
 def command(program: str) -> tuple[list[str], str]:
@@ -278,15 +229,11 @@ PAGE = ROOT / "docs" / "write_an_adapter.md"
 TEXT = PAGE.read_text(encoding="utf-8")
 
 
-def blocks(language: str) -> list[str]:
-    return re.findall(rf"^```{language}\n(.*?)^```$", TEXT, re.DOTALL | re.MULTILINE)
-
-
 @pytest.mark.parametrize(
     "shown",
     [
-        pytest.param(blocks("console")[0], id="smoke"),
-        pytest.param(blocks("console")[1], id="whole", marks=pytest.mark.slow),
+        pytest.param(blocks("console", TEXT)[0], id="smoke"),
+        pytest.param(blocks("console", TEXT)[1], id="whole", marks=pytest.mark.slow),
     ],
 )
 def test_first_runs_give_shown_results(shown: str) -> None:
@@ -305,7 +252,7 @@ def test_first_runs_give_shown_results(shown: str) -> None:
 
 
 def test_shown_known_failures_are_usable(tmp_path: Path) -> None:
-    (shown,) = blocks("yaml")
+    (shown,) = blocks("yaml", TEXT)
     (tmp_path / "known.yaml").write_text(shown, encoding="utf-8")
     known = read_known_failures(tmp_path / "known.yaml")
     assert known.failures
@@ -319,12 +266,12 @@ def test_linked_targets_exist() -> None:
     assert f"python -m {archive.__name__} OUT" in TEXT
 
 
-def test_options_on_page_exist(capsys: pytest.CaptureFixture[str]) -> None:
+def test_options_for_adapters_exist(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["certify", "--help"])
     options = capsys.readouterr().out
     named = set(
-        re.findall(r"`?(--[a-z]+(?:-[a-z]+)*)", "".join(blocks("sh")) + " ".join(re.findall("`--[^`]+`", TEXT)))
+        re.findall(r"`?(--[a-z]+(?:-[a-z]+)*)", "".join(blocks("sh", TEXT)) + " ".join(re.findall("`--[^`]+`", TEXT)))
     )
     assert {"--verify", "--compare", "--certificate", "--explore", "--known-failures", "--smoke"} <= named
     assert [option for option in sorted(named) if option not in options] == []
