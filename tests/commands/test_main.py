@@ -36,24 +36,6 @@ def _processes_import_the_same_package(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PYTHONPATH", str(Path(eurdf.__file__).parents[1]), prepend=os.pathsep)
 
 
-@pytest.fixture
-def run(capsys: pytest.CaptureFixture[str]) -> Run:
-    """Run the command line in this process: exit code, standard output, standard error."""
-
-    def run_here(*argv: str | Path) -> tuple[int, str, str]:
-        code = main([str(argument) for argument in argv])
-        captured = capsys.readouterr()
-        return code, captured.out, captured.err
-
-    return run_here
-
-
-@pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
 def robot(folder: Path, description: str = DESCRIPTION, urdf: str = URDF) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "robot.urdf").write_text(urdf, encoding="utf-8")

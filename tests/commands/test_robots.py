@@ -10,21 +10,9 @@ import pytest
 
 import eurdf
 from eurdf import collection
-from eurdf.commands.main import main
 from eurdf.commands.output import output_schemas
 
 Run = Callable[..., tuple[int, str, str]]
-
-
-@pytest.fixture
-def run(capsys: pytest.CaptureFixture[str]) -> Run:
-    """Run the command line in this process: exit code, standard output, standard error."""
-
-    def run_here(*argv: str) -> tuple[int, str, str]:
-        code = main(list(argv))
-        return code, *capsys.readouterr()
-
-    return run_here
 
 
 @pytest.fixture
