@@ -11,7 +11,7 @@ ELSEWHERE = {"recipes", "robots", "spec"}
 def test_each_file_has_the_path_of_a_module_or_package() -> None:
     for file in (ROOT / "tests").rglob("test_*.py"):
         path = file.relative_to(ROOT / "tests")
-        if path.parts[0] in ELSEWHERE | {"kinematics"}:
+        if path.parts[0] in ELSEWHERE:
             continue
         name = path.stem.removeprefix("test_")
         places = [folder / path.parent / name for folder in (ROOT, ROOT / "reference", ROOT / "reference" / "eurdf")]

@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 import pytest
 from lxml import etree
 
 import eurdf
+import pinocchio as pin
+from support.places import DATA, ROBOTS
 
-ROBOTS = Path(__file__).parents[2] / "robots"
 NUMBER = re.compile(r'(?<=["\s])-?\d+\.?\d*(e-?\d+)?(?=["\s])')
 EXTREME = ("0", "5e-324", "1e-300", "1e-20", "1e10", "1e12", "-1e13", "1e14", "-1e15", "1e15", "-1")
 
@@ -71,7 +71,6 @@ def test_result_of_extreme_robot_is_finite_or_an_error(name: str) -> None:
     assert loaded > 3
 
 
-DATA = Path(__file__).parents[1] / "data"
 BOUNDS = (1e15, 1e14, 1.0, 3e-15, 1e-15)
 
 

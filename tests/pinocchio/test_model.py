@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
-import pinocchio as pin
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+import pinocchio as pin
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.point import PointClosure
 from eurdf.mechanism.body import Anchor, Body, Frame
@@ -28,6 +27,7 @@ from eurdf.pinocchio.model import build_model
 from eurdf.pinocchio.robot import build_robot
 from eurdf.pinocchio.tree import build_tree
 from support import by_hand
+from support.places import WILD
 from support.plain_urdf import (
     Root,
     inertial,
@@ -40,7 +40,6 @@ from support.plain_urdf import (
     vector,
 )
 
-WILD = Path(__file__).parents[3] / "shared" / "wild"
 ROOTS = st.sampled_from(["fixed", "floating"])
 INF = math.inf
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
