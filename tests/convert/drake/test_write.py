@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-import pinocchio as pin
 
 import eurdf
+import pinocchio as pin
 from support.drake_witness import InDrake
-from support.exported import random_robot
-from support.plain_urdf import inertial, joint_element, link_element
+from support.exported import BODY, LIMIT, random_robot
+from support.plain_urdf import joint_element, link_element
 from support.plain_urdf import robot as robot_element
 
-LIMIT = '<limit lower="-1" upper="2" effort="7" velocity="3"/>'
-BODY = inertial(1.5, '<origin xyz="0.1 0.2 0.3"/>')
 ARM = robot_element(
     link_element("world"),
     link_element("upper", BODY),

@@ -10,17 +10,17 @@ from typing import Any
 
 import mujoco
 import numpy as np
-import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
+import pinocchio as pin
 from eurdf.mechanism.constraint import Constraint, Coupling
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import Robot, build_robot
-from support.exported import InMuJoCo, hanging, near, random_robot
+from support.exported import BALL, BODY, LIMIT, InMuJoCo, hanging, near, random_robot
 from support.plain_urdf import inertial, joint_element, link_element
 from support.plain_urdf import robot as robot_element
 from support.stl import TETRAHEDRON
@@ -181,9 +181,6 @@ def test_motors_of_a_ball_joint_act_along_its_axes() -> None:
     np.testing.assert_allclose(force, robot.actuation.selection @ [1.0, 2.0, 3.0], atol=1e-12)
 
 
-BODY = inertial(1.5, '<origin xyz="0.1 0.2 0.3"/>')
-BALL = '<collision><geometry><sphere radius="0.05"/></geometry></collision>'
-LIMIT = '<limit lower="-1" upper="2" effort="7" velocity="3"/>'
 LOSSES = '<dynamics damping="0.2" friction="0.1"/>'
 PAIR = robot_element(
     link_element("base", BALL),

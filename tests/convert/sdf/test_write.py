@@ -10,12 +10,10 @@ from lxml import etree
 
 import eurdf
 from support.drake_witness import InDrake
-from support.exported import random_robot
-from support.plain_urdf import inertial, joint_element, link_element
+from support.exported import BODY, LIMIT, random_robot
+from support.plain_urdf import joint_element, link_element
 from support.plain_urdf import robot as robot_element
 
-BODY = inertial(1.5, '<origin xyz="0.1 0.2 0.3"/>')
-LIMIT = '<limit lower="-1" upper="2" effort="7" velocity="3"/>'
 PAIR = robot_element(
     link_element("base", BODY),
     link_element("a", BODY),

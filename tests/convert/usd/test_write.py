@@ -10,19 +10,19 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 import pytest
 
 import eurdf
+import pinocchio as pin
 from eurdf.closures.hinge import HingeClosure
 from eurdf.commands.main import main
 from eurdf.mechanism.constraint import Coupling
 from eurdf.mechanism.joint_types import JointType
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand
-from support.exported import random_robot
+from support.exported import BALL, BODY, LIMIT, random_robot
 from support.in_usd import D6_AXES, InUsd
-from support.plain_urdf import inertial, joint_element, link_element
+from support.plain_urdf import joint_element, link_element
 from support.plain_urdf import robot as robot_element
 from support.stl import TETRAHEDRON
 
@@ -173,11 +173,8 @@ def test_robot_of_the_collection_is_the_same(name: str, tmp_path: Path) -> None:
     assert_same_robot(InUsd(eurdf.export(name, "usd"), tmp_path), robot, robot.configurations["assembled"])
 
 
-BODY = inertial(1.5, '<origin xyz="0.1 0.2 0.3"/>')
-BALL = '<collision><geometry><sphere radius="0.05"/></geometry></collision>'
 COLOR = '<material name="m"><color rgba="0.5 1 0 0.25"/></material>'
 BOX = f'<visual><geometry><box size="1 2 3"/></geometry>{COLOR}</visual>'
-LIMIT = '<limit lower="-1" upper="2" effort="7" velocity="3"/>'
 PAIR = robot_element(
     link_element("base", BALL),
     link_element("arm", BODY + BALL + BOX),
