@@ -440,19 +440,6 @@ def test_a_clause_selects_what_tests_it() -> None:
 
 
 @pytest.mark.slow
-def test_a_correct_parser_passes_and_gets_a_certificate(tmp_path: Path) -> None:
-    # Of the older version, which has fewer cases.
-    topics = ["protocol", "closures", "names"]
-    asked = ["--format-version=1", "-k", " or ".join(f"[{topic}/" for topic in topics), f"--certificate={tmp_path}"]
-    code, out = suite("-n2", *asked, parser="Right")
-    assert code == 0, out
-    items = [item for item in planned_items(CASES.values()) if item.version == "1" and item.id.split("/")[0] in topics]
-    assert f"{len(items)} passed" in out
-    assert "by_heart 1 (Python)" in out
-    assert json.loads((tmp_path / "certificate.json").read_text(encoding="utf-8"))["parser"]["name"] == "by_heart"
-
-
-@pytest.mark.slow
 def test_printed_command_reproduces_a_failure() -> None:
     code, out = suite("-k", FEW, parser="Misread")
     assert code == 1

@@ -86,13 +86,6 @@ def test_unknown_format_is_refused() -> None:
         eurdf.export("four_bar", "mjfc")
 
 
-def test_invalid_robot_is_refused(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (folder / "robot.urdf").write_text('<robot name="r"><link name="a"/><link name="a"/></robot>')
-    assert main(["export", "robot.urdf", "--to", "mjcf"]) == 1
-    assert "urdf-duplicate-link" in capsys.readouterr().err
-    assert [path.name for path in folder.iterdir()] == ["robot.urdf"]
-
-
 def test_loop_of_another_dialect_is_not_lost_in_silence(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text = '<robot name="r"><link name="base"/><loop_joint name="pin" type="revolute"/></robot>'
     (folder / "isaac.urdf").write_text(text, encoding="utf-8")

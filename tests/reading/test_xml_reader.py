@@ -269,10 +269,8 @@ def places_are_found(document: XmlDocument) -> None:
 
 
 def test_damaged_file_gives_document_or_error() -> None:
-    junk = [
-        *"\0\x01\t\n\r <>/=&;'\"?!-[]é\u2028\ufffe:",
-        *["<!--", "-->", "<![CDATA[", "]]>", "<?", "?>", "<!DOCTYPE", "</link>"],
-    ]
+    marks = ["<!--", "-->", "<![CDATA[", "]]>", "<?", "?>", "<!DOCTYPE", "</link>"]
+    junk = [*"\0\x01\t\n\r <>/=&;'\"?!-[]é\u2028\ufffe:", *marks]
     outcomes = damaged(SAMPLE, junk, read, places_are_found)
     assert {"read", "xml-syntax"} <= outcomes
 

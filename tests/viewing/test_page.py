@@ -333,14 +333,6 @@ def test_graph_has_a_line_for_each_link_and_an_arc_for_each_closure() -> None:
     assert attack in [element.text for element in ElementTree.fromstring(hostile).iter()]
 
 
-def test_command_refuses_invalid_robot(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    pytest.importorskip("viser", reason=MISSING)
-    (tmp_path / "robot.urdf").write_text((ROBOTS / "four_bar/robot.urdf").read_text())
-    (tmp_path / "robot.yaml").write_text('extended_urdf: "2.0"\nactuators: [nothing]\n')
-    assert main(["view", os.fspath(tmp_path), "--no-browser", "--port", "0"]) == 1
-    assert "nothing" in capsys.readouterr().out
-
-
 @pytest.mark.slow
 def test_command_ends_with_an_interrupt() -> None:
     pytest.importorskip("viser", reason=MISSING)

@@ -78,15 +78,9 @@ def kills(folder: Path, count: int, seed: int) -> int:
     return len(seen) - 1
 
 
-def test_killed_process_leaves_all_old_files_or_all_new_ones(here: Path) -> None:
-    assert kills(here / "out", 8, seed=1)
-    write_files(here / "out", dict.fromkeys(NAMES, b"end"), force=True)
-    assert files_in(here) == {f"out/{name}" for name in (*NAMES, *KEPT)}
-
-
-@pytest.mark.slow
-def test_hundred_killed_processes_leave_no_mixed_files(here: Path) -> None:
-    assert kills(here / "out", 100, seed=2)
+@pytest.mark.parametrize("count", [8, pytest.param(100, marks=pytest.mark.slow)])
+def test_killed_process_leaves_all_old_files_or_all_new_ones(here: Path, count: int) -> None:
+    assert kills(here / "out", count, seed=count)
     write_files(here / "out", dict.fromkeys(NAMES, b"end"), force=True)
     assert files_in(here) == {f"out/{name}" for name in (*NAMES, *KEPT)}
 

@@ -159,18 +159,16 @@ def test_random_robot_of_all_joints_and_closures_is_the_same(seed: int, root: An
     assert_same_robot(InUsd(eurdf.export(moved, "usd"), tmp_path / "offset"), moved, q)
 
 
-def test_robots_of_the_collection_are_the_same(tmp_path: Path) -> None:
-    for name in ("delta", "kangaroo_leg"):  # universal joints; 3d and 6d closures
-        robot = eurdf.load(name, geometry=False)
-        export = eurdf.export(robot, "usd")
-        assert_same_robot(InUsd(export, tmp_path / name), robot, robot.configurations["assembled"])
+#: Robots with universal joints, and with 3d and 6d closures; the others take long.
+FIRST = ("delta", "kangaroo_leg")
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", eurdf.collection_names())
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name not in FIRST)) for name in eurdf.collection_names()]
+)
 def test_robot_of_the_collection_is_the_same(name: str, tmp_path: Path) -> None:
     robot = eurdf.load(name, geometry=False)
-    assert_same_robot(InUsd(eurdf.export(name, "usd"), tmp_path), robot, robot.configurations["assembled"])
+    assert_same_robot(InUsd(eurdf.export(robot, "usd"), tmp_path), robot, robot.configurations["assembled"])
 
 
 COLOR = '<material name="m"><color rgba="0.5 1 0 0.25"/></material>'
