@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from eurdf.diagnostics import Diagnostic
@@ -294,6 +294,11 @@ class NumericalOverflow(EurdfError, ArithmeticError):  # noqa: N818 - part of th
         )
 
 
+def shown(values: Iterable[tuple[str, float]]) -> str:
+    """Names of joints with their values, for a message."""
+    return ", ".join(f"{name} {value + 0.0:.6g}" for name, value in values)
+
+
 class NoTransmission(EurdfError, ValueError):  # noqa: N818 - part of the public interface
     """A map between motors and joints does not exist at a configuration.
 
@@ -321,8 +326,8 @@ class DependentVelocities(EurdfError, ValueError):  # noqa: N818 - part of the p
         self.names = names
         self.given = given
         self.nearest = nearest
-        numbers = ", ".join(f"{name} {value + 0.0:.6g}" for name, value in zip(names, nearest.tolist(), strict=True))
-        super().__init__(f"the loops do not allow these velocities together; the nearest that they allow: {numbers}")
+        allowed = shown(zip(names, nearest.tolist(), strict=True))
+        super().__init__(f"the loops do not allow these velocities together; the nearest that they allow: {allowed}")
 
 
 class OutOfReach(NotClosable):
@@ -347,12 +352,10 @@ class OutOfReach(NotClosable):
         self.wanted = dict(wanted)
         self.reached = dict(reached)
         self.part = part
-        asked, farthest = (
-            ", ".join(f"{name} {value + 0.0:.6g}" for name, value in each.items()) for each in (wanted, reached)
-        )
         reason = (
-            f"{asked}: not reachable along a straight path from the start; the last reachable point is {farthest} "
-            f"({100.0 * part:.1f} %); give values nearer to the start, or values in between one after the other"
+            f"{shown(wanted.items())}: not reachable along a straight path from the start; the last reachable point is "
+            f"{shown(reached.items())} ({100.0 * part:.1f} %); give values nearer to the start, or values in between "
+            "one after the other"
         )
         super().__init__(reason, openings, q)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from eurdf.kinematics import analysis, assembly, dynamics, forward, inverse, locking, project, sensitivity, simulation
-from eurdf.kinematics import mass_matrix as _mass_matrix
 from eurdf.kinematics import residual as _residual
 from eurdf.kinematics import split as _split
 from eurdf.kinematics import sweep as _sweep
@@ -21,7 +20,7 @@ forward_kinematics = of_any_robot(forward.forward_kinematics)
 inverse_dynamics = of_any_robot(dynamics.inverse_dynamics)
 inverse_kinematics = of_any_robot(inverse.inverse_kinematics)
 lock = of_any_robot(locking.lock, geometry=True)
-mass_matrix = of_any_robot(_mass_matrix.mass_matrix)
+mass_matrix = of_any_robot(dynamics.mass_matrix)
 merge_configuration = of_any_robot(_split.merge_configuration)
 merge_velocity = of_any_robot(_split.merge_velocity)
 project_acceleration = of_any_robot(project.project_acceleration)

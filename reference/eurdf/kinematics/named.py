@@ -9,7 +9,6 @@ import numpy as np
 
 from eurdf.diagnostics.wording import enumerated, meant
 from eurdf.kinematics.array import Vector
-from eurdf.mechanism.joint import drivers
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array
 
@@ -92,10 +91,9 @@ def vector_of(given: Named, names: Sequence[str], argument: str) -> Vector:
 
 def unknown_joint(robot: Robot, name: str) -> ValueError:
     """The error for a name that is not that of a joint with coordinates of its own."""
-    joints = robot.mechanism.joints
-    mimics = drivers({joint.name: joint.mimic for joint in joints if joint.mimic is not None})
-    if name in mimics:
-        return ValueError(f"joint '{name}' is a mimic joint; give its leader '{mimics[name].joint}' instead")
-    if any(joint.name == name for joint in joints):
+    leaders = robot.mechanism.leaders
+    if name in leaders:
+        return ValueError(f"joint '{name}' is a mimic joint; give its leader '{leaders[name].joint}' instead")
+    if any(joint.name == name for joint in robot.mechanism.joints):
         return ValueError(f"joint '{name}' is fixed")
     return ValueError(f"the robot has no joint '{name}'{meant(name, robot.slots)}")

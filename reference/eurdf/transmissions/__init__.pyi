@@ -1,5 +1,6 @@
 """The public names, each with the module that defines it."""
 
+from eurdf.transmissions.grid_search import BoundaryPoint as BoundaryPoint
 from eurdf.transmissions.impedance import Impedance as Impedance
 from eurdf.transmissions.impedance import impedance_map as impedance_map
 from eurdf.transmissions.inertia import ReflectedInertia as ReflectedInertia
@@ -16,7 +17,6 @@ from eurdf.transmissions.positions import joint_values as joint_values
 from eurdf.transmissions.prepared import PreparedTransmission as PreparedTransmission
 from eurdf.transmissions.prepared import prepare_transmission as prepare_transmission
 from eurdf.transmissions.reach import Stop as Stop
-from eurdf.transmissions.reachable_set import BoundaryPoint as BoundaryPoint
 from eurdf.transmissions.reachable_set import Workspace as Workspace
 from eurdf.transmissions.reachable_set import workspace as workspace
 from eurdf.transmissions.serial_model import SerialTwin as SerialTwin
