@@ -123,6 +123,12 @@ class ClosureKind(Closure, ABC):
     summary: ClassVar[str] = "Two frames that are joined."
     since: ClassVar[Literal["1", "2.1"]] = "2.1"
 
+    def open_by(self, rotation: Matrix, position: Vector) -> tuple[float, float]:
+        """How far it is open, m and rad, with frame B at a rotation (3, 3) and a position (3,), m, in frame A."""
+        poses = PoseArrays(rotation[None, None], position[None, None])
+        length, angle = self.opening(poses, self.prepare([self]))
+        return float(length[0, 0]), float(angle[0, 0])
+
     @classmethod
     def keys(cls) -> dict[str, Key]:
         """What the kind has beside name, frames and compliance, by field."""

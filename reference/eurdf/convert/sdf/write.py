@@ -10,14 +10,17 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+import numpy as np
 from lxml import etree
 
+from eurdf.closures import CLOSED
 from eurdf.closures.hinge import HingeClosure
-from eurdf.closures.point import PointClosure
-from eurdf.convert.coordinates import Coordinates
+from eurdf.closures.kind import ClosureKind
+from eurdf.convert.conventions import LIGHT
+from eurdf.convert.coordinates import Coordinates, rotation_matrix
 from eurdf.convert.exceptions import CannotExport
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format, coordinates_at
 from eurdf.convert.inertia import accepted_inertia
@@ -25,8 +28,8 @@ from eurdf.convert.losses import Losses
 from eurdf.convert.meshes import MeshFiles
 from eurdf.convert.names import UniqueNames
 from eurdf.convert.parts import Part, part_of
-from eurdf.convert.sdf.facts import CLOSURES, EXACT, LEAST, ROWS, VERSION
-from eurdf.convert.steps import AXES, in_series, turn_type
+from eurdf.convert.sdf.facts import CLOSURES, EXACT, ROWS, VERSION
+from eurdf.convert.steps import in_series, turn_type
 from eurdf.mechanism.body import Anchor, Body, Inertia, Shape
 from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint, Mimic
@@ -34,9 +37,6 @@ from eurdf.mechanism.joint_types import ROTARY, JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, root_joint
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.writing.xml_text import file_content, representable, rpy_of
-
-#: Largest opening, m or rad, of a loop that counts as closed (EU-CLO-005).
-CLOSED = 1e-6
 
 _WORLD = "world"
 
@@ -137,7 +137,7 @@ class _SdfWriter:
 
     def _link(self, body: Body, link: etree._Element, parent: str, placed: Pose) -> None:
         _pose(link, placed, parent)
-        _inertial(link, accepted_inertia(body, self.losses, LEAST))
+        _inertial(link, accepted_inertia(body, self.losses, LIGHT))
         for use, shapes in (("visual", body.visuals), ("collision", body.collisions)):
             for number, shape in enumerate(shapes):
                 self._shape(link, use, f"{use}_{number}", shape)
@@ -185,7 +185,10 @@ class _SdfWriter:
                 self._link(body, link, parent, pose * joint.offset)
             else:
                 _pose(link, pose, parent)
-                _inertial(link, Inertia(LEAST, IDENTITY, (LEAST, 0.0, 0.0, LEAST, 0.0, LEAST)))
+                _inertial(
+                    link,
+                    Inertia(LIGHT, IDENTITY, (LIGHT, 0.0, 0.0, LIGHT, 0.0, LIGHT)),
+                )
             kind = step.joint.type
             if kind in ROTARY:
                 kind = turn_type(step.joint)
@@ -244,12 +247,9 @@ class _SdfWriter:
 
     def _must_be_closed(self, closure: Closure) -> None:
         a, b = (self._in_world(end) for end in closure.anchors)
-        pairs: Iterable[tuple[Vector3, Vector3]] = ()
-        if isinstance(closure, HingeClosure):
-            pairs = [(a.rotate(direction(closure.axes[0])), b.rotate(direction(closure.axes[1])))]
-        elif not isinstance(closure, PointClosure):
-            pairs = [(a.rotate(axis), b.rotate(axis)) for axis in AXES]
-        opening = max(math.dist(a.xyz, b.xyz), *(math.dist(*pair) for pair in pairs), 0.0)
+        aMb = a.inverse() * b
+        assert isinstance(closure, ClosureKind)
+        opening = max(closure.open_by(rotation_matrix(aMb.quaternion), np.array(aMb.xyz)))
         if opening > 2.0 * CLOSED:
             raise CannotExport(
                 f"closure '{closure.name}' is open by {opening:.1e} m or rad at the chosen configuration; SDFormat "

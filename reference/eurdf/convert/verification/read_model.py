@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pinocchio as pin
 
-from eurdf.closures.kind import ClosureKind, PoseArrays
+from eurdf.closures.kind import ClosureKind
 from eurdf.convert.coordinates import Coordinates, Matrix, Vector
 from eurdf.kinematics.opening import Opening
 from eurdf.mechanism.body import Anchor
@@ -182,8 +182,7 @@ def opening_of(closure: Closure, a: Matrix, b: Matrix) -> Opening:
     """How far a closure is open, with its frames at poses (4, 4) in the world."""
     assert isinstance(closure, ClosureKind)
     aMb = np.linalg.inv(a) @ b
-    poses = PoseArrays(aMb[None, None, :3, :3], aMb[None, None, :3, 3])
-    distance, angle = (float(size[0, 0]) for size in closure.opening(poses, closure.prepare([closure])))
+    distance, angle = closure.open_by(aMb[:3, :3], aMb[:3, 3])
     return Opening(closure.name, distance, angle)
 
 
