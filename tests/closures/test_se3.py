@@ -6,10 +6,10 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import pinocchio as pin
 from eurdf.closures import se3
 
 seeds = st.integers(0, 2**32 - 1)
@@ -49,10 +49,12 @@ def test_logarithm_is_inverse_of_exponential_and_equals_pinocchio(seed: int, ang
 @settings(deadline=None, max_examples=50)
 @given(seeds, angles)
 def test_derivatives_of_logarithm(seed: int, angle: float) -> None:
-    v, rate = twists(seed, min(angle, 3.0)), twists(seed + 1, 0.7)
+    v, rate, acceleration = twists(seed, min(angle, 3.0)), twists(seed + 1, 0.7), twists(seed + 2, 0.5)
     near(se3.exp6_derivative(v) @ se3.log6_derivative(v), np.broadcast_to(np.eye(6), (4, 2, 6, 6)))
-    expected = derivative(lambda t: se3.log6_derivative(v + t * rate))
-    near(se3.log6_second_derivative(v, rate), expected, 1e-6)
+    # With ξ(t) = J(r)⁻¹ ṙ, r̈ of a curve r + t ṙ + t² a / 2 is a.
+    curve = lambda t: v + t * rate + 0.5 * t * t * acceleration  # noqa: E731
+    twist = lambda t: se3.turned(se3.exp6_derivative(curve(t)), rate + t * acceleration)  # noqa: E731
+    near(se3.log6_second(v, twist(0.0), derivative(twist)), acceleration, 1e-7)
 
 
 @settings(deadline=None, max_examples=20)

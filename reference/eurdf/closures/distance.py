@@ -1,4 +1,4 @@
-"""distance: the origins of A and B are as far apart as a rod is long (EU-CLO-015)."""
+"""distance: the origins of A and B are as far apart as a rod is long."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from eurdf.mechanism.constraint import Unit, key
 
 @dataclass(frozen=True, slots=True)
 class DistanceClosure(ClosureKind):
-    """The origins of A and B are at a fixed distance: a massless rod between two ball joints.
+    """EU-CLO-015: the origins of A and B are at a fixed distance: a massless rod between two ball joints.
 
     r = |p| - length, m, with p = ᴬp_B. At p = 0, where r has no derivative, u = p / |p| is taken along x of A.
 

@@ -1,4 +1,4 @@
-"""6d: B is at A, in position and orientation: a weld (EU-CLO-008)."""
+"""6d: B is at A, in position and orientation: a weld."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ import numpy as np
 from eurdf.array import Matrix, Vector
 from eurdf.closures.kind import ClosureKind, RelativeMotions, RelativePoses
 from eurdf.closures.point import PointClosure
-from eurdf.closures.se3 import log6_derivative, log6_second_derivative, turned
+from eurdf.closures.se3 import log6_second
 from eurdf.mechanism.constraint import Unit
 
 
 @dataclass(frozen=True, slots=True)
 class FrameClosure(ClosureKind):
-    """B is at A in position and orientation: a weld. r = log6(ᴬM_B), linear and angular, m and rad."""
+    """EU-CLO-008: B is at A in position and orientation: a weld. r = log6(ᴬM_B), linear and angular, m and rad."""
 
     type: ClassVar[str] = "6d"
     units: ClassVar[tuple[Unit, ...]] = ("m",) * 3 + ("rad",) * 3
@@ -39,10 +39,8 @@ class FrameClosure(ClosureKind):
 
     @staticmethod
     def drift(motions: RelativeMotions, fixed: Any) -> Matrix:
-        """J ξ̇ + J̇ ξ, with ṙ = J(r) ξ the derivative of log6 by the twist in the axes of B."""
-        r = motions.poses.logarithm()
-        J = log6_derivative(r)
-        return turned(J, motions.change) + turned(log6_second_derivative(r, turned(J, motions.twist)), motions.twist)
+        """The second derivative of log6(ᴬM_B)."""
+        return log6_second(motions.poses.logarithm(), motions.twist, motions.change)
 
     @staticmethod
     def opening(poses: RelativePoses, fixed: Any) -> tuple[Vector, Vector]:

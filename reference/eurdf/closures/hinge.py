@@ -1,4 +1,4 @@
-"""hinge: the origin of B is at the origin of A, and an axis of B along an axis of A: a revolute joint (EU-CLO-014)."""
+"""hinge: the origin of B is at the origin of A, and an axis of B along an axis of A: a revolute joint."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Axes(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class HingeClosure(ClosureKind):
-    """The origin of B is at the origin of A, and an axis of B is along an axis of A: a revolute joint.
+    """EU-CLO-014: the origin of B is at the origin of A, and an axis of B is along an axis of A: a revolute joint.
 
     r = (p, Eᵀ s), m and rad. s is the shortest rotation vector that takes axis a of A to β, axis b of B seen from A: of
     the angle θ, with c = cos θ = a · β and g = θ / sin θ, s = g a × β = θ n. E (3, 2) spans the plane across a. Where

@@ -64,8 +64,13 @@ class RelativePoses:
 class PoseArrays(RelativePoses):
     """Poses that were computed."""
 
-    def __init__(self, rotation: Matrix, position: Matrix) -> None:
-        self.rotation, self.position = rotation, position
+    def __init__(self, rotation: Matrix, position: Matrix, logarithm: Matrix | None = None) -> None:
+        self.rotation, self.position, self._logarithm = rotation, position, logarithm
+
+    def of(self, which: slice) -> PoseArrays:
+        """Those of some of the pairs."""
+        logarithm = None if self._logarithm is None else self._logarithm[:, which]
+        return PoseArrays(self.rotation[:, which], self.position[:, which], logarithm)
 
 
 class RelativeMotions(NamedTuple):
@@ -122,12 +127,6 @@ class ClosureKind(Closure, ABC):
     text: ClassVar[str]
     summary: ClassVar[str] = "Two frames that are joined."
     since: ClassVar[Literal["1", "2.1"]] = "2.1"
-
-    def open_by(self, rotation: Matrix, position: Vector) -> tuple[float, float]:
-        """How far it is open, m and rad, with frame B at a rotation (3, 3) and a position (3,), m, in frame A."""
-        poses = PoseArrays(rotation[None, None], position[None, None])
-        length, angle = self.opening(poses, self.prepare([self]))
-        return float(length[0, 0]), float(angle[0, 0])
 
     @classmethod
     def keys(cls) -> dict[str, Key]:

@@ -1,4 +1,4 @@
-"""3d: the origin of B is at the origin of A: a ball joint (EU-CLO-009)."""
+"""3d: the origin of B is at the origin of A: a ball joint."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from eurdf.mechanism.constraint import Unit
 
 @dataclass(frozen=True, slots=True)
 class PointClosure(ClosureKind):
-    """The origin of B is at the origin of A: a ball joint. r = p, m, with p = ᴬp_B."""
+    """EU-CLO-009: the origin of B is at the origin of A: a ball joint. r = p, m, with p = ᴬp_B."""
 
     type: ClassVar[str] = "3d"
     units: ClassVar[tuple[Unit, ...]] = ("m",) * 3

@@ -20,6 +20,9 @@ _ONE = np.eye(3)
 _SKEW = np.cross(_ONE[:, None], _ONE).transpose(0, 2, 1).reshape(3, 9)
 _OF_ORIGIN = np.concatenate((np.zeros((3, 3, 3)), -_SKEW.reshape(3, 3, 3)), axis=2).reshape(3, 18)
 _OF_ZERO = np.eye(3, 6).ravel()
+_AD = np.zeros((6, 36))  # of a motion r the matrix of r ×
+for _rows, _columns, _of in ((0, 0, 3), (3, 3, 3), (0, 3, 0)):
+    _AD.reshape(6, 6, 6)[_of : _of + 3, _rows : _rows + 3, _columns : _columns + 3] = _SKEW.reshape(3, 3, 3)
 
 
 def cross(a: Matrix, b: Matrix) -> Matrix:
@@ -162,7 +165,7 @@ def _beta(turn: Matrix, order: int = 0) -> list[Vector]:
 
 def _series(t: Vector, most: float, order: int) -> list[Vector]:
     """β and its derivatives by their series, of as many terms as the largest t needs."""
-    count = min(len(_COTANGENT), 3 + order + int(37.0 / math.log(39.0 / max(most, 1e-300))))
+    count = min(len(_COTANGENT), 2 + order + int(39.0 / math.log(39.0 / max(most, 1e-300))))
     coefficients, found = _COTANGENT[:count], []
     for _ in range(order + 1):
         value = np.full_like(t, coefficients[-1])
@@ -208,17 +211,32 @@ def log6_derivative(r: Matrix) -> Matrix:
     return _blocks(_inverse_jacobian(w, beta), beside)
 
 
-def log6_second_derivative(r: Matrix, rate: Matrix) -> Matrix:
-    """The derivative (…, 6, 6) of `log6_derivative` while the logarithm r (…, 6) changes at a rate (…, 6)."""
-    v, w, dv, dw = r[..., :3], r[..., 3:], rate[..., :3], rate[..., 3:]
-    beta, slope, bend = (values[..., None] for values in _beta(w, 2))
-    V, W, dV, dW = (skew(each) for each in (v, w, dv, dw))
-    square, along_v, along_w = W @ W, 2.0 * _along(w, v)[..., None], 2.0 * _along(w, dw)[..., None]
-    turn = 0.5 * dW + beta * _both(W, dW) + slope * along_w * square
-    moved = 0.5 * dV + beta * (_both(W, dV) + _both(dW, V)) + slope * along_w * _both(W, V)
-    moved += slope * along_v * _both(W, dW)
-    moved += (2.0 * slope * (_along(dw, v) + _along(w, dv))[..., None] + bend * along_w * along_v) * square
-    return _blocks(turn, moved)
+def log6_second(r: Matrix, twist: Matrix, change: Matrix) -> Matrix:
+    """r̈ (…, 6) of logarithms r (…, 6) of frames that move with a twist in their own axes, which changes.
+
+    With ad the matrix of r ×, J = 1 + ad/2 + B ad² has ṙ = J ξ, where B is β over dual numbers; r̈ = J ξ̇ + J̇ ξ.
+    """
+    v, w = r[..., :3], r[..., 3:]
+    beta, slope, bend = _beta(w, 2)
+    ad, along = (r @ _AD).reshape(*r.shape, 6), 2.0 * _along(w, v)
+    once = turned(ad, twist)
+    twice = turned(ad, once)
+    rate = twist + 0.5 * once + _dual(beta, slope * along, twice)
+    dv, dw = rate[..., :3], rate[..., 3:]
+    ad_rate, along_rate = (rate @ _AD).reshape(*r.shape, 6), 2.0 * _along(w, dw)
+    across = turned(ad, change)
+    second = change + 0.5 * (across + turned(ad_rate, twist))
+    both = turned(ad, across) + turned(ad_rate, once) + turned(ad, turned(ad_rate, twist))
+    second += _dual(beta, slope * along, both)
+    along_second = 2.0 * (_along(dw, v) + _along(w, dv))
+    return second + _dual(slope * along_rate, bend * along_rate * along + slope * along_second, twice)
+
+
+def _dual(real: Vector, dual: Vector, motion: Matrix) -> Matrix:
+    """A dual number times a motion (…, 6)."""
+    scaled = real * motion
+    scaled[..., :3] += dual * motion[..., 3:]
+    return scaled
 
 
 def exp6(v: Matrix) -> tuple[Matrix, Matrix]:

@@ -11,7 +11,8 @@ import numpy as np
 
 from eurdf.closures import REGISTRY
 from eurdf.json_schema import Count, Keywords, NullIfInfinite
-from eurdf.kinematics.analysis import Analysis, LoopAnalysis, Motion
+from eurdf.kinematics.analysis import Analysis
+from eurdf.kinematics.loop_analysis import LoopAnalysis, Motion
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import root_joint
 
@@ -176,12 +177,7 @@ class RobotInfo:
 
 
 def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
-    """The output for one robot.
-
-    Args:
-        robot: The robot.
-        analysis: The result of `eurdf.analyze`.
-    """
+    """The output for one robot."""
     from eurdf.kinematics.residual import residual
 
     mechanism = robot.mechanism

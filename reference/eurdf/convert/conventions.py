@@ -1,12 +1,19 @@
-"""What exports choose alike: gains of position actuators, points on hinges, and bodies that do not collide."""
+"""What exports have alike: gains of position actuators, points on hinges, openings, and bodies that do not collide."""
 
 from __future__ import annotations
 
 from itertools import combinations, product
 
+import numpy as np
+import numpy.typing as npt
+
+from eurdf.closures.kind import ClosureKind, PoseArrays
+from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Vector3
 from eurdf.mechanism.spanning_tree import rigid_roots
+
+Matrix = npt.NDArray[np.float64]
 
 #: Error at which a position actuator reaches the effort limit, rad or m; and its gain without such a limit.
 FULL_EFFORT_AT, GAIN = 0.1, 100.0
@@ -27,6 +34,15 @@ def position_gain(effort: float) -> float:
 def point_on(unit: Vector3) -> Vector3:
     """The point at `WIDTH` on an axis."""
     return WIDTH * unit[0], WIDTH * unit[1], WIDTH * unit[2]
+
+
+def opening_of(closure: Closure, a: Matrix, b: Matrix) -> tuple[float, float]:
+    """How far a closure is open, m and rad, with its frames at poses (4, 4) in one frame."""
+    assert isinstance(closure, ClosureKind)
+    relative = np.linalg.inv(a) @ b
+    poses = PoseArrays(relative[None, None, :3, :3], relative[None, None, :3, 3])
+    distance, angle = closure.opening(poses, closure.prepare([closure]))
+    return float(distance[0, 0]), float(angle[0, 0])
 
 
 def neighbours(mechanism: Mechanism, least: float) -> list[tuple[str, str]]:

@@ -307,6 +307,13 @@ def rotation_matrix(quaternion: Sequence[float]) -> Matrix:
     return np.asarray(((w * w - u @ u) * np.eye(3) + 2.0 * np.outer(u, u) + 2.0 * w * cross) / square)
 
 
+def homogeneous(pose: Pose) -> Matrix:
+    """The pose as a matrix (4, 4)."""
+    found = np.eye(4)
+    found[:3, :3], found[:3, 3] = rotation_matrix(pose.quaternion), pose.xyz
+    return found
+
+
 def _checked(name: str, given: Vector, size: int) -> Vector:
     values = np.asarray(given, dtype=np.float64)
     if values.shape != (size,):

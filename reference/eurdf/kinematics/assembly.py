@@ -17,15 +17,14 @@ import numpy as np
 
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.derived import borrowed
-from eurdf.kinematics.descend import Descended, descend
+from eurdf.kinematics.descend import Descended, descend, measured
 from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits, chosen_limits
 from eurdf.kinematics.problem import Group, Problem
 from eurdf.kinematics.rank import norms
-from eurdf.kinematics.several import several
 from eurdf.kinematics.tolerances import CLOSED, MOST_STEPS, MOST_WORK, RESTARTS, SOLVED, WELL_CLOSED
-from eurdf.pinocchio.arguments import checked_array, checked_count, checked_tolerance
+from eurdf.pinocchio.arguments import as_names, checked_array, checked_count, checked_tolerance
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -119,7 +118,7 @@ def assemble(
             ``tolerance`` or ``restarts`` is negative.
     """
     q = start(robot, q0)
-    held = tuple(velocity for name in several(hold) for velocity in robot.tree.velocities_of(name))
+    held = tuple(velocity for name in as_names(hold) for velocity in robot.tree.velocities_of(name))
     tolerance, chosen = checked_tolerance(tolerance), chosen_limits(robot, limits)
     restarts = checked_count("restarts", restarts, 0)
     with borrowed(robot, Problem, *([held] if held else [])) as problem:  # others borrow one that holds none, too
@@ -304,12 +303,10 @@ def _well_closed(problem: Problem, found: Descended) -> Mask:
 @np.errstate(all="ignore")
 def is_closed(problem: Problem, q: Matrix, tolerance: float) -> Mask:
     """Whether (B,) `close` would leave configurations (B, nq) as they are."""
-    sums = np.zeros((len(q), 2))
-    for part in problem.parts:
-        r = part.residual(q)
-        sums = sums + (r * r) @ part.weights
-    bound = tolerance**2, (WELL_CLOSED / problem.spaces.length) ** 2
-    return np.asarray((sums <= bound).all(axis=1))
+    if not problem.parts:
+        return np.ones(len(q), dtype=bool)
+    error, scaled = measured(problem.parts, [part.residual(q) for part in problem.parts])
+    return np.asarray((error <= tolerance**2) & (scaled <= (WELL_CLOSED / problem.spaces.length) ** 2))
 
 
 def assembled(

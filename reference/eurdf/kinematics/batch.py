@@ -12,26 +12,26 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from pinocchio import LOCAL
 
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import close
 from eurdf.kinematics.blocks import Progress, blocks, checked_configurations, checked_rows, shape_of, starts
-from eurdf.kinematics.derived import borrowed
-from eurdf.kinematics.evaluate import frames
+from eurdf.kinematics.derived import borrowed, derived
+from eurdf.kinematics.evaluate import Evaluator, evaluator, frames
 from eurdf.kinematics.exceptions import NumericalOverflow
 from eurdf.kinematics.forward import driving_many, goals, in_equilibrium, moved_many
 from eurdf.kinematics.frame_jacobian import checked_reference
 from eurdf.kinematics.inverse import checked_targets
 from eurdf.kinematics.inverse_search import InverseKinematicsReason, InverseTask, Target, search
-from eurdf.kinematics.metric import metric
 from eurdf.kinematics.position_limit import chosen_limits
 from eurdf.kinematics.problem import Problem, for_many
 from eurdf.kinematics.project import ProjectionTask, nearest_closed
 from eurdf.kinematics.residual import residual as residual_of_one
 from eurdf.kinematics.sensitivity import JacobianTask, actuated_jacobians
+from eurdf.kinematics.tangent_space import metric
 from eurdf.kinematics.tolerances import RESTARTS, SOLVED
 from eurdf.pinocchio.arguments import checked_count, checked_tolerance
+from pinocchio import LOCAL
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -89,7 +89,7 @@ def forward_kinematics(
             `assembled` configuration, or the neutral one if there is none. To stay on a branch far from the start, give
             the result for near values.
         tolerance: Bound of each row of the residual for closed loops, m or rad.
-        block: Number of elements that are worked on together. By default as many as take some 32 MB, at most 1,000.
+        block: Number of elements that are worked on together. By default as many as take some 4 MB, at most 1,000.
         threads: Number of threads that work on blocks.
         executor: Any `concurrent.futures.Executor` that works on blocks instead: a process pool, or that of a cluster.
         progress: Called after each block with the number of elements done and the number of all.
@@ -105,7 +105,7 @@ def forward_kinematics(
     q, common = starts(robot, q0, len(values))
     driving = driving_many(robot, checked_tolerance(tolerance))
     goal = goals(driving, q, values)
-    work = blocks(driving.free.numbers + driving.driven.numbers, block, threads, executor, progress)
+    work = blocks(driving.driven.numbers, block, threads, executor, progress)
     closed = None
     if common and len(q):
         first = close(driving.free, q[:1], driving.tolerance, RESTARTS)
@@ -148,8 +148,9 @@ def residual(
         NumericalOverflow: A configuration is so large that its residual is not finite; the message names it.
     """
     rows = checked_rows("q", q, robot.tree.nq)
-    model = for_many(robot)
-    (r,) = blocks(model.numbers, block, threads, executor, progress).map(_residual, model, (rows,))
+    constraints = derived(robot, _constraints)
+    work = blocks(constraints.numbers_of_residual, block, threads, executor, progress)
+    (r,) = work.map(_residual, constraints, (rows,))
     _require_finite(r)
     return r
 
@@ -181,18 +182,24 @@ def residual_and_jacobian(
         NumericalOverflow: As in `residual`, also of the derivative.
     """
     rows = checked_rows("q", q, robot.tree.nq)
-    model = for_many(robot)
-    r, K = blocks(model.numbers, block, threads, executor, progress).map(_residual_and_jacobian, model, (rows,))
+    constraints = derived(robot, _constraints)
+    work = blocks(constraints.numbers, block, threads, executor, progress)
+    r, K = work.map(_residual_and_jacobian, constraints, (rows,))
     _require_finite(r, K)
     return r, K
 
 
-def _residual(model: Problem, q: Matrix) -> tuple[Matrix]:
-    return (model.residual(q),)
+def _constraints(robot: Robot) -> Evaluator:
+    return evaluator(robot, few=False)
 
 
-def _residual_and_jacobian(model: Problem, q: Matrix) -> tuple[Matrix, Matrix]:
-    return model.residual(q), model.jacobian(q)
+def _residual(constraints: Evaluator, q: Matrix) -> tuple[Matrix]:
+    return (constraints.residual(constraints.at(q)),)
+
+
+def _residual_and_jacobian(constraints: Evaluator, q: Matrix) -> tuple[Matrix, Matrix]:
+    at = constraints.at(q)
+    return constraints.residual(at), constraints.jacobian(at)
 
 
 def _require_finite(*results: Matrix) -> None:
@@ -267,7 +274,7 @@ def project_configuration(
     model = for_many(robot)
     task = ProjectionTask(model, metric(weights, model.tree.nv), checked_tolerance(tolerance))
     rows = checked_configurations(robot, "q", q)
-    numbers = 3 * model.numbers + 2 * model.tree.nv**2
+    numbers = model.numbers + model.tree.nv**2
     found, residual, closed = blocks(numbers, block, threads, executor, progress).map(_projected, task, (rows,))
     return Projection(found, closed, residual, tuple(None if each else "not closed" for each in closed.tolist()))
 

@@ -99,7 +99,7 @@ def descend(
     on, ended = np.arange(B), None
     at = [group.evaluator.at(q) for group in groups]
     r = [group.evaluator.residual(each) for group, each in zip(groups, at, strict=True)]
-    error, square = before, expected = _measured(groups, r)
+    error, square = before, expected = measured(groups, r)
     if not np.count_nonzero(error > enough):
         return Descended(q, r, error, square, np.zeros(B, dtype=np.intp), np.zeros(B, dtype=bool))
     A: list[Matrix] = []
@@ -140,7 +140,7 @@ def descend(
         trial = problem.moved(q, groups, steps)
         at = [group.evaluator.at(trial) for group in groups]
         r_there = [group.evaluator.residual(each) for group, each in zip(groups, at, strict=True)]
-        error_there, reached = _measured(groups, r_there)
+        error_there, reached = measured(groups, r_there)
         progress, before = square - reached, square
         accepted = (expected > 0.0) & (progress > LEAST_SHARE * expected)
         if np.count_nonzero(accepted) == len(on):
@@ -159,7 +159,7 @@ def descend(
     return ended
 
 
-def _measured(groups: Sequence[Group], r: Sequence[Matrix]) -> tuple[Vector, Vector]:
+def measured(groups: Sequence[Group], r: Sequence[Matrix]) -> tuple[Vector, Vector]:
     """The squares (B,) of the norms of all residuals, as they are and dimensionless."""
     both = _sum([(each * each) @ group.weights for group, each in zip(groups, r, strict=True)])
     return both[:, 0], both[:, 1]

@@ -23,8 +23,8 @@ from eurdf.mechanism.constraint import Constraint, Coupling
 from eurdf.pinocchio.tree_few import FewPairs, Pair, as_slice, poses_once
 
 if TYPE_CHECKING:
-    from eurdf.kinematics.tree_kinematics import TreeKinematics
     from eurdf.pinocchio.robot import Robot
+    from eurdf.pinocchio.tree import Tree
 
 
 class _Group(NamedTuple):
@@ -73,9 +73,7 @@ class Evaluator:
         n: Number of columns.
     """
 
-    def __init__(
-        self, tree: TreeKinematics, constraints: Sequence[Constraint], velocities: Indices, *, few: bool
-    ) -> None:
+    def __init__(self, tree: Tree, constraints: Sequence[Constraint], velocities: Indices, *, few: bool) -> None:
         """Take constraints, in the order of their rows, and indices in v; for few configurations at once, or many.
 
         Raises:
@@ -107,7 +105,7 @@ class Evaluator:
             self._groups.append(_Group(kind, kind.prepare(own), indices, pairs, chosen, len(rows)))
         # The rows of the residual are those of one kind, in order.
         self._is_plain = self._couplings is None and len(self._groups) == 1
-        self._tree: TreeKinematics | None = tree
+        self._tree: Tree | None = tree
         self._key: bytes | None = None  # of the configuration of the last state of one element
         self._last: Any = None
         if not few:
@@ -118,12 +116,6 @@ class Evaluator:
     def _pairs(self) -> Any:  # memory is made when it is first used
         assert self._tree is not None
         return _few_pairs(self._tree, self._sites, self.velocities)
-
-    @property
-    def moving(self) -> Indices:
-        """Indices in v of all velocities that move joints of the constraints, also of those without a column in K."""
-        related = np.empty(0, np.intp) if self._couplings is None else self._couplings[0].moving
-        return np.union1d(self._pairs.moving, related)
 
     @property
     def numbers(self) -> int:
@@ -201,7 +193,7 @@ class Evaluator:
 
     def _state(self, q: Matrix, poses: RelativePoses | None = None) -> State:
         poses = self._pairs.at(q) if poses is None else poses
-        return State(q, poses, [poses.of(group.pairs) for group in self._groups])
+        return State(q, poses, [poses] if self._is_plain else [poses.of(group.pairs) for group in self._groups])
 
 
 def evaluator(
@@ -222,7 +214,7 @@ def evaluator(
     return made
 
 
-def _few_pairs(tree: TreeKinematics, sites: Sequence[Pair], velocities: Indices) -> FewPairs | ManyPairs:
+def _few_pairs(tree: Tree, sites: Sequence[Pair], velocities: Indices) -> FewPairs | ManyPairs:
     try:
         return FewPairs(tree.model, tree.parents, sites, velocities)
     except NotImplementedError:
@@ -266,7 +258,7 @@ def frames(robot: Robot, names: Sequence[str], *, few: bool) -> Frames:
     return frames_at(robot.tree, robot.tree.frame_sites(names), few=few)
 
 
-def frames_at(tree: TreeKinematics, sites: Sequence[Any], *, few: bool) -> Frames:
+def frames_at(tree: Tree, sites: Sequence[Any], *, few: bool) -> Frames:
     """Frames at some sites of the tree, as `eurdf.pinocchio.tree_few.Site`."""
     pairs, velocities = [(tree.world, site) for site in sites], np.arange(tree.nv)
     if few:
@@ -277,7 +269,7 @@ def frames_at(tree: TreeKinematics, sites: Sequence[Any], *, few: bool) -> Frame
 class TreeFew:
     """The spanning tree at few configurations, one after the other; as `TreeMany`."""
 
-    def __init__(self, tree: TreeKinematics) -> None:
+    def __init__(self, tree: Tree) -> None:
         self.nq, self.nv = tree.nq, tree.nv
         self._tree = tree
 
@@ -297,6 +289,10 @@ class TreeFew:
     def difference_derivative(self, q: Matrix, other: Matrix) -> Matrix:
         """See `TreeMany.difference_derivative`."""
         return _each(self._tree.difference_derivative, (self.nv, self.nv), q, other)
+
+    def difference_derivative_times(self, q: Matrix, other: Matrix, forces: Matrix) -> Matrix:
+        """See `TreeMany.difference_derivative_times`."""
+        return (forces[:, None] @ self.difference_derivative(q, other))[:, 0]
 
     def normalized(self, q: Matrix) -> Matrix:
         """See `TreeMany.normalized`."""

@@ -17,7 +17,7 @@ from eurdf.kinematics.exceptions import NotClosable, NumericalOverflow, TooFar
 from eurdf.kinematics.path import follow_given
 from eurdf.kinematics.problem import Problem, for_many
 from eurdf.kinematics.residual import all_openings
-from eurdf.kinematics.spring_equilibrium import Resting, joints_at_rest, spring_equilibrium
+from eurdf.kinematics.springs import Resting, joints_at_rest, spring_equilibrium
 from eurdf.kinematics.tolerances import RESTARTS, SHORTEST_STEP, SOLVED
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array, checked_tolerance

@@ -13,10 +13,9 @@ from eurdf.kinematics.exceptions import CannotLock, LockedOpen
 from eurdf.kinematics.locked_mechanism import lock_joints
 from eurdf.kinematics.loop import find_loops
 from eurdf.kinematics.residual import all_openings, residual
-from eurdf.kinematics.several import several
 from eurdf.kinematics.tolerances import CLOSED
 from eurdf.mechanism.mechanism import ROOT_JOINT
-from eurdf.pinocchio.arguments import checked_tolerance
+from eurdf.pinocchio.arguments import as_names, checked_tolerance
 from eurdf.pinocchio.robot import Robot, build_robot, carried_over
 
 
@@ -75,7 +74,7 @@ def lock(
         LockedOpen: A closure that would be dropped is open at q.
         ValueError: ``q`` is not a configuration.
     """
-    names = set(several(joints))
+    names = set(as_names(joints))
     if ROOT_JOINT in names and robot.mechanism.root == "floating":
         raise CannotLock(ROOT_JOINT, "it is the floating root; load the robot with root='fixed' instead")
     q, tolerance = start(robot, q, "q"), checked_tolerance(tolerance)

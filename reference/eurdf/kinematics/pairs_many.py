@@ -256,7 +256,6 @@ class ManyPairs:
         )
         placements = [end.placement.homogeneous.T for pair in zip(*pairs, strict=True) for end in pair]
         self._placements = np.array(placements).reshape(-1, 1, 4, 4)
-        self.moving = np.unique(chain.velocities)
         # Of each pair its columns among those of the chain, their signs, and where they are among the velocities.
         wanted = {velocity: index for index, velocity in enumerate(velocities.tolist())}
         by_joint: dict[int, list[tuple[int, int]]] = {}

@@ -56,6 +56,7 @@ def follow(advance: Advance, count: int = 1, *, shortest: float = SHORTEST_STEP,
             part, step = part[going], step[going]
 
 
+@np.errstate(all="ignore")  # joints stop where numbers overflow
 def follow_given(
     problem: Problem,
     first: Matrix,

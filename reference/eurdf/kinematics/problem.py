@@ -65,7 +65,6 @@ class Group:
         """The same at q (B, nq)."""
         return self.jacobian(self.evaluator.at(q))
 
-    @np.errstate(all="ignore")  # what overflows does not exist
     def following(self, q: Matrix, driven: Matrix) -> tuple[Matrix, Mask]:
         """Their own velocities (B, n, k) for given ones (B, g, k), and where (B,) these exist beyond doubt.
 

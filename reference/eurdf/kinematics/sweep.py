@@ -149,9 +149,8 @@ def _drive(robot: Robot, actuator: str, q: Vector, limits: PositionLimits | None
     (velocity,) = velocities
     kind = next(joint.type for joint in robot.mechanism.joints if joint.name == actuator)
     at = float(q[robot.tree.coordinate(actuator).idx_q]) if kind.limited else 0.0
-    translates = kind.slides
-    farthest = characteristic_length(robot) if translates else math.pi
-    without: End = "characteristic length" if translates else "half turn"
+    farthest = characteristic_length(robot) if kind.slides else math.pi
+    without: End = "characteristic length" if kind.slides else "half turn"
     lower, upper = (-math.inf, math.inf) if limits is None else (limits.lower[velocity], limits.upper[velocity])
     return _Drive(
         velocity,

@@ -14,7 +14,7 @@ import numpy as np
 from eurdf.array import Matrix, Vector
 from eurdf.closures import se3
 from eurdf.closures.se3 import transposed, turned
-from eurdf.kinematics.tree_kinematics import MovingJoint, TreeKinematics
+from eurdf.pinocchio.tree import MovingJoint, Tree
 
 IDENTITY = np.eye(4)
 
@@ -55,7 +55,7 @@ class TreeMany:
         own: Of each joint its nodes.
     """
 
-    def __init__(self, tree: TreeKinematics) -> None:
+    def __init__(self, tree: Tree) -> None:
         """Take a tree of joints whose motion subspace does not depend on the configuration, or of screws in series.
 
         Raises:
@@ -124,6 +124,14 @@ class TreeMany:
             v = joints.difference(q[:, joints.q], other[:, joints.q])
             J[:, joints.v[:, :, None], joints.v[:, None, :]] = joints.difference_derivative(v)
         return J
+
+    def difference_derivative_times(self, q: Matrix, other: Matrix, forces: Matrix) -> Matrix:
+        """Jᵀ f (B, nv) of this derivative J and forces (B, nv)."""
+        times = np.array(forces)
+        for joints in self._curved:
+            v = joints.difference(q[:, joints.q], other[:, joints.q])
+            times[:, joints.v] = (forces[:, joints.v][..., None, :] @ joints.difference_derivative(v))[..., 0, :]
+        return times
 
     def normalized(self, q: Matrix) -> Matrix:
         """The configurations with quaternions, and cosines and sines, of unit length."""

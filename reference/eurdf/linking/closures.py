@@ -15,20 +15,11 @@ from eurdf.reading.yaml_node import Pointer
 
 
 def link_closures(
-    entries: Iterable[ClosureEntry],
-    names: FrameNames,
-    rigid: Mapping[str, str],
-    reporter: YamlReporter,
+    entries: Iterable[ClosureEntry], names: FrameNames, rigid: Mapping[str, str], reporter: YamlReporter
 ) -> tuple[Closure, ...]:
     """Look the frames of every closure up and check what two frames can have wrong together.
 
-    A closure of a type that begins with ``x-`` is left out (EU-CLO-012).
-
-    Args:
-        entries: As written.
-        names: Finds frames.
-        rigid: For each body, the body it is rigidly fixed to.
-        reporter: Gets what is found.
+    A closure of a type that begins with ``x-`` is left out (EU-CLO-012). ``rigid`` has the body that each is fixed to.
     """
     closures: list[Closure] = []
     taken: dict[str, ClosureEntry] = {}
@@ -77,13 +68,12 @@ def _compliance(entry: ClosureEntry) -> Compliance:
 
 def _fits(kind: type[Closure], entry: ClosureEntry, reporter: YamlReporter) -> bool:
     """EU-CLO-020, EU-CLO-021: only a closure that holds an orientation has an angular compliance."""
-    pointer = (*entry.pointer, "compliance", "angular")
     if not _compliance(entry).angular or "rad" in kind.units:
         return True
     reporter.report(
         "closure-compliance",
         f"closure '{entry.name}' of type {kind.type} holds no orientation, and cannot have an angular compliance",
-        pointer,
+        (*entry.pointer, "compliance", "angular"),
         "remove 'angular', or use type 6d or hinge",
     )
     return False
@@ -103,13 +93,7 @@ def _have_directions(entry: ClosureEntry, reporter: YamlReporter) -> bool:
     return False
 
 
-def _movable(
-    entry: ClosureEntry,
-    a: Anchor,
-    b: Anchor,
-    rigid: Mapping[str, str],
-    reporter: YamlReporter,
-) -> bool:
+def _movable(entry: ClosureEntry, a: Anchor, b: Anchor, rigid: Mapping[str, str], reporter: YamlReporter) -> bool:
     """EU-CLO-002, EU-CLO-003: the two frames are not one, and not fixed to one another."""
     if a.body == b.body and a.pose == b.pose:
         same = not a.frame or not b.frame or a.frame == b.frame

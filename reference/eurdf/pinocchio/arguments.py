@@ -8,16 +8,18 @@ from __future__ import annotations
 import math
 import operator
 import reprlib
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
+
 import pinocchio as pin
+from eurdf.array import Matrix
 
 _FLOATS = np.dtype(np.float64)
 
 
-def checked_array(name: str, given: Any, *shapes: tuple[int, ...]) -> npt.NDArray[np.float64]:
+def checked_array(name: str, given: Any, *shapes: tuple[int, ...]) -> Matrix:
     """The given numbers as an array of one of the shapes.
 
     Args:
@@ -47,7 +49,7 @@ def checked_array(name: str, given: Any, *shapes: tuple[int, ...]) -> npt.NDArra
     return values
 
 
-def _all_finite(values: npt.NDArray[np.float64]) -> bool:
+def _all_finite(values: Matrix) -> bool:
     # Sooner than by isfinite; unlike dot, vdot does not warn. If the squares overflow, slower steps follow.
     return math.isfinite(np.vdot(values, values))
 
@@ -90,3 +92,8 @@ def checked_data(model: Any, data: Any) -> Any:
     if not isinstance(data, pin.Data) or not model.check(data):
         raise ValueError("data is not a pin.Data of the robot's model; pass robot.data or robot.model.createData()")
     return data
+
+
+def as_names(given: str | Iterable[str]) -> tuple[str, ...]:
+    """The names given: a text alone is one name, not the letters in it."""
+    return (given,) if isinstance(given, str) else tuple(given)

@@ -6,18 +6,14 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
-
+from eurdf.array import Vector
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, root_joint
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.pinocchio.joint_model import is_circular
 from eurdf.pinocchio.mimic import following
-
-Vector = npt.NDArray[np.float64]
 
 
 class Slot(NamedTuple):

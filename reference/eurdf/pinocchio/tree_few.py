@@ -10,8 +10,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-import pinocchio as pin
 
+import pinocchio as pin
 from eurdf.array import Indices, Matrix, Vector
 from eurdf.closures.kind import PoseArrays, RelativeMotions, RelativePoses
 from eurdf.pinocchio.ancestry import between
@@ -46,7 +46,6 @@ class FewPoses(RelativePoses):
     def __init__(self, pairs: FewPairs, q: Matrix, which: slice) -> None:
         self.q = q
         self._pairs, self._which = pairs, which
-        self._shape = len(q), which.stop - which.start
 
     def of(self, which: slice) -> FewPoses:
         """Those of some of the pairs."""
@@ -80,6 +79,10 @@ class FewPoses(RelativePoses):
         found = np.array([pin.Jlog6(aMb.inverse()) for aMb in self._each()])
         return found.reshape(*self._shape, 6, 6)
 
+    @property
+    def _shape(self) -> tuple[int, int]:
+        return len(self.q), self._which.stop - self._which.start
+
     def _each(self) -> Sequence[Any]:
         pairs, q = self._pairs, self.q
         if len(q) == 1:
@@ -90,6 +93,9 @@ class FewPoses(RelativePoses):
 
 class FewPairs:
     """Pairs of frames A, B, with the memory to compute in, for one thread."""
+
+    #: Few configurations need no blocks.
+    numbers = 0
 
     def __init__(self, model: pin.Model, parents: Sequence[int], pairs: Sequence[Pair], velocities: Indices) -> None:
         """Take pairs of a model.
@@ -161,14 +167,15 @@ class FewPairs:
     def motions(self, q: Matrix, v: Matrix) -> RelativeMotions:
         """How the pairs move at q (B, nq) while every joint keeps its velocity v (B, nv)."""
         rotation, position = np.empty((len(q), self.count, 3, 3)), np.empty((len(q), self.count, 3))
-        twist, change = np.empty((2, len(q), self.count, 6))
+        logarithm, twist, change = np.empty((3, len(q), self.count, 6))
         self._at = None, 0
         for element in range(len(q)):
             for bundle in self._bundles:
                 for pair, aMb, xi, rate in bundle.motions(q[element], v[element]):
-                    rotation[element, pair], position[element, pair] = aMb.rotation, aMb.translation
-                    twist[element, pair], change[element, pair] = xi.vector, rate.vector
-        return RelativeMotions(PoseArrays(rotation, position), twist, change)
+                    at = element, pair
+                    rotation[at], position[at], logarithm[at] = aMb.rotation, aMb.translation, pin.log6(aMb).vector
+                    twist[at], change[at] = xi.vector, rate.vector
+        return RelativeMotions(PoseArrays(rotation, position, logarithm), twist, change)
 
 
 def _bundled(model: pin.Model, paths: Iterable[set[int]]) -> Iterator[tuple[list[int], set[int]]]:

@@ -70,11 +70,6 @@ def choose_types(mechanism: Mechanism, undecided: Iterable[str], called: Sequenc
     have actuators whose velocities depend on one another, and with 3d they do not. Of loops that need 3d, each closure
     becomes 6d again that is closed as well, and that leaves fewer motions without an actuator.
 
-    Args:
-        mechanism: The robot, with any types of these closures.
-        undecided: Names of the closures.
-        called: What the notes call the robot's closures, in their order.
-
     Returns:
         Their types, and why.
     """

@@ -37,17 +37,9 @@ from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import IDENTITY, Vector3
 from eurdf.mechanism.same_model import with_universal_joints
+from eurdf.writing import urdf_elements as elements
 from eurdf.writing.urdf_elements import (
     Color,
-    add_dynamics,
-    add_fixed_joint,
-    add_inertial,
-    add_joint,
-    add_limit,
-    add_material,
-    add_mimic,
-    add_shape,
-    state_version,
 )
 from eurdf.writing.xml_text import file_content, representable, rpy_of
 
@@ -127,11 +119,7 @@ def describe_mechanism(
 
 
 def _refuse_unwritable(mechanism: Mechanism) -> None:
-    """Refuse what neither file can say.
-
-    Raises:
-        NotWritable: A name cannot be in XML, or the axes of a joint have different gears.
-    """
+    """Raise `NotWritable` for a name that XML cannot contain, and for a joint whose axes have different gears."""
     for kind, names in (
         ("link", [body.name for body in mechanism.bodies]),
         ("joint", [joint.name for joint in mechanism.joints]),
@@ -156,12 +144,12 @@ class _Urdf:
         self.joints = {joint.name for joint in mechanism.joints}
         self.robot = etree.Element("robot", name=mechanism.name)
         for name, color in materials.items():
-            add_material(self.robot, name, color)
+            elements.add_material(self.robot, name, color)
         self._link(mechanism.bodies[0])
         for joint, body in zip(mechanism.joints, mechanism.bodies[1:], strict=True):
             self._joint(joint)
             self._link(body)
-        state_version(self.robot)
+        elements.state_version(self.robot)
 
     def content(self, comments: Sequence[str]) -> bytes:
         """The bytes of the file."""
@@ -172,10 +160,10 @@ class _Urdf:
     def _link(self, body: Body) -> None:
         link = etree.SubElement(self.robot, "link", name=body.name)
         if body.inertia is not None:
-            add_inertial(link, body.inertia)
+            elements.add_inertial(link, body.inertia)
         for use, shapes in (("visual", body.visuals), ("collision", body.collisions)):
             for shape in shapes:
-                add_shape(link, use, shape, shape.filename, shape.texture, self.names_of_colors)
+                elements.add_shape(link, use, shape, shape.filename, shape.texture, self.names_of_colors)
 
     def _joint(self, joint: Joint) -> None:
         kind, axis = _in_urdf(joint)
@@ -186,14 +174,14 @@ class _Urdf:
             else:
                 child = _new(f"{joint.child}_joint", self.links)
                 fixed = _new(f"{joint.name}_offset", self.joints)
-        element = add_joint(self.robot, joint.name, kind, joint.parent, child, placement, axis)
+        element = elements.add_joint(self.robot, joint.name, kind, joint.parent, child, placement, axis)
         if joint.mimic is not None:
-            add_mimic(element, joint.mimic)
+            elements.add_mimic(element, joint.mimic)
         if kind.is_axial:
             self._properties(joint, kind, element)
         if child != joint.child:
             etree.SubElement(self.robot, "link", name=child)
-            add_fixed_joint(self.robot, fixed, child, joint.child, joint.offset)
+            elements.add_fixed_joint(self.robot, fixed, child, joint.child, joint.offset)
 
     def _properties(self, joint: Joint, kind: JointType, element: etree._Element) -> None:
         properties = joint.properties
@@ -206,8 +194,8 @@ class _Urdf:
         effort, velocity = _common(properties.effort, math.inf), _common(properties.velocity, math.inf)
         rates = {name: values[0] for name, values in properties.rates.items() if len(set(values)) == 1}
         if position is not None or math.isfinite(effort) or math.isfinite(velocity) or rates:
-            add_limit(element, position, effort, velocity, rates)
-        add_dynamics(element, _common(properties.damping, 0.0), _common(properties.friction, 0.0))
+            elements.add_limit(element, position, effort, velocity, rates)
+        elements.add_dynamics(element, _common(properties.damping, 0.0), _common(properties.friction, 0.0))
 
 
 def _new(name: str, taken: set[str]) -> str:
@@ -330,10 +318,9 @@ def _is_geared(joint: Joint) -> bool:
 
 
 def _actuator(name: str, mechanism: Mechanism) -> Geared:
-    (joint,) = (joint for joint in mechanism.joints if joint.name == name)
-    motor = mechanism.motors.get(name)
+    joint = next(joint for joint in mechanism.joints if joint.name == name)
     stated: dict[str, Any] = {}
-    if motor is not None:
+    if motor := mechanism.motors.get(name):
         stated = {"name": None if motor.name == name else motor.name, "control": motor.control}
     if _is_geared(joint):
         stated["gear_ratio"] = joint.properties.gear_ratio[0]

@@ -31,11 +31,10 @@ from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism, root_joint
-from eurdf.mechanism.pose import IDENTITY, Vector3, direction
+from eurdf.mechanism.pose import IDENTITY, ORIGIN, Vector3, direction
 from eurdf.writing.urdf_elements import add_dynamics, add_fixed_joint
 from eurdf.writing.xml_text import file_content, numbers, rpy_of
 
-_ORIGIN: Vector3 = (0.0, 0.0, 0.0)
 _NAMESPACE = "http://drake.mit.edu"
 _WORLD = "world"
 
@@ -174,7 +173,7 @@ class _DrakeTree(UrdfTree):
     # -- constraints ------------------------------------------------------------------------------------------------
 
     def _closure(self, closure: Closure) -> None:
-        points = [(_ORIGIN, _ORIGIN)]
+        points = [(ORIGIN, ORIGIN)]
         if isinstance(closure, HingeClosure):
             one, other = (point_on(direction(axis)) for axis in closure.axes)
             points.append((one, other))

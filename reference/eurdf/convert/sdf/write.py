@@ -13,14 +13,12 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-import numpy as np
 from lxml import etree
 
 from eurdf.closures import CLOSED
 from eurdf.closures.hinge import HingeClosure
-from eurdf.closures.kind import ClosureKind
-from eurdf.convert.conventions import LIGHT
-from eurdf.convert.coordinates import Coordinates, rotation_matrix
+from eurdf.convert.conventions import LIGHT, opening_of
+from eurdf.convert.coordinates import Coordinates, homogeneous
 from eurdf.convert.exceptions import CannotExport
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format, coordinates_at
 from eurdf.convert.inertia import accepted_inertia
@@ -30,7 +28,7 @@ from eurdf.convert.names import UniqueNames
 from eurdf.convert.parts import Part, part_of
 from eurdf.convert.sdf.facts import CLOSURES, EXACT, ROWS, VERSION
 from eurdf.convert.steps import in_series, turn_type
-from eurdf.mechanism.body import Anchor, Body, Inertia, Shape
+from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.joint_types import ROTARY, JointType
@@ -246,18 +244,13 @@ class _SdfWriter:
         _add(engine, "must_be_loop_joint").text = "true"
 
     def _must_be_closed(self, closure: Closure) -> None:
-        a, b = (self._in_world(end) for end in closure.anchors)
-        aMb = a.inverse() * b
-        assert isinstance(closure, ClosureKind)
-        opening = max(closure.open_by(rotation_matrix(aMb.quaternion), np.array(aMb.xyz)))
+        a, b = (homogeneous(self.poses[end.body] * end.pose) for end in closure.anchors)
+        opening = max(opening_of(closure, a, b))
         if opening > 2.0 * CLOSED:
             raise CannotExport(
                 f"closure '{closure.name}' is open by {opening:.1e} m or rad at the chosen configuration; SDFormat "
                 "closes loops where the links are placed: choose a closed one"
             )
-
-    def _in_world(self, anchor: Anchor) -> Pose:
-        return self.poses[anchor.body] * anchor.pose
 
 
 def _axes(joint: Joint, at: Sequence[float]) -> list[Vector3]:

@@ -8,12 +8,12 @@ from importlib.metadata import version
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 from lxml import etree
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import DiscreteContactApproximation, MultibodyPlant
 from pydrake.systems.analysis import Simulator
 
+import pinocchio as pin
 from eurdf.convert.coordinates import Matrix, Vector, rotation_matrix
 from eurdf.convert.verification.read_model import (
     CannotRead,
@@ -23,7 +23,7 @@ from eurdf.convert.verification.read_model import (
     Range,
     ReadModel,
     anchored,
-    opening_of,
+    opening_between,
 )
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.residual import closure_openings
@@ -211,7 +211,7 @@ class SdfTree(ReadModel):
         self.at(q)
         written = {(loop.findtext("parent"), loop.findtext("child")) for loop in self.loops}
         return tuple(
-            opening_of(closure, *(anchored(anchor, self.there.pose) for anchor in closure.anchors))
+            opening_between(closure, *(anchored(anchor, self.there.pose) for anchor in closure.anchors))
             for closure in self._exported.robot.mechanism.closures
             if (closure.a.body, closure.b.body) in written
         )

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 from lxml import etree
 
+import pinocchio as pin
 from eurdf.convert.coordinates import Matrix, Vector
-from eurdf.convert.verification.read_model import CannotRead, Exported, Range, ReadModel, opening_of
+from eurdf.convert.verification.read_model import CannotRead, Exported, Range, ReadModel, opening_between
 from eurdf.kinematics.opening import Opening
 
 
@@ -89,4 +89,4 @@ class PinocchioModel(ReadModel):
             rpy, xyz = (np.array(end.get(each).split(), float) for each in ("rpy", "xyz"))
             oMf = self.data.oMf[self.model.getFrameId(end.get("link"), pin.FrameType.BODY)]
             ends.append((oMf * pin.SE3(pin.rpy.rpyToMatrix(rpy), xyz)).homogeneous)
-        return opening_of(closure, ends[0], ends[1])
+        return opening_between(closure, ends[0], ends[1])

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-import pinocchio as pin
 
-from eurdf.closures.kind import ClosureKind
+import pinocchio as pin
+from eurdf.convert.conventions import opening_of
 from eurdf.convert.coordinates import Coordinates, Matrix, Vector
 from eurdf.kinematics.opening import Opening
 from eurdf.mechanism.body import Anchor
@@ -178,12 +178,9 @@ def without_armature(robot: Robot, names: Sequence[str] | None = None) -> Robot:
     return build_robot(replace(robot.mechanism, joints=joints), geometry=False)
 
 
-def opening_of(closure: Closure, a: Matrix, b: Matrix) -> Opening:
+def opening_between(closure: Closure, a: Matrix, b: Matrix) -> Opening:
     """How far a closure is open, with its frames at poses (4, 4) in the world."""
-    assert isinstance(closure, ClosureKind)
-    aMb = np.linalg.inv(a) @ b
-    distance, angle = closure.open_by(aMb[:3, :3], aMb[:3, 3])
-    return Opening(closure.name, distance, angle)
+    return Opening(closure.name, *opening_of(closure, a, b))
 
 
 def anchored(anchor: Anchor, pose: Callable[[str], Any]) -> Matrix:

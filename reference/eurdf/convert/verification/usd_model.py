@@ -11,8 +11,8 @@ from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
 from eurdf.closures.hinge import HingeClosure
 from eurdf.convert.coordinates import Matrix, Vector
-from eurdf.convert.verification.read_model import CannotRead, Exported, Range, ReadModel, opening_of
-from eurdf.kinematics.mass_matrix import mass_matrix
+from eurdf.convert.verification.read_model import CannotRead, Exported, Range, ReadModel, opening_between
+from eurdf.kinematics.dynamics import mass_matrix
 from eurdf.kinematics.opening import Opening
 from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.pose import Pose
@@ -100,7 +100,7 @@ class UsdModel(ReadModel):
             closure = closures[name]
             if isinstance(closure, HingeClosure):  # those of a hinge are the x axes
                 closure = replace(closure, axes=((1.0, 0.0, 0.0),) * 2)
-            found.append(opening_of(closure, *self.stage.frames(prim)))
+            found.append(opening_between(closure, *self.stage.frames(prim)))
         return tuple(found)
 
     def ranges(self, q: Vector) -> tuple[Range, ...]:
