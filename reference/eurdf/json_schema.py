@@ -11,15 +11,15 @@ from eurdf.diagnostics.wording import encodable
 
 
 class Keywords:
-    """Keywords of JSON Schema, in the annotation of a field; None removes one."""
+    """Keywords of JSON Schema, in the annotation of a field; None removes one, a function gives its value."""
 
     def __init__(self, **keywords: Any) -> None:
         self.keywords = keywords
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Callable[[Any], dict[str, Any]]) -> dict[str, Any]:
         """Pydantic asks for them; an annotation with its own would import it, which a command does without."""
-        keywords = {**handler(schema), **self.keywords}
-        return {name: value for name, value in keywords.items() if value is not None}
+        keywords = {name: value() if callable(value) else value for name, value in self.keywords.items()}
+        return {name: value for name, value in {**handler(schema), **keywords}.items() if value is not None}
 
 
 class Values:

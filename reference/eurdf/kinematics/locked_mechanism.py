@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
+from eurdf.diagnostics.wording import meant
 from eurdf.kinematics.exceptions import CannotLock
 from eurdf.mechanism.constraint import Constraint
 from eurdf.mechanism.joint import Joint, Mimic
@@ -105,8 +105,7 @@ def _locked(by_name: Mapping[str, Joint], names: Iterable[str], mimics: Mapping[
     """The joints to lock, in the mechanism's order: those named and their mimic joints, without fixed ones."""
     named = set(names)
     for name in sorted(named - by_name.keys()):
-        near = difflib.get_close_matches(name, list(by_name), n=1)
-        raise CannotLock(name, "the robot has no such joint" + (f"; did you mean '{near[0]}'?" if near else ""))
+        raise CannotLock(name, f"the robot has no such joint{meant(name, by_name)}")
     locked = []
     for name in by_name:
         leader = mimics[name].joint if name in mimics else name

@@ -181,7 +181,7 @@ def spring_equilibrium(robot: Robot, q: Vector, coordinates: Indices, problem: P
 def _motions(Z: Matrix, held: Indices, scale: Vector) -> Matrix:
     """Those of the motions Z (nv, f) that hold the held joints, orthonormal in the units of the velocities."""
     _, values, right = np.linalg.svd(Z[held] / scale[held, None])
-    rank = numerical_rank(values, values.max(initial=0.0))
+    rank = numerical_rank(values)
     return np.asarray(scale[:, None] * np.linalg.qr((Z @ right[rank:].T) / scale[:, None])[0])
 
 

@@ -384,8 +384,8 @@ def _holding(robot: Robot, q: Matrix, joints: Selection, motors: Selection) -> M
     tree, own = robot.tree, {*joints.joints, *motors.joints}
     names = (*joints.joints, *(name for name in robot.actuation.joints if name not in own))
     D, sure = Problem(robot, [velocity for name in names for velocity in tree.velocities_of(name)]).derivative(q)
-    memory, zero = tree.memory(), np.zeros(tree.nv)
-    gravity = np.array([np.array(tree.inverse_dynamics(each, zero, zero, memory)) for each in q])
+    dynamics, zero = tree.dynamics(), np.zeros(tree.nv)
+    gravity = np.array([dynamics.inverse_dynamics(each, zero, zero) for each in q])
     torques = (gravity[:, None] @ D[:, :, : len(joints)])[:, 0]
     return np.where(sure[:, None], torques, np.nan)
 

@@ -116,5 +116,5 @@ class SpringRest:
 def _solutions(A: Matrix, b: Vector) -> tuple[Vector, Matrix]:
     """The least solution of A x = b in the least squares sense, and the x of A x = 0 as columns."""
     left, values, right = np.linalg.svd(A)
-    rank = numerical_rank(values, values.max(initial=0.0))
+    rank = numerical_rank(values)
     return right[:rank].T @ ((left[:, :rank].T @ b) / values[:rank]), right[rank:].T
