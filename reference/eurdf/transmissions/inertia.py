@@ -12,9 +12,8 @@ from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.blocks import checked_configurations, shape_of
 from eurdf.kinematics.derived import borrowed, derived
-from eurdf.kinematics.equation_of_motion import MASSLESS
 from eurdf.kinematics.finite import finite, overflow_refused
-from eurdf.kinematics.tolerances import FLOOR
+from eurdf.kinematics.tolerances import FLOOR, MASSLESS
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.pinocchio.robot import build_robot
