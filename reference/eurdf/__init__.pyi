@@ -79,6 +79,7 @@ from eurdf.pinocchio.robot import Robot as Robot
 from eurdf.transmissions.exceptions import DependentVelocities as DependentVelocities
 from eurdf.transmissions.exceptions import NoTransmission as NoTransmission
 from eurdf.transmissions.exceptions import OutOfReach as OutOfReach
+from eurdf.transmissions.grid_search import BoundaryPoint as BoundaryPoint
 from eurdf.transmissions.impedance import Impedance as Impedance
 from eurdf.transmissions.impedance import impedance_map as impedance_map
 from eurdf.transmissions.inertia import ReflectedInertia as ReflectedInertia
@@ -100,7 +101,6 @@ from eurdf.transmissions.serial_twin import serial_twin as serial_twin
 from eurdf.transmissions.transmission import Transmission as Transmission
 from eurdf.transmissions.transmission import Transmissions as Transmissions
 from eurdf.transmissions.transmission import transmission as transmission
-from eurdf.transmissions.workspace import BoundaryPoint as BoundaryPoint
 from eurdf.transmissions.workspace import Workspace as Workspace
 from eurdf.transmissions.workspace import workspace as workspace
 from eurdf.viewing.shown import ShownRobot as ShownRobot

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from eurdf.closures.kind import REGISTRY
+from eurdf.closures import REGISTRY
 from eurdf.kinematics.residual import closure_openings
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Closure, Constraint

@@ -36,12 +36,6 @@ def advise_on_actuation(read: ReadRobot, robot: Robot, q: Vector, diagnostics: D
     """Report loops without an actuator; else actuators that depend on one another, and motions left uncontrolled.
 
     Nothing is reported where an earlier warning may be the reason: a misspelt key, or a closure that is left out.
-
-    Args:
-        read: The robot as read; it has closures.
-        robot: The robot built from it.
-        q: A closed configuration (nq,).
-        diagnostics: Gets what is found.
     """
     mechanism = robot.mechanism
     if any(found.code in _REASONS for found in read.diagnostics):

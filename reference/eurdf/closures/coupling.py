@@ -59,7 +59,7 @@ class Couplings:
         self._translates = np.array([each.translates for each in at.values()])[largest]
 
     def residual(self, q: Matrix) -> Matrix:
-        """Σ cᵢ qᵢ - offset, (B, k), at q (B, nq)."""
+        """Σ cᵢ qᵢ - offset (EU-CPL-005), (B, k), at q (B, nq)."""
         return np.asarray(q[:, self._coordinates] @ self._C.T - self._offsets)
 
     def scale(self, length: float) -> Vector:

@@ -10,7 +10,7 @@ from types import MappingProxyType
 from eurdf.diagnostics.wording import meant
 from eurdf.kinematics.exceptions import CannotLock
 from eurdf.mechanism.constraint import Constraint
-from eurdf.mechanism.joint import Joint, Mimic, drivers
+from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 from eurdf.mechanism.spanning_tree import rigid_roots
@@ -58,7 +58,7 @@ def lock_joints(mechanism: Mechanism, joints: Iterable[str], coordinates: Coordi
         ValueError: The number of coordinates of a joint is wrong, or a quaternion has length 0.
     """
     by_name = {joint.name: joint for joint in mechanism.joints}
-    mimics = drivers({joint.name: joint.mimic for joint in mechanism.joints if joint.mimic is not None})
+    mimics = mechanism.leaders
     locked = _locked(by_name, joints, mimics)
     at = {name: by_name[name].transform(_coordinates(by_name, name, coordinates, mimics)) for name in locked}
     ordered = tuple(_fixed(joint, at) for joint in mechanism.joints)

@@ -67,9 +67,9 @@ def configuration_vector(
     Args:
         mechanism: The mechanism.
         model: The result of `build_model`.
-        coordinates: For each joint its coordinates as files have them, for a floating root those of a floating
-            joint under ``root_joint``. Other joints are neutral. Quaternions are normalized.
-            Coordinates of mimic joints are ignored.
+        coordinates: For each joint its coordinates as files have them, for a floating root those of a floating joint
+            under ``root_joint``. Other joints are neutral. Quaternions are normalized. Coordinates of mimic joints are
+            ignored.
         at: The `slots` of the mechanism, if the caller has them.
 
     Returns:

@@ -9,9 +9,8 @@ import pinocchio as pin
 
 from eurdf.array import Matrix, Vector
 from eurdf.mechanism.body import Inertia
-from eurdf.mechanism.pose import Quaternion
+from eurdf.mechanism.pose import IDENTITY, Quaternion
 
-_UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 _Row = tuple[float, float, float]
 _Matrix3 = tuple[_Row, _Row, _Row]
 
@@ -47,7 +46,7 @@ def _inertia(inertia: Inertia, lever: Vector, moments: Matrix) -> pin.Inertia:
 def _turned(inertia: Inertia) -> tuple[float, ...]:
     """The nine entries of the rotational inertia, in the body's axes."""
     ixx, ixy, ixz, iyy, iyz, izz = inertia.moments
-    if inertia.pose.quaternion != _UPRIGHT:
+    if inertia.pose.quaternion != IDENTITY.quaternion:
         R = _rotation(inertia.pose.quaternion)
         # I is symmetric, so (R I)ᵢⱼ is row i of R by row j of I.
         RI = _rows_by_rows(R, ((ixx, ixy, ixz), (ixy, iyy, iyz), (ixz, iyz, izz)))

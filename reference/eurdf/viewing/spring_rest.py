@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices, Vector
+from eurdf.array import Indices, Vector
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.position_limit import driven_coordinates, position_limits
 from eurdf.kinematics.rank import numerical_rank
@@ -17,7 +17,7 @@ from eurdf.kinematics.tolerances import MOST_STEPS, START
 from eurdf.mechanism.joint import LIMIT_TOLERANCE
 
 if TYPE_CHECKING:
-    from eurdf.kinematics.array import Matrix
+    from eurdf.array import Matrix
     from eurdf.pinocchio.robot import Robot
 
 _LONGEST = 0.3  # bound of the motion of a joint in one step (rad, or characteristic lengths)
