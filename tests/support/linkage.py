@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 
+import pinocchio as pin
 from eurdf.closures import REGISTRY
 from eurdf.kinematics.residual import closure_openings
 from eurdf.mechanism.body import Anchor
@@ -381,3 +381,17 @@ MIMIC = """<robot name="mimic">
     <axis xyz="1 0 0"/><limit lower="-9" upper="9" effort="1" velocity="1"/>
     <mimic joint="lead" multiplier="0.5" offset="0"/></joint>
 </robot>"""
+
+
+def scissors(mimic: bool = True) -> Linkage:
+    """Two bars of which the second folds back twice as fast as the first turns, and a slide under their end."""
+    text = """<robot name="scissors"><link name="g"/><link name="a"/><link name="b"/><link name="c"/>
+      <joint name="lead" type="revolute"><parent link="g"/><child link="a"/><axis xyz="0 0 1"/>
+        <limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
+      <joint name="fold" type="revolute"><parent link="a"/><child link="b"/><origin xyz="1 0 0"/><axis xyz="0 0 1"/>
+        <limit lower="-3" upper="3" effort="1" velocity="1"/><mimic joint="lead" multiplier="-2"/></joint>
+      <joint name="slide" type="prismatic"><parent link="g"/><child link="c"/><axis xyz="1 0 0"/>
+        <limit lower="-3" upper="3" effort="1" velocity="1"/></joint></robot>"""
+    model = pin.buildModelFromXML(text, mimic=mimic)
+    fold, slide = model.getJointId("fold"), model.getJointId("slide")
+    return Linkage(model, [closure(model, slide, pin.SE3.Identity(), fold, translation(1.0, 0.0, 0.0), "3d")])

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from pinocchio import LOCAL
 
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import close
@@ -32,6 +31,7 @@ from eurdf.kinematics.sensitivity import JacobianTask, actuated_jacobians
 from eurdf.kinematics.tangent_space import metric
 from eurdf.kinematics.tolerances import RESTARTS, SOLVED
 from eurdf.pinocchio.arguments import checked_count, checked_tolerance
+from pinocchio import LOCAL
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot

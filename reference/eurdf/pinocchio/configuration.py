@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import pinocchio as pin
-
 from eurdf.array import Vector
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
