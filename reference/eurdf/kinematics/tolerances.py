@@ -77,6 +77,18 @@ SAME = 1e-6
 #: A unit motion moves a joint if it does so by more than this.
 MOVES = 1e-6
 
+# Dynamics.
+
+#: Residuals (m, rad), and the norm of their rates relative to 1 plus that of v, up to which closures count as closed
+#: for forces. Such a residual changes the acceleration as much as what Pinocchio's solver leaves out.
+CLOSED_FOR_FORCES = 1e-9
+#: Accepted error of Pinocchio's solver in either equation, relative to the largest term.
+FORCES_SOLVED = 1e-9
+#: An inertia below this, relative to the largest one of a free motion, counts as zero.
+MASSLESS = 1e-14
+#: Velocities above this, rad/s or m/s, count as divergence of a simulation.
+DIVERGED = 1e9
+
 # Ranks, relative to the largest singular value or to the norm of a dimensionless matrix.
 
 #: Singular values below this are rounding and do not affect the rank.
