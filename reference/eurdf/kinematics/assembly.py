@@ -17,7 +17,7 @@ import numpy as np
 
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.derived import borrowed
-from eurdf.kinematics.descend import Descended, descend, measured
+from eurdf.kinematics.descend import Descended, descend, evaluated
 from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits, chosen_limits
@@ -305,8 +305,9 @@ def is_closed(problem: Problem, q: Matrix, tolerance: float) -> Mask:
     """Whether (B,) `close` would leave configurations (B, nq) as they are."""
     if not problem.parts:
         return np.ones(len(q), dtype=bool)
-    error, scaled = measured(problem.parts, [part.residual(q) for part in problem.parts])
-    return np.asarray((error <= tolerance**2) & (scaled <= (WELL_CLOSED / problem.spaces.length) ** 2))
+    _, _, _, error, scaled = evaluated(problem.parts, q)
+    closed = (error <= tolerance**2) & (scaled <= (WELL_CLOSED / problem.spaces.length) ** 2)
+    return np.array(closed, ndmin=1)
 
 
 def assembled(

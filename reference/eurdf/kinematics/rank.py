@@ -9,6 +9,8 @@ Arrays have elements first; those without are of one element.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.linalg import _umath_linalg
 
@@ -29,13 +31,76 @@ def norms(rows: Matrix) -> Vector:
     return np.asarray(np.sqrt(squares(rows)))
 
 
-def solutions(A: Matrix, b: Matrix) -> Matrix:
-    """The x (B, n, k) with A x = b, of (B, n, n) and (B, n, k); NaN where A is singular to the last digit.
+# -- numbers, one for each element ------------------------------------------------------------------------------------
+# The control of the steps of many elements takes arrays (B,), that of a single one takes NumPy's scalars: the same
+# expressions take a tenth of the time with these. What follows makes such numbers, and is what differs.
 
-    `numpy.linalg.solve` raises if one of many matrices is singular. What it calls does not, and takes a sixth of its
-    time for a small one.
+Numbers = Any
+
+
+def square(rows: Matrix) -> Numbers:
+    """The squared Euclidean norm of each of (B, …)."""
+    if len(rows) > 1:
+        return squares(rows)
+    row = rows.reshape(-1)
+    return row.dot(row)
+
+
+def largest(rows: Matrix) -> Numbers:
+    """The largest magnitude in each row (B, n), at least 0; NaN if one is."""
+    return np.maximum.reduce(np.abs(rows), axis=None if len(rows) == 1 else 1, initial=0.0)
+
+
+def total(rows: Matrix) -> Numbers:
+    """The sum of each row (B, n)."""
+    return sum(rows[0].tolist()) if len(rows) == 1 else np.add.reduce(rows, axis=1)
+
+
+def numbers(count: int, value: float) -> Numbers:
+    """The same number for each of so many elements."""
+    return value if count == 1 else np.full(count, value)
+
+
+def every(mask: Numbers) -> bool:
+    """Whether it is so for every element."""
+    return bool(mask.all()) if isinstance(mask, np.ndarray) else bool(mask)
+
+
+def some(mask: Numbers) -> bool:
+    """Whether it is so for an element."""
+    return bool(np.count_nonzero(mask) if isinstance(mask, np.ndarray) else mask)
+
+
+def choose(mask: Numbers, one: Any, other: Any) -> Numbers:
+    """A number where it is so, another where it is not."""
+    if isinstance(mask, np.ndarray):
+        return np.where(mask, one, other)
+    return one if mask else other
+
+
+def at_least(number: Numbers, least: Numbers) -> Numbers:
+    """The larger number for each element."""
+    if isinstance(number, np.ndarray) or isinstance(least, np.ndarray):
+        return np.maximum(number, least)
+    return max(number, least)
+
+
+def times(A: Matrix, x: Matrix) -> Matrix:
+    """A x (B, m), of (B, m, n) and (B, n)."""
+    return A[0].dot(x[0])[None] if len(A) == 1 else (A @ x[:, :, None])[:, :, 0]
+
+
+# -- systems of equations ---------------------------------------------------------------------------------------------
+
+
+def solutions(A: Matrix, b: Matrix) -> Matrix:
+    """The x (B, n) with A x = b, of (B, n, n) and (B, n); NaN where A is singular to the last digit.
+
+    `numpy.linalg.solve` raises if one of many matrices is singular. What it calls does not, and takes half of its time
+    for a small one.
     """
-    return np.asarray(_umath_linalg.solve(A, b), dtype=np.float64)
+    x: Matrix = _umath_linalg.solve1(A, b)
+    return x
 
 
 def inverses(A: Matrix) -> Matrix:
