@@ -177,11 +177,9 @@ def close(
         q: Where to start (B, nq).
         tolerance: Bound of the norm of the residual, m and rad.
         restarts: Maximum number of restarts while a group is open by more than `CLOSED`.
-        limits: The position limits to respect, or None.
+        limits: The position limits to respect, as q does, or None.
     """
     with np.errstate(all="ignore"):  # lengths such as 1e200 m overflow and never close
-        if limits is not None and problem.groups:
-            q = limits.clip(q, np.concatenate([group.loops.velocities for group in problem.groups]))
         little = (restarts + 2) * MOST_STEPS * problem.work <= MOST_WORK
         if not little or not (problem.at_once or len(problem.groups) == 1):
             return _Closing(problem, q, tolerance, limits).closed(restarts)
@@ -314,6 +312,8 @@ def assembled(
     problem: Problem, q: Vector, tolerance: float, restarts: int = RESTARTS, limits: PositionLimits | None = None
 ) -> Assembly:
     """As `assemble`, from a configuration (nq,)."""
+    if limits is not None and problem.groups:
+        q = limits.clip(q, np.concatenate([group.loops.velocities for group in problem.groups]))
     closed = close(problem, q[None], tolerance, restarts, limits)
     with np.errstate(over="ignore", invalid="ignore"):
         (r,), found = _measured(problem, closed.q)

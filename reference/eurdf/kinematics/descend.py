@@ -19,6 +19,7 @@ from eurdf.kinematics.rank import (
     Numbers,
     at_least,
     choose,
+    column,
     diagonals,
     every,
     largest,
@@ -206,15 +207,18 @@ def _steps(
     rooms: list[tuple[Matrix, Matrix]] = []
     if limits is not None:
         for group in groups:
-            down, up = limits.room(q, group.loops.velocities)
+            down, up = limits.room(q, group.own)
             rooms.append((down / group.unit, up / group.unit))
-        _stay_within(A, b, np.array(damping, ndmin=1), steps, rooms)
+        if all(not ((step < down) | (step > up)).any() for step, (down, up) in zip(steps, rooms, strict=True)):
+            rooms = []  # no limit is in the way
+        else:
+            _stay_within(A, b, np.array(damping, ndmin=1), steps, rooms)
     longest: Numbers = 1.0
     for step in steps:
         longest = at_least(longest, largest(step))
     if some(longest != 1.0):
-        steps = [step / np.reshape(longest, (-1, 1)) for step in steps]
-    if limits is not None:
+        steps = [step / column(longest) for step in steps]
+    if rooms:
         steps = [np.minimum(np.maximum(step, down), up) for step, (down, up) in zip(steps, rooms, strict=True)]
     return steps
 
@@ -230,9 +234,7 @@ def _damped(A: Sequence[Matrix], b: Sequence[Matrix], damping: Numbers) -> list[
         grams.append((gram, diagonal))
         trace = trace + total(diagonal)
     # Invertible even with redundant rows.
-    damping = at_least(damping, 1e-13 * trace + 1e-300)
-    if len(b[0]) > 1:
-        damping = damping[:, None]
+    damping = column(at_least(damping, 1e-13 * trace + 1e-300))
     steps: list[Matrix] = []
     for own, is_wide, (gram, diagonal), rows in zip(A, wide, grams, b, strict=True):
         diagonal += damping

@@ -176,6 +176,9 @@ class Problem:
         K = np.zeros((len(q), len(self.spaces.row_scale), self.tree.nv))
         for part in self.parts:
             block = part.evaluator.jacobian(part.evaluator.at(q))
+            if len(self.parts) == 1 and not len(part.by):
+                K[:, :, part.own] = block
+                break
             K[:, part.loops.rows[:, None], np.concatenate((part.loops.velocities, part.by))] = block
         return K
 
@@ -206,7 +209,7 @@ class Problem:
                 drive = driven if len(group.by) == len(self.given) else v[:, group.by]
                 if np.count_nonzero(drive):
                     solution, is_sure = group.following(q, drive[:, :, None])
-                    v[:, group.loops.velocities] = solution[:, :, 0]
+                    v[:, group.own] = solution[:, :, 0]
                     if np.count_nonzero(is_sure) < len(q):
                         sure &= is_sure | ~drive.any(axis=1)
         return v, sure
