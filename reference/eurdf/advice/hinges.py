@@ -7,12 +7,13 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import pinocchio as pin
 
+import pinocchio as pin
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.hinge import HingeClosure
 from eurdf.closures.point import PointClosure
-from eurdf.kinematics.analysis import LoopAnalysis, analyze
+from eurdf.kinematics.analysis import analyze
+from eurdf.kinematics.loop_analysis import LoopAnalysis
 from eurdf.mechanism.constraint import Closure
 from eurdf.pinocchio.robot import build_robot
 

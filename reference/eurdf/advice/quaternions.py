@@ -24,11 +24,6 @@ def advise_on_quaternions(read: ReadRobot, robot: Robot | None, diagnostics: Dia
 
     They are so where the loops close by them in that order alone; or where they are the identity in that order,
     ``[1, 0, 0, 0]``, and no loop closes by half a turn about x, which that is in the order of the format.
-
-    Args:
-        read: The robot as read.
-        robot: The robot built from it, where it has closures.
-        diagnostics: Gets what is found.
     """
     mechanism, description = read.mechanism, read.description
     for name, coordinates in mechanism.configurations.items():

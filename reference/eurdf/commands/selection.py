@@ -56,9 +56,6 @@ def without_robot(paths: Sequence[str]) -> list[str]:
 
     Empty if no path is left without them: that is an error of the caller.
 
-    Args:
-        paths: The paths that the user gave.
-
     Raises:
         CannotRun: A folder cannot be read.
     """
@@ -93,7 +90,6 @@ def named_configuration(robot: Robot, name: str) -> Vector:
         CannotRun: There is none of this name.
     """
     import pinocchio as pin
-
     from eurdf.diagnostics import did_you_mean
 
     if name in robot.configurations:

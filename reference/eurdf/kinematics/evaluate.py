@@ -23,8 +23,8 @@ from eurdf.mechanism.constraint import Constraint, Coupling
 from eurdf.pinocchio.tree_few import FewPairs, Pair, as_slice, poses_once
 
 if TYPE_CHECKING:
-    from eurdf.kinematics.tree_kinematics import TreeKinematics
     from eurdf.pinocchio.robot import Robot
+    from eurdf.pinocchio.tree import Tree
 
 
 class _Group(NamedTuple):
@@ -73,9 +73,7 @@ class Evaluator:
         n: Number of columns.
     """
 
-    def __init__(
-        self, tree: TreeKinematics, constraints: Sequence[Constraint], velocities: Indices, *, few: bool
-    ) -> None:
+    def __init__(self, tree: Tree, constraints: Sequence[Constraint], velocities: Indices, *, few: bool) -> None:
         """Take constraints, in the order of their rows, and indices in v; for few configurations at once, or many.
 
         Raises:
@@ -107,7 +105,7 @@ class Evaluator:
             self._groups.append(_Group(kind, kind.prepare(own), indices, pairs, chosen, len(rows)))
         # The rows of the residual are those of one kind, in order.
         self._is_plain = self._couplings is None and len(self._groups) == 1
-        self._tree: TreeKinematics | None = tree
+        self._tree: Tree | None = tree
         self._key: bytes | None = None  # of the configuration of the last state of one element
         self._last = State(np.empty((1, 0)), None, [])
         if not few:
@@ -218,7 +216,7 @@ def evaluator(
     return made
 
 
-def _few_pairs(tree: TreeKinematics, sites: Sequence[Pair], velocities: Indices) -> FewPairs | ManyPairs:
+def _few_pairs(tree: Tree, sites: Sequence[Pair], velocities: Indices) -> FewPairs | ManyPairs:
     try:
         return FewPairs(tree.model, tree.parents, sites, velocities)
     except NotImplementedError:
@@ -262,7 +260,7 @@ def frames(robot: Robot, names: Sequence[str], *, few: bool) -> Frames:
     return frames_at(robot.tree, robot.tree.frame_sites(names), few=few)
 
 
-def frames_at(tree: TreeKinematics, sites: Sequence[Any], *, few: bool) -> Frames:
+def frames_at(tree: Tree, sites: Sequence[Any], *, few: bool) -> Frames:
     """Frames at some sites of the tree, as `eurdf.pinocchio.tree_few.Site`."""
     pairs, velocities = [(tree.world, site) for site in sites], np.arange(tree.nv)
     if few:
@@ -273,7 +271,7 @@ def frames_at(tree: TreeKinematics, sites: Sequence[Any], *, few: bool) -> Frame
 class TreeFew:
     """The spanning tree at few configurations, one after the other; as `TreeMany`."""
 
-    def __init__(self, tree: TreeKinematics) -> None:
+    def __init__(self, tree: Tree) -> None:
         self.nq, self.nv = tree.nq, tree.nv
         self._tree = tree
 

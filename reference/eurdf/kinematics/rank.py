@@ -132,7 +132,7 @@ def diagonals(matrices: Matrix) -> Matrix:
     return matrices.reshape(B, n * n)[:, :: n + 1]
 
 
-def numerical_rank(singular_values: Vector, reference: float) -> int:
+def numerical_rank(singular_values: Vector, reference: float | None = None) -> int:
     """Number of singular values before the widest gap.
 
     A fixed threshold would have to separate the rounding of numbers in files (an angle given as 1.5708 turns an axis by
@@ -142,9 +142,20 @@ def numerical_rank(singular_values: Vector, reference: float) -> int:
 
     Args:
         singular_values: In descending order, of a matrix scaled to one unit.
-        reference: The largest singular value of that matrix, or of the one it is a part of.
+        reference: The largest singular value of the matrix that it is a part of; by default that of its own.
     """
-    return int(numerical_ranks(singular_values[None], np.array([reference]))[0])
+    return int(numerical_ranks(singular_values[None], None if reference is None else np.array([reference]))[0])
+
+
+def singular_values(A: Matrix) -> Vector:
+    """The singular values of A, the largest first."""
+    return np.asarray(np.linalg.svd(A, compute_uv=False), dtype=np.float64)
+
+
+def null_space(A: Matrix) -> Matrix:
+    """Orthonormal basis (k, n) of the null space of A (m, n), one vector a row."""
+    _, values, right = np.linalg.svd(A, full_matrices=True)
+    return np.asarray(right[numerical_rank(values) :], dtype=np.float64)
 
 
 def numerical_ranks(values: Matrix, reference: Vector | None = None) -> Indices:

@@ -86,6 +86,18 @@ def acceleration_drift(robot: Robot, q: Vector, v: Vector) -> Vector:
         return np.asarray(constraints.drift(q[None], v[None])[0])
 
 
+def drift_of_pairs(robot: Robot, q: Vector, V: Matrix) -> Matrix:
+    """The symmetric D (nc, k, k) with K̇ v = Σ D_ij w_i w_j for the velocities v = V w, with V (nv, k)."""
+    count = V.shape[1]
+    own = [acceleration_drift(robot, q, v) for v in V.T]
+    D = np.zeros((robot.mechanism.nc, count, count))
+    for i in range(count):
+        D[:, i, i] = own[i]
+        for j in range(i):
+            D[:, i, j] = D[:, j, i] = 0.5 * (acceleration_drift(robot, q, V[:, i] + V[:, j]) - own[i] - own[j])
+    return D
+
+
 def closure_openings(robot: Robot, q: Vector) -> tuple[Opening, ...]:
     """How far each constraint is open, in their order.
 

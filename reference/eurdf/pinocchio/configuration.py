@@ -6,18 +6,14 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
-
+from eurdf.array import Vector
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, root_joint
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.pinocchio.joint_model import is_circular
 from eurdf.pinocchio.mimic import following
-
-Vector = npt.NDArray[np.float64]
 
 
 class Slot(NamedTuple):
@@ -70,9 +66,9 @@ def configuration_vector(
     Args:
         mechanism: The mechanism.
         model: The result of `build_model`.
-        coordinates: For each joint its coordinates as files have them (`JointType.coordinates`), for a
-            floating root those of a floating joint under ``root_joint``. Other joints are
-            neutral. Quaternions are normalized. Coordinates of mimic joints are ignored.
+        coordinates: For each joint its coordinates as files have them, for a floating root those of a floating joint
+            under ``root_joint``. Other joints are neutral. Quaternions are normalized. Coordinates of mimic joints are
+            ignored.
         at: The `slots` of the mechanism, if the caller has them.
 
     Returns:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices, Matrix, Vector
+from eurdf.array import Indices, Matrix, Vector
 from eurdf.viewing.scene import Placed, Scene, wxyz
 
 if TYPE_CHECKING:

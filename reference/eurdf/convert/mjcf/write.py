@@ -14,7 +14,6 @@ from pathlib import PurePosixPath
 
 from lxml import etree
 
-from eurdf.closures.distance import DistanceClosure
 from eurdf.closures.hinge import HingeClosure
 from eurdf.convert.conventions import neighbours, point_on, position_gain
 from eurdf.convert.coordinates import Coordinates
@@ -29,8 +28,7 @@ from eurdf.convert.steps import AXES, ExportedJoint, in_series
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.mechanism import ROOT_JOINT
+from eurdf.mechanism.mechanism import ROOT_JOINT, root_joint
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.writing.xml_text import file_content, numbers, representable
 
@@ -122,7 +120,7 @@ class _MjcfWriter:
         element = etree.SubElement(self.world, "body", name=self.bodies.new(body.name))
         name = self.joints.new(ROOT_JOINT)
         etree.SubElement(element, "freejoint", name=name)
-        self.parts.append(Part((name,), ROOT_JOINT, JointType.FLOATING))
+        self.parts.append(part_of(root_joint(""), (name,), ()))
         self._content(body, element, facts.LEAST)
 
     def _body(self, joint: Joint, body: Body) -> None:
@@ -302,13 +300,13 @@ class _MjcfWriter:
     def _closure(self, closure: Closure) -> None:
         name = self.equalities.new(closure.name)
         a, b = self._sites(closure)
-        if isinstance(closure, DistanceClosure):
+        if "length" in closure.own:
             path = self.tendons.new(closure.name)
             spatial = etree.SubElement(self.tendon, "spatial", name=path)
             etree.SubElement(spatial, "site", site=a)
             etree.SubElement(spatial, "site", site=b)
             # The equality is relative to the length at the reference configuration.
-            excess = closure.length - math.dist(*(self._origin(end.body, end.pose) for end in closure.anchors))
+            excess = closure.own["length"] - math.dist(*(self._origin(end.body, end.pose) for end in closure.anchors))
             self._tendon_equality(name, path, excess)
             return
         etree.SubElement(self.equality, facts.CLOSURES[closure.type], name=name, site1=a, site2=b)

@@ -31,7 +31,7 @@ from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.joint_types import ROTARY, JointType
-from eurdf.mechanism.mechanism import ROOT_JOINT
+from eurdf.mechanism.mechanism import ROOT_JOINT, root_joint
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.writing.xml_text import file_content, representable, rpy_of
 
@@ -125,9 +125,9 @@ class _SdfWriter:
         self.model.set("canonical_link", name)
         placed = IDENTITY
         if self.mechanism.root == "floating":
-            x, y, z, qx, qy, qz, qw = self.zero.get(ROOT_JOINT, JointType.FLOATING.neutral)
+            x, y, z, qx, qy, qz, qw = self.zero.get(ROOT_JOINT, root_joint("").type.neutral)
             placed = Pose((x, y, z), (qx, qy, qz, qw))
-            self.parts.append(Part((name,), ROOT_JOINT, JointType.FLOATING))
+            self.parts.append(part_of(root_joint(""), (name,), ()))
         self.poses[body.name] = placed
         self._link(body, _add(self.model, "link", name=name), "", placed)
         if self.mechanism.root == "fixed":

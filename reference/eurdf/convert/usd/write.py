@@ -14,7 +14,6 @@ from itertools import combinations, permutations
 
 import numpy as np
 
-from eurdf.closures.distance import DistanceClosure
 from eurdf.closures.hinge import HingeClosure
 from eurdf.convert.conventions import neighbours, position_gain
 from eurdf.convert.coordinates import Coordinates
@@ -32,8 +31,7 @@ from eurdf.exceptions import MissingExtra
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint, JointProperties, Mimic
-from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.mechanism import ROOT_JOINT
+from eurdf.mechanism.mechanism import ROOT_JOINT, root_joint
 from eurdf.mechanism.pose import IDENTITY, Pose, turn_from_x
 from eurdf.mechanism.spanning_tree import rigid_roots
 
@@ -117,7 +115,7 @@ class _UsdWriter:
             self.stage.articulation_root(robot)
         else:
             self.stage.articulation_root(path)
-            self.parts.append(Part((ROOT_JOINT,), ROOT_JOINT, JointType.FLOATING))
+            self.parts.append(part_of(root_joint(""), (ROOT_JOINT,), ()))
 
     def _rigid_body(self, body: Body, pose: Pose) -> str:
         path = self.stage.body(self.bodies.new(body.name), pose, body.name)
@@ -287,8 +285,8 @@ class _UsdWriter:
             ends.append((host, pose * anchor.pose * Pose(quaternion=turn)))
         kind, name = CLOSURES[closure.type], self.closures.new(closure.name)
         path = self.stage.joint("closures", name, kind, ends, axis=axis, closes=True, shown=closure.name)
-        if isinstance(closure, DistanceClosure):
-            self.stage.distance(path, closure.length)
+        if "length" in closure.own:
+            self.stage.distance(path, closure.own["length"])
         self.jointed.add(frozenset(host for host, _ in ends))
 
     def _coupling(self, coupling: Coupling) -> None:

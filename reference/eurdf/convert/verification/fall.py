@@ -11,7 +11,7 @@ import numpy as np
 from eurdf.convert.coordinates import Coordinates, Matrix, Vector
 from eurdf.convert.verification.read_model import Diverged, Finding, Instant, ReadModel
 from eurdf.diagnostics import enumerated
-from eurdf.kinematics.mass_matrix import mass_matrix
+from eurdf.kinematics.dynamics import mass_matrix
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.mechanism.mechanism import ROOT_JOINT
