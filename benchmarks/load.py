@@ -24,9 +24,8 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 
-import pinocchio as pin
-
 import eurdf
+import pinocchio as pin
 from benchmarks.growth import write_loops
 from benchmarks.robots import CHAINS, chain, chains
 from benchmarks.table import Table, duration, ratio

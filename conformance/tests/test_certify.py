@@ -216,16 +216,6 @@ def test_known_failures_are_counted_and_do_not_certify(folder: Path, shared_run:
 
 
 @pytest.mark.slow
-def test_outdated_known_failure_is_reported(folder: Path) -> None:
-    file = known_failures(folder, "schema/compliance-empty", "version1/aaaaaa")
-    given = certificate_of("--parser", REJECTS, *SOME, "--known-failures", file)
-    assert [said.partition(":")[0] for said in given["unexpected"]] == [
-        "schema/compliance-empty/accept",
-        "version1/aaaaaa/accept",
-    ]
-
-
-@pytest.mark.slow
 def test_bad_file_of_known_failures_is_refused_first(folder: Path) -> None:
     (folder / "known.yaml").write_text("- id: schema/compliance-empty\n", encoding="utf-8")
     done = certify("--parser", "cmd:nowhere", "--known-failures", "known.yaml")
@@ -241,13 +231,6 @@ def test_a_parser_that_does_not_start_gives_exit_code_2(folder: Path) -> None:
     assert (done.returncode, done.stdout) == (2, "")
     assert "nowhere.py" in done.stderr.splitlines()[0]
     assert "could not be started: crashed: ended with exit code 2" in done.stderr.splitlines()[1]
-
-
-@pytest.mark.slow
-def test_requested_but_unclaimed_level_is_not_certified(folder: Path) -> None:
-    done = certify("--parser", REJECTS, "--level", "dynamics", "--seed", "0", "--jobs", "0")
-    assert done.returncode == 1
-    assert done.stdout.endswith("always_rejected 1: Not certified at any level\n")
 
 
 def test_missing_packages_of_the_suite_are_named(
@@ -401,15 +384,6 @@ def test_replay_reports_changes_of_the_file(folder: Path) -> None:
         "badge.svg: it is missing",
         "mine: differs",
     ]
-
-
-@pytest.mark.slow
-def test_control_characters_of_a_parser_that_fails_are_escaped(folder: Path) -> None:
-    program = r"import sys; sys.stderr.write('\x1b[2J\u202e no licence\n'); sys.exit(3)"
-    done = certify("--parser", "cmd:" + shlex.join([sys.executable, "-c", program]), "--seed", "0")
-    assert done.returncode == 2
-    assert r"\x1b[2J\u202e no licence" in done.stderr
-    assert "\x1b" not in done.stderr
 
 
 @pytest.mark.slow

@@ -110,15 +110,6 @@ def test_misbehaviour_is_never_a_rejection() -> None:
         assert session.restarts == 0
 
 
-@pytest.mark.slow
-def test_a_late_answer_does_not_answer_the_next_request() -> None:
-    with Session(fake("late"), timeout=0.3) as session:
-        assert isinstance(load(session, "trigger"), TimedOut)
-        time.sleep(0.6)  # by now it would have answered
-        assert accepts(load(session, "next"), "next")
-        assert accepts(load(session, "trigger", timeout=5.0), "trigger")
-
-
 def test_a_process_that_ends_before_start_has_answered_nothing() -> None:
     with Session("cmd:sh -c 'exit 127'") as session, pytest.raises(NotStarted) as refusal:
         _ = session.started

@@ -440,19 +440,6 @@ def test_a_clause_selects_what_tests_it() -> None:
 
 
 @pytest.mark.slow
-def test_a_correct_parser_passes_and_gets_a_certificate(tmp_path: Path) -> None:
-    # Of the older version, which has fewer cases.
-    topics = ["protocol", "closures", "names"]
-    asked = ["--format-version=1", "-k", " or ".join(f"[{topic}/" for topic in topics), f"--certificate={tmp_path}"]
-    code, out = suite("-n2", *asked, parser="Right")
-    assert code == 0, out
-    items = [item for item in planned_items(CASES.values()) if item.version == "1" and item.id.split("/")[0] in topics]
-    assert f"{len(items)} passed" in out
-    assert "by_heart 1 (Python)" in out
-    assert json.loads((tmp_path / "certificate.json").read_text(encoding="utf-8"))["parser"]["name"] == "by_heart"
-
-
-@pytest.mark.slow
 def test_printed_command_reproduces_a_failure() -> None:
     code, out = suite("-k", FEW, parser="Misread")
     assert code == 1
@@ -471,16 +458,6 @@ def test_printed_command_reproduces_a_failure() -> None:
 
 
 @pytest.mark.slow
-def test_a_crash_is_not_a_rejection() -> None:
-    code, out = suite("-k", FEW, parser="Crashing")
-    assert code == 1
-    assert "5 failed, 2 passed" in out
-    assert (
-        "closures/parallelogram-3d-closure/accept: crashed: the process ended with exit code 3 without answering" in out
-    )
-
-
-@pytest.mark.slow
 def test_unclaimed_level_is_skipped_and_unsupported_claim_fails() -> None:
     code, out = suite("-k", FEW, parser="Modest")
     assert code == 0
@@ -491,22 +468,6 @@ def test_unclaimed_level_is_skipped_and_unsupported_claim_fails() -> None:
     assert "7 failed" in out
     assert "closures/parallelogram-3d-closure/accept: unsupported: closures: not written yet" in out
     assert "frames/closure-at-unknown-frame/accept: skipped: it is Sunday" in out
-
-
-@pytest.mark.slow
-def test_levels_and_a_version_can_be_chosen() -> None:
-    few = [item for item in planned_items(CASES.values()) if not item.id.startswith(("properties/", "fresh/"))]
-    chosen = [item for item in few if item.version == "1" and item.level in ("structure", "diagnose")]
-    arguments = [
-        "--level=structure",
-        "--level=diagnose",
-        "--format-version=1",
-        "-k",
-        "not [properties/ and not [fresh/",
-    ]
-    code, out = suite(*arguments, parser="Right")
-    assert code == 0
-    assert f"{len(chosen)} passed" in out
 
 
 KNOWN = """

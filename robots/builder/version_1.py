@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from eurdf.format.yaml_text import YamlEntry, Value, lines_of, modeline, text_of
+from eurdf.format.yaml_text import Value, YamlEntry, lines_of, modeline, text_of
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 

@@ -16,10 +16,8 @@ import pytest
 import eurdf
 from eurdf.commands.main import main
 from eurdf.commands.output import output_schemas
+from support.places import DATA, ROBOTS
 from support.processes import on_a_terminal
-
-DATA = Path(__file__).parents[1] / "data"
-ROBOTS = Path(__file__).parents[2] / "robots"
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -50,24 +48,6 @@ configurations:
 """
 
 
-@pytest.fixture
-def run(capsys: pytest.CaptureFixture[str]) -> Run:
-    """Run the command in this process: exit code, standard output, standard error."""
-
-    def run_here(*argv: str | Path) -> tuple[int, str, str]:
-        code = main(["assemble", *(str(argument) for argument in argv)])
-        captured = capsys.readouterr()
-        return code, captured.out, captured.err
-
-    return run_here
-
-
-@pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
 def bench(folder: Path, description: str = DESCRIPTION, urdf: Callable[[str], str] = str) -> Path:
     file = folder / "robot.yaml"
     file.write_bytes(description.encode())
@@ -82,7 +62,7 @@ def largest_row(path: Path) -> float:
 
 def test_coordinates_are_shown_with_units(folder: Path, run: Run) -> None:
     bench(folder, DESCRIPTION + READY)
-    code, out, err = run("robot.yaml", "--from", "ready", "--hold", "motor")
+    code, out, err = run("assemble", "robot.yaml", "--from", "ready", "--hold", "motor")
     assert (code, err) == (0, "")
     assert re.fullmatch(r"workbench  closed, residual \d\.\de-1\d, from ready", out.splitlines()[0])
     assert [re.split(r"  +", line)[1:] for line in out.splitlines()[3:6]] == [
@@ -103,7 +83,7 @@ def test_terminal_shows_the_same_table(folder: Path) -> None:
 
 @pytest.mark.parametrize("name", ["delta", "digit_leg", "kangaroo_2legs", "slider_crank", "tesla_optimus_ankle"])
 def test_json_matches_schema_and_has_all_coordinates(name: str, run: Run) -> None:
-    code, out, err = run(name, "--json")
+    code, out, err = run("assemble", name, "--json")
     assert (code, err) == (0, "")
     found = json.loads(out)
     jsonschema.Draft202012Validator(output_schemas()["assemble.schema.json"]).validate(found)
@@ -115,7 +95,7 @@ def test_json_matches_schema_and_has_all_coordinates(name: str, run: Run) -> Non
 
 def test_written_configuration_changes_nothing_else(folder: Path, run: Run) -> None:
     file = bench(folder)
-    code, _, err = run("robot.yaml", "--write")
+    code, _, err = run("assemble", "robot.yaml", "--write")
     assert (code, err) == (0, "wrote the configuration 'assembled' to 'robot.yaml'\n")
     text = file.read_text(encoding="utf-8")
     (line,) = re.findall(r"^  assembled: .*\n", text, re.MULTILINE)
@@ -123,7 +103,7 @@ def test_written_configuration_changes_nothing_else(folder: Path, run: Run) -> N
     assert text.index("rocker_top, link") < text.index("configurations:\n") < text.index("\n# ours")
     assert largest_row(file) <= 1e-12
     assert eurdf.check(file).ok
-    assert run("robot.yaml", "--write")[::2] == (
+    assert run("assemble", "robot.yaml", "--write")[::2] == (
         0,
         "'robot.yaml' already has this configuration as 'assembled': nothing to do\n",
     )
@@ -134,7 +114,7 @@ def test_byte_order_mark_and_line_breaks_are_kept(folder: Path, run: Run) -> Non
     file = bench(folder)
     before = b"\xef\xbb\xbf" + DESCRIPTION.replace("\n", "\r\n").encode()
     file.write_bytes(before)
-    assert run("robot.yaml", "--write")[0] == 0
+    assert run("assemble", "robot.yaml", "--write")[0] == 0
     after = file.read_bytes()
     assert after.startswith(b"\xef\xbb\xbf# A bench\r\n")
     assert re.sub(rb"configurations:\r\n  assembled: .*\r\n", b"", after) == before
@@ -144,12 +124,12 @@ def test_byte_order_mark_and_line_breaks_are_kept(folder: Path, run: Run) -> Non
 def test_different_assembled_is_replaced_only_with_force(folder: Path, run: Run) -> None:
     file = bench(folder, DESCRIPTION + READY + "  assembled:\n    # the motor\n    motor: 0.1  # rad\n")
     before = file.read_text()
-    code, out, err = run("robot.yaml", "--write", "--hold", "motor")
+    code, out, err = run("assemble", "robot.yaml", "--write", "--hold", "motor")
     assert code == 2
     assert out.startswith("workbench  closed")
     assert err == ("eurdf: 'robot.yaml' already has a different configuration 'assembled'; --force replaces it\n")
     assert file.read_text() == before
-    code, _, err = run("robot.yaml", "--write", "--hold", "motor", "--force")
+    code, _, err = run("assemble", "robot.yaml", "--write", "--hold", "motor", "--force")
     assert (code, err) == (0, "wrote the configuration 'assembled' to 'robot.yaml'\n")
     after = file.read_text()
     assert after.startswith(before.removesuffix("\n"))  # the motor is held at 0.1
@@ -159,20 +139,20 @@ def test_different_assembled_is_replaced_only_with_force(folder: Path, run: Run)
 
 def test_stated_neutral_joint_stays_stated(folder: Path, run: Run) -> None:
     file = bench(folder, DESCRIPTION + READY + "  assembled: {stage: 0.1, pivot: 0.3}\n")
-    assert run("robot.yaml", "--write", "--from", "neutral", "--hold", "motor", "--force")[0] == 0
+    assert run("assemble", "robot.yaml", "--write", "--from", "neutral", "--hold", "motor", "--force")[0] == 0
     assert re.search(r"^  assembled: \{stage: 0, pivot: 0\}$", file.read_text(), re.MULTILINE)
 
 
 def test_json_of_write_names_the_file(folder: Path, run: Run) -> None:
     bench(folder)
-    written = [json.loads(run("robot.yaml", "--write", "--json")[1]) for _ in range(2)]
+    written = [json.loads(run("assemble", "robot.yaml", "--write", "--json")[1]) for _ in range(2)]
     assert [(each["file"], each["written"]) for each in written] == [("robot.yaml", True), ("robot.yaml", False)]
 
 
 def test_floating_root_is_stated_only_if_moved(folder: Path, run: Run) -> None:
     floating = DESCRIPTION.replace("closures:", "root: floating\nclosures:")
     file = bench(folder, floating + "configurations: {up: {root_joint: [0, 0, 1, 0, 0, 0, 1], motor: 0.5}}\n")
-    assert run("robot.yaml", "--write", "--from", "up")[0] == 0
+    assert run("assemble", "robot.yaml", "--write", "--from", "up")[0] == 0
     assert "assembled: {root_joint: [0, 0, 1, 0, 0, 0, 1], " in file.read_text().replace("\n    ", " ")
     assert eurdf.check(file).ok
 
@@ -184,7 +164,7 @@ def open_bench(urdf: str) -> str:
 @pytest.mark.parametrize("options", [(), ("--write",), ("--write", "--force", "--json")])
 def test_impossible_loops_exit_1_and_list_openings(folder: Path, run: Run, options: tuple[str, ...]) -> None:
     file = bench(folder, urdf=open_bench)
-    code, out, err = run("robot.yaml", *options)
+    code, out, err = run("assemble", "robot.yaml", *options)
     assert code == 1
     # A rocker of 0.3 m is 0.7 m or more away from the end of 0.2 m and 0.4 m.
     first, *rest = err.splitlines()
@@ -206,7 +186,7 @@ def narrow(urdf: str) -> str:
 
 def test_limits_are_respected_if_possible(folder: Path, run: Run) -> None:
     file = bench(folder, urdf=narrow)
-    assert run("robot.yaml", "--write")[0] == 0
+    assert run("assemble", "robot.yaml", "--write")[0] == 0
     robot = eurdf.load(file, geometry=False)
     (pivot,) = robot.coordinates(robot.configurations["assembled"])["pivot"]
     assert 0.05 - 1e-9 <= pivot <= 0.3 + 1e-9
@@ -216,15 +196,15 @@ def test_limits_are_respected_if_possible(folder: Path, run: Run) -> None:
 
 def test_configuration_beyond_limits_is_shown_not_written(folder: Path, run: Run) -> None:
     file = bench(folder, urdf=narrow)
-    code, out, err = run("robot.yaml", "--hold", "motor")
+    code, out, err = run("assemble", "robot.yaml", "--hold", "motor")
     assert code == 0
     assert re.search(r"^pivot +revolute +0 +rad +beyond its limits$", out, re.MULTILINE)
     message = "the loops close only with joints beyond their limits: 'pivot' at 0 rad (limits 0.05 to 0.3)\n"
     assert re.sub("at -?[0-9.e-]+ rad", "at 0 rad", err) == message
-    code, _, err = run("robot.yaml", "--hold", "motor", "--write")
+    code, _, err = run("assemble", "robot.yaml", "--hold", "motor", "--write")
     assert (code, err.splitlines()[1]) == (1, "nothing was written to 'robot.yaml'")
     assert file.read_text() == DESCRIPTION
-    code, _, err = run("robot.yaml", "--hold", "motor", "--limits")
+    code, _, err = run("assemble", "robot.yaml", "--hold", "motor", "--limits")
     assert code == 1
     first, second = err.splitlines()
     assert first.startswith("no configuration was found that closes the loops with 'motor' held; least open: 'pin' by ")
@@ -235,10 +215,10 @@ def test_joint_outside_loops_is_written_within_its_limits(folder: Path, run: Run
     file = bench(
         folder, urdf=lambda urdf: urdf.replace('<limit lower="-0.1" upper="0.2"', '<limit lower="0.05" upper="0.2"')
     )
-    code, _, err = run("robot.yaml", "--hold", "grip", "--write")
+    code, _, err = run("assemble", "robot.yaml", "--hold", "grip", "--write")
     assert code == 1
     assert "beyond their limits: 'grip' at 0 m (limits 0.05 to 0.2)" in err
-    assert run("robot.yaml", "--write")[0] == 0
+    assert run("assemble", "robot.yaml", "--write")[0] == 0
     robot = eurdf.load(file, geometry=False)
     assert robot.coordinates(robot.configurations["assembled"])["grip"] == (0.05,)
     assert eurdf.check(file).ok
@@ -247,7 +227,7 @@ def test_joint_outside_loops_is_written_within_its_limits(folder: Path, run: Run
 def test_zero_range_does_not_prevent_writing(folder: Path, run: Run) -> None:
     given, none = 'lower="-3" upper="3" effort="5"', 'lower="0" upper="0" effort="5"'
     file = bench(folder, urdf=lambda urdf: urdf.replace(given, none))
-    code, out, _ = run("robot.yaml", "--write")
+    code, out, _ = run("assemble", "robot.yaml", "--write")
     assert code == 0
     assert "beyond its limits" not in out
     assert eurdf.check(file).ok
@@ -255,17 +235,17 @@ def test_zero_range_does_not_prevent_writing(folder: Path, run: Run) -> None:
 
 def test_version_1_is_assembled_but_not_written(folder: Path, run: Run) -> None:
     shutil.copytree(ROBOTS / "four_bar", folder / "bar")
-    code, out, err = run("bar/robot.v1.yaml")
+    code, out, err = run("assemble", "bar/robot.v1.yaml")
     assert (code, err) == (0, "")
     assert out.startswith("four_bar  closed")
     message = "'bar/robot.v1.yaml' has version 1, which has no configurations; `eurdf migrate` converts it to version 2"
-    assert run("bar/robot.v1.yaml", "--write") == (2, "", f"eurdf: {message}\n")
+    assert run("assemble", "bar/robot.v1.yaml", "--write") == (2, "", f"eurdf: {message}\n")
 
 
 @pytest.mark.parametrize("options", [(), ("--write",)])
 def test_plain_urdf_has_no_loops(folder: Path, run: Run, options: tuple[str, ...]) -> None:
     bench(folder)
-    code, out, err = run("workbench.urdf", *options)
+    code, out, err = run("assemble", "workbench.urdf", *options)
     assert (code, out) == (2, "")
     assert err == (
         "eurdf: 'workbench.urdf' is a plain URDF, without loops; `eurdf generate` writes a description with closures\n"
@@ -274,10 +254,10 @@ def test_plain_urdf_has_no_loops(folder: Path, run: Run, options: tuple[str, ...
 
 def test_robot_with_errors_is_refused_with_diagnostics(folder: Path, run: Run) -> None:
     bench(folder, DESCRIPTION.replace("rod_tip", "rod_tpi"))
-    code, out, err = run("robot.yaml")
+    code, out, err = run("assemble", "robot.yaml")
     assert (code, out) == (1, "")
     assert "did you mean 'rod_tip'?" in err
-    code, out, err = run("robot.yaml", "--json")
+    code, out, err = run("assemble", "robot.yaml", "--json")
     assert (code, err) == (1, "")
     jsonschema.Draft202012Validator(output_schemas()["diagnostics-report.schema.json"]).validate(json.loads(out))
 
@@ -294,11 +274,11 @@ def test_robot_with_errors_is_refused_with_diagnostics(folder: Path, run: Run) -
 )
 def test_wrong_option_is_reported(folder: Path, run: Run, options: tuple[str, ...], message: str) -> None:
     bench(folder, DESCRIPTION + READY)
-    assert run("robot.yaml", *options) == (2, "", f"eurdf: {message}\n")
+    assert run("assemble", "robot.yaml", *options) == (2, "", f"eurdf: {message}\n")
 
 
 def test_collection_robot_is_not_written(run: Run) -> None:
-    code, _, err = run("four_bar", "--write")
+    code, _, err = run("assemble", "four_bar", "--write")
     assert code == 2
     assert err.startswith("eurdf: 'four_bar' is a robot of the collection; copy its folder")
 
@@ -306,7 +286,7 @@ def test_collection_robot_is_not_written(run: Run) -> None:
 def test_uneditable_file_is_unchanged(folder: Path, run: Run) -> None:
     text = DESCRIPTION + "x-c: &c {ready: {}}\nconfigurations: *c\n"
     file = bench(folder, text)
-    code, _, err = run("robot.yaml", "--write")
+    code, _, err = run("assemble", "robot.yaml", "--write")
     assert code == 2
     assert err == "eurdf: cannot write to 'robot.yaml': 'configurations' is an alias; edit the file by hand\n"
     assert file.read_text() == text
@@ -323,7 +303,7 @@ def test_concurrently_changed_file_is_not_overwritten(folder: Path, run: Run, mo
         return compute(*arguments)
 
     monkeypatch.setattr(saving, "with_closed_configuration", meanwhile)
-    code, _, err = run("robot.yaml", "--write")
+    code, _, err = run("assemble", "robot.yaml", "--write")
     assert (code, file.read_text()) == (2, "changed\n")
     assert err == ("eurdf: another program changed 'robot.yaml' in the meantime; nothing was written, try again\n")
 

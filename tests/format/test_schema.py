@@ -23,8 +23,8 @@ from eurdf.reading.source import Source
 from eurdf.reading.yaml_reader import read_yaml
 from eurdf_conformance.properties.document import document as description_of
 from eurdf_conformance.properties.strategies.mechanisms import mechanisms
+from support.places import ROOT
 
-ROOT = Path(__file__).parents[2]
 VERSIONS: tuple[SchemaVersion, ...] = ("1", "2", "2.1")
 VALIDATORS = {version: Draft202012Validator(json_schema(version)) for version in VERSIONS}
 

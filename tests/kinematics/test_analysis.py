@@ -7,16 +7,16 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
+import pinocchio as pin
 from eurdf.commands.robot_info import robot_info
 from eurdf.kinematics.analysis import analyze
+from eurdf.kinematics.loop_analysis import sparse_basis
 from eurdf.kinematics.residual import residual, residual_and_jacobian
-from eurdf.kinematics.sparse_basis import sparse_basis
 from support.described import load
 from support.linkage import (
     Linkage,
@@ -32,6 +32,7 @@ from support.linkage import (
     n_bar,
     pulled_apart,
     sarrus,
+    scissors,
     slider_crank,
     spherical_four_bar,
     stewart,
@@ -229,18 +230,8 @@ def test_rounding_in_files_adds_no_constraint(build: Callable[..., Linkage], dec
 
 
 def test_mimic_joint_removes_one_velocity() -> None:
-    text = """<robot name="scissors"><link name="g"/><link name="a"/><link name="b"/><link name="c"/>
-      <joint name="lead" type="revolute"><parent link="g"/><child link="a"/><axis xyz="0 0 1"/>
-        <limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
-      <joint name="fold" type="revolute"><parent link="a"/><child link="b"/><origin xyz="1 0 0"/><axis xyz="0 0 1"/>
-        <limit lower="-3" upper="3" effort="1" velocity="1"/><mimic joint="lead" multiplier="-2"/></joint>
-      <joint name="slide" type="prismatic"><parent link="g"/><child link="c"/><axis xyz="1 0 0"/>
-        <limit lower="-3" upper="3" effort="1" velocity="1"/></joint></robot>"""
     for mimic, expected in ((True, (2, 1, 1)), (False, (3, 2, 1))):
-        model = pin.buildModelFromXML(text, mimic=mimic)
-        fold, slide = model.getJointId("fold"), model.getJointId("slide")
-        linkage = Linkage(model, [closure(model, slide, pin.SE3.Identity(), fold, translation(1.0, 0.0, 0.0), "3d")])
-        analysis = analyze(linkage, np.array([0.8, 1.3] if mimic else [0.8, -1.6, 1.3]))
+        analysis = analyze(scissors(mimic), np.array([0.8, 1.3] if mimic else [0.8, -1.6, 1.3]))
         assert (analysis.nv, analysis.rank, analysis.mobility) == expected
 
 

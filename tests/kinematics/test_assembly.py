@@ -10,12 +10,12 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
+import pinocchio as pin
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.residual import residual
 from eurdf.mechanism.constraint import Closure
@@ -30,6 +30,7 @@ from support.linkage import (
     n_bar,
     pulled_apart,
     sarrus,
+    scissors,
     slider_crank,
     spherical_four_bar,
     translation,
@@ -283,20 +284,6 @@ def test_limits_do_not_apply_to_balls_and_wheels() -> None:
     assembly = assemble(linkage, pin.integrate(model, pin.neutral(model), np.array([0.5, 0.1, 0.2, 0.3])), limits=True)
     assert assembly.converged
     np.testing.assert_allclose(assembly.q[:2], [-1.0, 0.0], atol=1e-9)
-
-
-def scissors() -> Linkage:
-    """Two bars of which the second folds back twice as fast as the first turns, and a slide under their end."""
-    text = """<robot name="scissors"><link name="g"/><link name="a"/><link name="b"/><link name="c"/>
-      <joint name="lead" type="revolute"><parent link="g"/><child link="a"/><axis xyz="0 0 1"/>
-        <limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
-      <joint name="fold" type="revolute"><parent link="a"/><child link="b"/><origin xyz="1 0 0"/><axis xyz="0 0 1"/>
-        <limit lower="-3" upper="3" effort="1" velocity="1"/><mimic joint="lead" multiplier="-2"/></joint>
-      <joint name="slide" type="prismatic"><parent link="g"/><child link="c"/><axis xyz="1 0 0"/>
-        <limit lower="-3" upper="3" effort="1" velocity="1"/></joint></robot>"""
-    model = pin.buildModelFromXML(text, mimic=True)
-    fold, slide = model.getJointId("fold"), model.getJointId("slide")
-    return Linkage(model, [closure(model, slide, pin.SE3.Identity(), fold, translation(1.0, 0.0, 0.0), "3d")])
 
 
 def test_loop_with_mimic_joint_closes() -> None:

@@ -7,12 +7,12 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
+import pinocchio as pin
 from eurdf.kinematics import independence
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.dynamics import achievable_acceleration, forward_dynamics, inverse_dynamics

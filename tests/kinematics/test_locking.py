@@ -10,12 +10,12 @@ from typing import Any
 
 import coal
 import numpy as np
-import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
+import pinocchio as pin
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.point import PointClosure
 from eurdf.kinematics.exceptions import CannotLock, LockedOpen
@@ -31,11 +31,11 @@ from eurdf.mechanism.spanning_tree import rigid_roots
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand
 from support.described import LIMITED, body, load, mass_matrix, q_of, revolute
+from support.places import WILD
 from support.plain_urdf import joint_element, link_element
 from support.plain_urdf import robot as urdf_of
 
 AXIAL = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
-WILD = Path(__file__).parents[3] / "shared" / "wild"
 LIMITS = ("lowerPositionLimit", "upperPositionLimit")
 PROPERTIES = (
     "upperVelocityLimit",

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import mujoco
 import numpy as np
-import pinocchio as pin
 import pytest
 
 import eurdf
+import pinocchio as pin
 from support import mujoco_witness
 from support.described import LIMITED, body, load
 from support.plain_urdf import joint_element

@@ -4,17 +4,13 @@ from __future__ import annotations
 
 import math
 import re
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
-import pinocchio as pin
 import pytest
 
-sys.path.insert(0, str(Path(__file__).parents[2]))
-
 import eurdf
+import pinocchio as pin
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import build_robot
 from robots.builder import Cylinder, Drawing, Motor, ball, revolute, write

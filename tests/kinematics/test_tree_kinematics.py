@@ -1,20 +1,18 @@
-"""What the kinematics asks of a spanning tree: `TreeKinematics` alone, and what that answers."""
+"""What the kinematics asks of a spanning tree: a `Tree` alone, and what that answers."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 import pytest
 
 import eurdf
+import pinocchio as pin
 from eurdf.kinematics.frame_jacobian import frame_jacobian
-
-ROBOTS = Path(__file__).parents[2] / "robots"
+from support.places import ROBOTS
 
 #: What must not need Pinocchio's model, for a robot with an actuator 'motor_crank' and a link 'coupler'.
 ANSWERS: dict[str, Callable[[Any, Any], Any]] = {

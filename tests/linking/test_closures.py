@@ -7,13 +7,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 import pytest
 
 import eurdf
+import pinocchio as pin
 from eurdf.commands.main import main
 from eurdf.mechanism.constraint import RIGID, Compliance, Coupling
 from support.described import body, revolute
+from support.places import ROBOTS
 from support.plain_urdf import joint_element
 from support.plain_urdf import robot as urdf
 
@@ -187,9 +188,6 @@ def test_info_shows_the_distance(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert "1 of distance" in capsys.readouterr().out
 
 
-ROBOTS = Path(__file__).parents[2] / "robots"
-
-
 def hinged(folder: Path, name: str, closure: str) -> Path:
     """A robot of the collection, with its 3d closure as a hinge."""
     source = ROBOTS / name
@@ -228,21 +226,7 @@ def test_info_shows_version_and_hinge(tmp_path: Path, capsys: pytest.CaptureFixt
     assert "1 of hinge" in shown
 
 
-def test_migrate_has_nothing_to_do_on_version_2_1(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = hinged(tmp_path, "four_bar", "3d")
-    assert main(["migrate", str(path), "--json"]) == 0
-    answer = json.loads(capsys.readouterr().out)
-    assert (answer["from"], answer["to"], answer["text"]) == ("2.1", "2.1", path.read_text(encoding="utf-8"))
-
-
-def test_schema_of_version_2_1_knows_hinges(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["schema", "--version", "2.1"]) == 0
-    schema = json.loads(capsys.readouterr().out)
-    assert schema["$id"] == "urn:extended-urdf:schema:2.1"
-    assert "axis" in schema["$defs"]["Hinge"]["properties"]
-
-
-FOUR_BAR = Path(__file__).parents[2] / "robots" / "four_bar"
+FOUR_BAR = ROBOTS / "four_bar"
 
 
 def compliant(folder: Path, compliance: str) -> Path:

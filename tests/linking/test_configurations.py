@@ -7,19 +7,20 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import pinocchio as pin
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import eurdf
+import pinocchio as pin
 from eurdf.mechanism.mechanism import Root
 from eurdf.pinocchio.configuration import configuration_vector
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand
 from support.described import STAR, at, codes, load, written
+from support.places import DATA
 
-WORKBENCH = Path(__file__).parents[1] / "data" / "workbench.yaml"
+WORKBENCH = DATA / "workbench.yaml"
 
 JOINTS = "joints: {d: spherical}\n"
 

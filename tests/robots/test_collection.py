@@ -6,22 +6,19 @@ import os
 import subprocess
 import sys
 from collections import Counter
-from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
 from lxml import etree
 
-sys.path.insert(0, str(Path(__file__).parents[2]))
-
 import eurdf
 from robots.builder.version_1 import can_be_version_1
 from robots.quality.candidate import Candidate
 from robots.quality.verdict import judge
+from support.places import ROOT
 from support.warm import run_module
 
-ROOT = Path(__file__).parents[2]
 FOLDERS = sorted(file.parent for file in ROOT.glob("robots/*/robot.yaml"))
 
 #: With the base fixed: nv, closures by type, nc, rank, mobility, actuated, uncontrolled; None where that is the robot's

@@ -2,17 +2,10 @@
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
-
-sys.path.insert(0, str(Path(__file__).parents[2]))
-
 import eurdf
-from eurdf.mechanism.joint_types import JointType
 from robots.features import FEATURES, features_of
 from robots.gallery import FILE, gallery
-
-ROOT = Path(__file__).parents[2]
+from support.places import ROOT
 
 
 def test_gallery_is_current():
@@ -33,13 +26,3 @@ def test_features_are_read_from_the_files(tmp_path):
         description + "actuators: [d, {joint: e, name: f}]\nconfigurations: {assembled: {}}"
     )
     assert features_of(tmp_path) == ["hinge", "fixed", "armature", "name of actuator"]
-
-
-def test_features_of_joint_types_are_those_of_the_mechanism():
-    press = eurdf.load("screw_press", geometry=False).mechanism
-    types = {joint.type for joint in press.joints}
-    assert {JointType.HELICAL, JointType.CYLINDRICAL, JointType.SPHERICAL, JointType.PLANAR} <= types
-    joints = {joint.name: joint for joint in press.joints}
-    assert joints["free_crank"].mimic is None
-    assert joints["guard_hinge"].type is JointType.FIXED
-    assert joints["motor_screw"].properties.velocity == (12.0,)

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).parents[2]))
-
 import eurdf
 from robots import moving_picture
+from support.places import ROOT
 
-PICTURE = Path(__file__).parents[2] / "docs/pictures/digit_leg.webp"
+PICTURE = ROOT / "docs/pictures/digit_leg.webp"
 
 
 def test_dragged_foot_keeps_loops_closed_and_returns_to_its_start():

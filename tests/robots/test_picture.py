@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import sys
-from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parents[2]))
 
 import eurdf
 from eurdf.commands.main import main
@@ -18,8 +15,7 @@ from eurdf.viewing.graph import save_graph
 from eurdf.viewing.picture import VIEWS, picture
 from robots import picture as pictures
 from robots import sheet
-
-ROOT = Path(__file__).parents[2]
+from support.places import ROBOTS, ROOT
 
 
 def on_white(image):
@@ -53,7 +49,7 @@ def test_command_draws_a_configuration_with_its_loops(capsys, tmp_path):
     pytest.importorskip("pyvista", reason="pyvista is not installed: pip install -e '.[pictures]'")
     from PIL import Image
 
-    folder = Path(__file__).parents[2] / "robots/four_bar"
+    folder = ROBOTS / "four_bar"
     yaml = (folder / "robot.yaml").read_text()
     (tmp_path / "robot.yaml").write_text(yaml.replace("assembled: {}", "assembled: {}\n  apart: {motor_crank: 0.7}"))
     (tmp_path / "robot.urdf").write_text((folder / "robot.urdf").read_text())

@@ -4,13 +4,9 @@ from __future__ import annotations
 
 import json
 import shutil
-import sys
-from pathlib import Path
 
 import pytest
 from lxml import etree
-
-sys.path.insert(0, str(Path(__file__).parents[2]))
 
 import eurdf
 from robots.builder import Cylinder, Drawing, Motor, ball, prismatic, revolute, universal, write
@@ -20,8 +16,8 @@ from robots.quality.files import is_the_same_in_version_1
 from robots.quality.mirror import is_mirrored
 from robots.quality.readme import dimension_table
 from robots.quality.verdict import RULES, judge
+from support.places import ROOT
 
-ROOT = Path(__file__).parents[2]
 PICTURE = ROOT / "robots" / "four_bar" / "picture.png"
 
 

@@ -14,8 +14,8 @@ import pytest
 import eurdf
 from eurdf.commands.main import main
 from spec.site.blocks import Code, read_blocks
+from support.places import ROOT
 
-ROOT = Path(__file__).parents[2]
 FOLDERS = ("docs", "spec", "examples", "robots", "conformance", "ros")
 STRICT = ("-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror")
 

@@ -12,8 +12,8 @@ import pytest
 from eurdf.diagnostics import REGISTRY
 from spec.site.clause import SPEC, Chapter, Clause, Withdrawn, keywords, read_chapters, read_clauses, read_withdrawn
 from spec.site.registry import CLAUSES, IDS, SCHEMA, current_registry, read_ids, registry_text
+from support.places import ROOT
 
-ROOT = Path(__file__).parents[2]
 ID = re.compile(r"EU-[A-Z]{3}-\d{3}")
 
 CHAPTER = """\

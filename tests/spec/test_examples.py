@@ -11,13 +11,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 import pytest
 
 import eurdf
-
-sys.path.insert(0, str(Path(__file__).parents[2]))
-
+import pinocchio as pin
 from examples import (
     export_digit_2legs,
     follow_foot_trajectory,
@@ -25,10 +22,10 @@ from examples import (
     simulate_digit_leg,
     squat_torques,
 )
+from support.places import ROOT
 
 pytestmark = pytest.mark.slow
 
-ROOT = Path(__file__).parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
 PAGE = (ROOT / "docs" / "toolbox.md").read_text(encoding="utf-8")
 

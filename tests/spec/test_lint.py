@@ -12,8 +12,9 @@ from spec.site.clause import Chapter
 from spec.site.lint import RULES, lint
 from spec.site.registry import read_ids
 from spec.site.specification import Specification, current_specification
+from support.places import DATA as ALL_DATA
 
-DATA = Path(__file__).parents[1] / "data" / "lint"
+DATA = ALL_DATA / "lint"
 FIXTURES = sorted(DATA.glob("*.md"))
 
 

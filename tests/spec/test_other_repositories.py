@@ -16,8 +16,8 @@ import pytest
 import yaml
 
 from eurdf.format.schema import FILES
+from support.places import ROOT
 
-ROOT = Path(__file__).parents[2]
 HOOKS = ROOT / ".pre-commit-hooks.yaml"
 ACTION = ROOT / "action.yml"
 

@@ -1,4 +1,4 @@
-"""A robot with a joint of every type in a row, on a floating root, and how its joints move, from the specification."""
+"""A robot with a joint of every type in a row, on a floating root."""
 
 from __future__ import annotations
 
@@ -6,36 +6,16 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from support.plain_urdf import inertial, joint_element, link_element, robot
 
 Configuration = Mapping[str, Sequence[float]]
-Vector = npt.NDArray[np.float64]
-
-#: Type of each joint that has coordinates, and how many velocities it has.
-VELOCITIES = {
-    "root_joint": ("floating", 6),
-    "turn": ("scalars", 1),
-    "spin": ("scalars", 1),
-    "slide": ("scalars", 1),
-    "plane": ("planar", 3),
-    "fly": ("floating", 6),
-    "ball": ("spherical", 3),
-    "cardan": ("scalars", 2),
-    "skew_cardan": ("scalars", 2),
-    "cylinder": ("scalars", 2),
-    "screw": ("scalars", 1),
-    "merged": ("spherical", 3),
-}
 
 #: Of each link that weighs: mass, centre of mass, and diagonal of the inertia about it.
 MASSES = {
     f"link_{index}": (1.0 + 0.1 * index, (0.1, -0.05 * index, 0.2), (0.1, 0.2 + 0.01 * index, 0.25))
     for index in (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 13, 14)
 }
-
-ARMATURES = {("ball", 0): 0.1, ("ball", 1): 0.1, ("ball", 2): 0.1, ("screw", 0): 0.2, ("slide", 0): 50.0**2 * 1e-4}
 
 _JOINTS = [
     ("turn", "revolute", (1.0, 2.0, 2.0)),
@@ -120,40 +100,6 @@ def write_every_joint(folder: Path) -> tuple[Path, Path]:
     description.write_text(DESCRIPTION, encoding="utf-8")
     urdf.write_text(robot(*links, *joints, name="every joint"), encoding="utf-8")
     return description, urdf
-
-
-def moved(configuration: Configuration, joint: str, index: int, step: float) -> Configuration:
-    """q ⊕ t v, to first order in t, for one unit velocity of a joint, along which its child's frame moves."""
-    kind, _ = VELOCITIES[joint]
-    q = np.array(configuration[joint], dtype=float)
-    unit = np.eye(6)[index]
-    if kind == "scalars":
-        q[index] += step
-    elif kind == "planar":
-        c, s = np.cos(q[2]), np.sin(q[2])
-        q += step * np.array([c * unit[0] - s * unit[1], s * unit[0] + c * unit[1], unit[2]])
-    elif kind == "spherical":
-        q = turned(q, step * unit[:3])
-    else:
-        p = q[:3] + step * rotation(q[3:]) @ unit[:3]
-        q = np.concatenate([p, turned(q[3:], step * unit[3:])])
-    return {**configuration, joint: q.tolist()}
-
-
-def turned(quaternion: Vector, by: Vector) -> Vector:
-    """The orientation turned by a small angle about an axis that it carries; x, y, z, w."""
-    x, y, z, w = quaternion
-    a, b, c = by / 2.0
-    product = np.array(
-        [x + w * a + y * c - z * b, y + w * b + z * a - x * c, z + w * c + x * b - y * a, w - x * a - y * b - z * c]
-    )
-    return product / np.linalg.norm(product)
-
-
-def rotation(quaternion: Vector) -> Vector:
-    x, y, z, w = quaternion
-    u = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.eye(3) + 2.0 * w * u + 2.0 * u @ u
 
 
 def _text(values: Sequence[float]) -> str:

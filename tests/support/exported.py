@@ -7,9 +7,9 @@ from typing import Any
 
 import mujoco
 import numpy as np
-import pinocchio as pin
 
 import eurdf
+import pinocchio as pin
 from eurdf.convert.coordinates import Coordinates
 from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.joint import Joint, JointProperties
@@ -18,7 +18,12 @@ from eurdf.mechanism.mechanism import Root
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand
 from support.mechanisms import closed_tree
-from support.plain_urdf import pinocchios_own
+from support.plain_urdf import inertial, pinocchios_own
+
+#: A link's inertia and shape, and a joint's limits, of robots that the tests of formats write.
+BODY = inertial(1.5, '<origin xyz="0.1 0.2 0.3"/>')
+BALL = '<collision><geometry><sphere radius="0.05"/></geometry></collision>'
+LIMIT = '<limit lower="-1" upper="2" effort="7" velocity="3"/>'
 
 
 def real_inertia(random: np.random.Generator) -> Inertia:

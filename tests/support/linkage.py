@@ -8,16 +8,17 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 
-from eurdf.closures.kind import REGISTRY
+import pinocchio as pin
+from eurdf.closures import REGISTRY
 from eurdf.kinematics.residual import closure_openings
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Closure, Constraint
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.actuation import Actuation
+from eurdf.pinocchio.configuration import Slot
 from eurdf.pinocchio.constraint import build_constraint_models
-from eurdf.pinocchio.tree import PinocchioTree, Site
+from eurdf.pinocchio.tree import Site, Tree
 from support.plain_urdf import inertial, joint_element, link_element
 
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
@@ -34,12 +35,12 @@ class Linkage:
     derived: dict[Any, Any] = field(default_factory=dict, init=False)
 
     @cached_property
-    def tree(self) -> PinocchioTree:
+    def tree(self) -> Tree:
         """The bodies have the names of the joints that carry them."""
         model = self.model
         sites = {name: Site(joint, pin.SE3.Identity()) for joint, name in enumerate(model.names)}
-        first = zip(model.idx_qs, model.nqs, model.idx_vs, model.nvs, strict=True)
-        return PinocchioTree(model, sites, dict(zip(model.names, first, strict=True)))
+        at = zip(model.names, model.idx_qs, model.nqs, model.idx_vs, model.nvs, strict=True)
+        return Tree(model, sites, {name: Slot(None, *numbers) for name, *numbers in at})
 
     @cached_property
     def constraint_models(self) -> list[Any]:
@@ -380,3 +381,17 @@ MIMIC = """<robot name="mimic">
     <axis xyz="1 0 0"/><limit lower="-9" upper="9" effort="1" velocity="1"/>
     <mimic joint="lead" multiplier="0.5" offset="0"/></joint>
 </robot>"""
+
+
+def scissors(mimic: bool = True) -> Linkage:
+    """Two bars of which the second folds back twice as fast as the first turns, and a slide under their end."""
+    text = """<robot name="scissors"><link name="g"/><link name="a"/><link name="b"/><link name="c"/>
+      <joint name="lead" type="revolute"><parent link="g"/><child link="a"/><axis xyz="0 0 1"/>
+        <limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
+      <joint name="fold" type="revolute"><parent link="a"/><child link="b"/><origin xyz="1 0 0"/><axis xyz="0 0 1"/>
+        <limit lower="-3" upper="3" effort="1" velocity="1"/><mimic joint="lead" multiplier="-2"/></joint>
+      <joint name="slide" type="prismatic"><parent link="g"/><child link="c"/><axis xyz="1 0 0"/>
+        <limit lower="-3" upper="3" effort="1" velocity="1"/></joint></robot>"""
+    model = pin.buildModelFromXML(text, mimic=mimic)
+    fold, slide = model.getJointId("fold"), model.getJointId("slide")
+    return Linkage(model, [closure(model, slide, pin.SE3.Identity(), fold, translation(1.0, 0.0, 0.0), "3d")])

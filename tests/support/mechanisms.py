@@ -7,13 +7,13 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 
 import eurdf
+import pinocchio as pin
+from eurdf.closures import REGISTRY
 from eurdf.closures.distance import DistanceClosure
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.hinge import HingeClosure
-from eurdf.closures.kind import REGISTRY
 from eurdf.closures.point import PointClosure
 from eurdf.mechanism.body import Anchor, Body
 from eurdf.mechanism.constraint import Closure, Coupling

@@ -10,7 +10,8 @@ from typing import Any
 
 import pytest
 
-WILD = Path(__file__).parents[3] / "shared" / "wild"
+from support.places import WILD
+
 _FILE = WILD / "facts.json"
 
 #: By robot, what its README describes; empty where the folder is not there.

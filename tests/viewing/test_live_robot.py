@@ -21,9 +21,10 @@ from eurdf.viewing.session import Session
 from support.described import load, strut
 from support.linkage import described, n_bar
 from support.mechanisms import closed_tree
+from support.places import ROOT
 
 NODE = shutil.which("node")
-PROGRAM = Path(__file__).parents[1] / "support/live_robot.js"
+PROGRAM = ROOT / "tests" / "support/live_robot.js"
 
 needs_node = pytest.mark.skipif(NODE is None, reason="node is not installed")
 

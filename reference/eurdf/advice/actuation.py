@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 from eurdf.advice.hinges import LikelyHinge, likely_hinge
 from eurdf.advice.passive import PassiveMotions
 from eurdf.diagnostics import quoted
-from eurdf.kinematics.analysis import Analysis, LoopAnalysis, analyze
+from eurdf.kinematics.analysis import Analysis, analyze
+from eurdf.kinematics.loop_analysis import LoopAnalysis
 from eurdf.pinocchio.robot import build_robot
 
 if TYPE_CHECKING:

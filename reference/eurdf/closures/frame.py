@@ -1,9 +1,9 @@
-"""6d: B is at A, in position and orientation: a weld (EU-CLO-008)."""
+"""6d: B is at A, in position and orientation: a weld."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -16,10 +16,12 @@ from eurdf.mechanism.constraint import Unit
 
 @dataclass(frozen=True, slots=True)
 class FrameClosure(ClosureKind):
-    """B is at A in position and orientation: a weld. r = log6(ᴬM_B), linear and angular, m and rad."""
+    """EU-CLO-008: B is at A in position and orientation: a weld. r = log6(ᴬM_B), linear and angular, m and rad."""
 
     type: ClassVar[str] = "6d"
     units: ClassVar[tuple[Unit, ...]] = ("m",) * 3 + ("rad",) * 3
+    text: ClassVar[str] = "their orientations also agree"
+    since: ClassVar[Literal["1", "2.1"]] = "1"
 
     def with_orientation_free(self) -> PointClosure:
         """The 3d closure of the same frames."""

@@ -1,9 +1,9 @@
-"""3d: the origin of B is at the origin of A: a ball joint (EU-CLO-009)."""
+"""3d: the origin of B is at the origin of A: a ball joint."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -15,10 +15,12 @@ from eurdf.mechanism.constraint import Unit
 
 @dataclass(frozen=True, slots=True)
 class PointClosure(ClosureKind):
-    """The origin of B is at the origin of A: a ball joint. r = p, m, with p = ᴬp_B."""
+    """EU-CLO-009: the origin of B is at the origin of A: a ball joint. r = p, m, with p = ᴬp_B."""
 
     type: ClassVar[str] = "3d"
     units: ClassVar[tuple[Unit, ...]] = ("m",) * 3
+    text: ClassVar[str] = "the origins of frames A and B coincide"
+    since: ClassVar[Literal["1", "2.1"]] = "1"
 
     @staticmethod
     def residual(poses: RelativePoses, fixed: Any) -> Matrix:

@@ -179,13 +179,13 @@ class _Replacement(NamedTuple):
             return None
         if new == "fixed":
             return joint.fixed()
-        if new == "spherical":
-            return self._spread(joint, JointType.SPHERICAL, ())
         if new == "universal":
             return self.universal(joint)
         if new == "cylindrical":
             return self.cylindrical(joint)
-        return self.helical(joint)
+        if new == "helical":
+            return self.helical(joint)
+        return self._spread(joint, JointType(new), ())
 
     def _spread(
         self,

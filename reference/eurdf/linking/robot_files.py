@@ -75,8 +75,10 @@ class ReadRobot(NamedTuple):
 
     def place_of_constraint(self, name: str) -> Place:
         """Where a closure or a coupling is stated."""
-        stated = (*self.description.closures, *self.description.couplings)
-        return self.description.document.place(next(entry.pointer for entry in stated if entry.name == name))
+        file = self.description
+        pointers = {each.name: each.pointer for each in file.closures}
+        pointers |= {each.name: each.pointer for each in file.couplings}
+        return file.document.place(pointers[name])
 
     def place_of_configuration(self, name: str) -> Place:
         """Where a configuration is stated."""

@@ -166,7 +166,7 @@ class Joint:
         Its child body is at ``placement * transform(c) * offset`` in its parent.
 
         Args:
-            coordinates: As files have them (`JointType.coordinates`): rad, m, quaternions x, y, z, w, brought to unit
+            coordinates: As files have them: rad, m, quaternions x, y, z, w, brought to unit
                 length.
 
         Raises:

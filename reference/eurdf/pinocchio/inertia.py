@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
-import pinocchio as pin
 
+import pinocchio as pin
+from eurdf.array import Matrix, Vector
 from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.pose import IDENTITY, Quaternion
 
 _Row = tuple[float, float, float]
 _Matrix3 = tuple[_Row, _Row, _Row]
-Vector = npt.NDArray[np.float64]
-Matrix = npt.NDArray[np.float64]
 
 
 _MASSLESS = pin.Inertia.Zero()

@@ -12,7 +12,6 @@ from collections.abc import Collection, Mapping
 from itertools import count
 
 import pinocchio as pin
-
 from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.mechanism.pose import IDENTITY

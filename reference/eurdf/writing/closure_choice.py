@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from eurdf.closures.kind import REGISTRY
+from eurdf.closures import REGISTRY
 from eurdf.diagnostics import enumerated
 from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.mechanism import Mechanism

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any, Literal
 
 from lxml import etree
@@ -17,16 +17,16 @@ from lxml import etree
 from eurdf.diagnostics.wording import visible
 from eurdf.format.closure_model import (
     CLOSURE,
-    AnyClosure,
     Compliance,
     FrameOnLink,
     FrameReference,
     NamedFrame,
     PoseOnLink,
 )
+from eurdf.format.closure_model import Closure as ClosureEntry
 from eurdf.format.closure_model import Coupling as CouplingEntry
 from eurdf.format.conventions import VERSION2_1, VERSION_KEY, is_own_key
-from eurdf.format.joint_model import JOINT, Geared, Limits
+from eurdf.format.joint_model import JOINT, NAMED, Geared, Limits
 from eurdf.format.joint_model import Joint as JointEntry
 from eurdf.format.model import VERSION2, Version2, lowest_version
 from eurdf.format.yaml_text import entries_of, modeline, text_of
@@ -38,16 +38,15 @@ from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import IDENTITY, Vector3
 from eurdf.mechanism.same_model import with_universal_joints
 from eurdf.writing import urdf_elements as elements
-from eurdf.writing.urdf_elements import Color
+from eurdf.writing.urdf_elements import (
+    Color,
+)
 from eurdf.writing.xml_text import file_content, representable, rpy_of
 
 #: Between two hyphens, which an XML comment must not contain.
 _TWO_HYPHENS = re.compile("-(?=-)")
 
 _Z: Vector3 = (0.0, 0.0, 1.0)
-
-#: Fields of all kinds of closure.
-_COMMON = frozenset(each.name for each in fields(Closure))
 
 
 class NotWritable(ValueError):  # noqa: N818 - named as the other refusals are
@@ -182,7 +181,7 @@ class _Urdf:
             self._properties(joint, kind, element)
         if child != joint.child:
             etree.SubElement(self.robot, "link", name=child)
-            elements.add_joint(self.robot, fixed, JointType.FIXED, child, joint.child, joint.offset, None)
+            elements.add_fixed_joint(self.robot, fixed, child, joint.child, joint.offset)
 
     def _properties(self, joint: Joint, kind: JointType, element: etree._Element) -> None:
         properties = joint.properties
@@ -217,9 +216,10 @@ def _in_urdf(joint: Joint) -> tuple[JointType, Vector3 | None]:
     if not joint.type.replaces:
         return joint.type, None if joint.type.is_fixed or joint.type.quaternion is not None else axis
     index = _limited_in_urdf(joint)
-    if index is None:
+    if index is None and JointType.CONTINUOUS in joint.type.replaces:
         return JointType.CONTINUOUS, axis
-    return JointType.PRISMATIC if joint.type.coordinates[index] == "length" else JointType.REVOLUTE, axis
+    slides = index is None or joint.type.steps[index].kind == "slide"
+    return JointType.PRISMATIC if slides else JointType.REVOLUTE, axis
 
 
 def _limited_in_urdf(joint: Joint) -> int | None:
@@ -328,23 +328,15 @@ def _actuator(name: str, mechanism: Mechanism) -> Geared:
     return Geared(joint=name, **stated)
 
 
-def _closure(closure: Closure, anchors: _Anchors) -> AnyClosure:
-    # What a kind has besides, one of its entries has by the same name.
-    own = {each.name: getattr(closure, each.name) for each in fields(closure)}
-    own = {key: value for key, value in own.items() if key not in _COMMON}
-    if "axes" in own and len(set(own["axes"])) == 1:
-        own = {"axis": own["axes"][0]}
-    forms = [record for record in CLOSURE.records if closure.type in record.values_of_type()]
-    form = next(record.model for record in forms if own.keys() <= record.all_keys.keys())
+def _closure(closure: Closure, anchors: _Anchors) -> ClosureEntry:
     linear, angular = closure.compliance.linear or None, closure.compliance.angular or None
-    written: AnyClosure = form(
+    return CLOSURE.entry(
+        closure.type,
+        closure.stated(),
         name=closure.name,
-        type=closure.type,
         frames=(anchors.reference(closure.a), anchors.reference(closure.b)),
         compliance=Compliance(linear=linear, angular=angular) if linear or angular else None,
-        **own,
     )
-    return written
 
 
 class _Anchors:
@@ -389,7 +381,7 @@ def _inside(place: Any, key: str) -> Any:
     """What is at a key or an index; an actuator or a joint that is a name alone becomes a mapping."""
     if isinstance(place, dict):
         value = place.get(key)
-        if isinstance(value, str) and value in ("spherical", "cylindrical"):
+        if isinstance(value, str) and value in NAMED:
             place[key] = value = {"type": value}
         return value
     if isinstance(place, list) and key.isdigit() and int(key) < len(place):

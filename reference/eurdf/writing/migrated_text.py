@@ -10,7 +10,7 @@ from typing import Literal
 
 from eurdf.diagnostics import FileError
 from eurdf.diagnostics.lines import BREAK
-from eurdf.format.closure_model import AXES, CLOSURE, Closure, FrameReference, NamedFrame
+from eurdf.format.closure_model import AXES, CLOSURE, FrameReference, NamedFrame
 from eurdf.format.conventions import VERSION2_0, VERSION2_1, is_own_key
 from eurdf.format.joint_model import JOINT, Joint, Overridden, Spherical
 from eurdf.format.model import VERSION1, Description
@@ -176,7 +176,7 @@ class _Migration:
     def closures(self, attached: Mapping[Pointer, Attached]) -> Iterator[YamlEntry]:
         for index, closure in enumerate(self.description.closures):
             a, b = map(self.frame, closure.frames)
-            value = CLOSURE.write(Closure(name=closure.name, type=closure.type, frames=(a, b)))
+            value = CLOSURE.write(CLOSURE.entry(closure.type, {}, name=closure.name, frames=(a, b)))
             yield YamlEntry(item_of_mapping(value), *_together(attached, [("closed_loop", index), ("type", index)]))
         count = len(self.description.closures)
         if count:

@@ -8,12 +8,12 @@ from importlib.metadata import version
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 from lxml import etree
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import DiscreteContactApproximation, MultibodyPlant
 from pydrake.systems.analysis import Simulator
 
+import pinocchio as pin
 from eurdf.convert.coordinates import Matrix, Vector, rotation_matrix
 from eurdf.convert.verification.read_model import (
     CannotRead,
@@ -146,11 +146,11 @@ class DrakeModel(ReadModel):
 
     def _read_balls(self) -> list[tuple[str, list[Any]]]:
         """The points that each closure holds together, as the file has them."""
-        counts = {"3d": 1, "6d": 3, "hinge": 2, "distance": 0}
+        counts = {"3d": 1, "6d": 3, "hinge": 2}
         balls = iter(etree.fromstring(self._text.encode()).findall(f"{_DRAKE}ball_constraint"))
         found = []
         for closure in self._exported.robot.mechanism.closures:
-            if counts[closure.type]:
+            if closure.type in counts:
                 found.append((closure.name, [_ends(next(balls)) for _ in range(counts[closure.type])]))
         return found
 

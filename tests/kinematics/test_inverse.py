@@ -1,0 +1,332 @@
+"""Inverse kinematics of frames of the closed mechanism, within its limits."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import nnls
+
+import pinocchio as pin
+from eurdf.kinematics.assembly import assemble, start
+from eurdf.kinematics.bounded_step import bounded_step
+from eurdf.kinematics.forward import forward_kinematics
+from eurdf.kinematics.inverse import inverse_kinematics
+from eurdf.kinematics.position_limit import position_limits
+from eurdf.kinematics.residual import residual
+from eurdf.kinematics.sensitivity import actuated_jacobian
+from eurdf.kinematics.split import split_configuration
+from support.actuated import ROBOTS, actuated, closed_near, robot_called
+from support.linkage import Linkage, Z, loop, n_bar, pulled_apart, stewart, translation
+
+# For each robot a frame to lead.
+LED = {
+    "digit_leg": "foot",
+    "four_bar": "coupler",
+    "wild/5bar_linkage": "effector",
+    "wild/5bar_linkage_iso3d": "effector",
+    "wild/cassie_like": "foot",
+    "wild/digit_like": "foot",
+    "wild/talos_like": "foot",
+}
+
+
+def pose(robot: Any, q: Any, frame: str) -> Any:
+    model, data = robot.model, robot.model.createData()
+    pin.framesForwardKinematics(model, data, q)
+    return data.oMf[next(index for index, found in enumerate(model.frames) if found.name == frame)].copy()
+
+
+def outside_limits(robot: Any, q: Any) -> float:
+    clipped = position_limits(robot).clip(q)
+    return float(np.abs(clipped - q).max())
+
+
+def arm(*lengths: float, limit: float = np.inf) -> Any:
+    """A planar arm without loops, along x at zero, with a frame at its end."""
+    model, parent, before = pin.Model(), 0, 0.0
+    for index, length in enumerate(lengths):
+        parent = model.addJoint(parent, pin.JointModelRZ(), translation(before, 0.0, 0.0), f"j{index}")
+        before = length
+    model.addFrame(pin.Frame("end", parent, 0, translation(before, 0.0, 0.0), pin.FrameType.OP_FRAME))
+    model.lowerPositionLimit = np.full(len(lengths), -limit)
+    model.upperPositionLimit = np.full(len(lengths), limit)
+    return actuated(Linkage(model), ["j0"])
+
+
+@pytest.mark.parametrize("name", [name for name in LED if name in ROBOTS])
+@pytest.mark.parametrize("as_pose", [True, False])
+def test_inverse_kinematics_recovers_forward_kinematics(name: str, as_pose: bool) -> None:
+    robot, frame = robot_called(name), LED[name]
+    random, q0 = np.random.default_rng(0), assemble(robot_called(name), limits=True).q
+    found = 0
+    for _ in range(8):
+        wanted = closed_near(robot, random, 0.5, limits=True)
+        q_actuated, _ = split_configuration(robot, wanted)
+        reached = forward_kinematics(robot, q_actuated, wanted)
+        target = pose(robot, reached, frame)
+        answer = inverse_kinematics(robot, {frame: target if as_pose else target.translation}, q0)
+        assert np.abs(residual(robot, answer.q)).max() <= 1e-10
+        assert max(max(opening.position, opening.angle) for opening in answer.open) <= 1e-9
+        assert outside_limits(robot, answer.q) == 0.0
+        at = pose(robot, answer.q, frame)
+        (error,) = answer.errors
+        off = np.linalg.norm(at.translation - target.translation)
+        turned = np.linalg.norm(pin.log3(at.rotation.T @ target.rotation)) if as_pose else 0.0
+        assert (error.frame, error.position, error.angle) == (frame, pytest.approx(off), pytest.approx(turned))
+        assert answer.converged == (max(off, turned) <= 1e-8)
+        found += answer.converged
+    assert found == 8
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_target_at_current_pose_takes_no_step(name: str) -> None:
+    robot = robot_called(name)
+    q = assemble(robot).q
+    frame = next(found.name for found in robot.model.frames if found.parentJoint == robot.model.njoints - 1)
+    answer = inverse_kinematics(robot, {frame: pose(robot, q, frame)}, q)
+    assert (answer.converged, answer.iterations, answer.reason, answer.at_limits) == (True, 0, None, ())
+    np.testing.assert_array_equal(answer.q, start(robot, q))
+
+
+@given(seed=st.integers(0, 2**32 - 1))
+@settings(max_examples=15, deadline=None)
+def test_stewart_legs_are_found_from_platform_pose(seed: int) -> None:
+    linkage, random = stewart(), np.random.default_rng(seed)
+    model = linkage.model
+    carrier = linkage.model.getJointId("ball0")
+    model.addFrame(pin.Frame("top", carrier, 0, translation(0.1, 0.0, 0.2), pin.FrameType.OP_FRAME))
+    robot = actuated(linkage)
+    lengths = random.uniform(-0.1, 0.1, 6)
+    target = pose(robot, forward_kinematics(robot, lengths), "top")
+    answer = inverse_kinematics(robot, {"top": target})  # limits there are, at 1e308
+    assert answer.converged
+    np.testing.assert_allclose(split_configuration(robot, answer.q)[0], lengths, atol=1e-7)
+
+
+def test_two_feet_reach_targets_together() -> None:
+    if "wild/digit_like_2legs" not in ROBOTS:
+        pytest.skip("no published robots: put their folder at ../shared/wild, beside the checkout")
+    robot, random = robot_called("wild/digit_like_2legs"), np.random.default_rng(1)
+    q0 = assemble(robot).q
+    feet = ["foot", "foot_left"]
+    wanted = closed_near(robot, random, 0.3)
+    # One by its pose, the other by its position alone.
+    targets = {feet[0]: pose(robot, wanted, feet[0]), feet[1]: pose(robot, wanted, feet[1]).translation}
+    answer = inverse_kinematics(robot, targets, q0, limits=False)
+    assert answer.converged
+    assert [error.frame for error in answer.errors] == feet
+    assert pose(robot, answer.q, feet[0]).isApprox(targets[feet[0]], 1e-7)
+    np.testing.assert_allclose(pose(robot, answer.q, feet[1]).translation, targets[feet[1]], atol=1e-7)
+    assert answer.errors[1].angle == 0.0
+
+
+def test_foot_trajectory_has_no_jumps() -> None:
+    robot = robot_called("digit_leg")
+    q = assemble(robot, limits=True).q
+    home, steps = pose(robot, q, "foot"), []
+    for phase in np.linspace(0.0, 2.0 * np.pi, 25):
+        lift = np.array([0.05 * np.sin(phase), 0.0, 0.05 * (1.0 - np.cos(phase))])
+        answer = inverse_kinematics(robot, {"foot": pin.SE3(home.rotation, home.translation + lift)}, q)
+        assert answer.converged
+        steps.append(np.abs(pin.difference(robot.model, q, answer.q)).max())
+        q = answer.q
+    assert max(steps) < 0.2
+    # The motors come back with the foot.
+    motors, _ = split_configuration(robot, q)
+    np.testing.assert_allclose(motors, split_configuration(robot, assemble(robot, limits=True).q)[0], atol=1e-7)
+
+
+@pytest.mark.parametrize("name", [name for name in ("digit_leg", "four_bar", "wild/talos_like") if name in ROBOTS])
+def test_unreachable_target_ends_nearest_in_bounded_steps(name: str) -> None:
+    robot, frame = robot_called(name), LED[name]
+    q0 = assemble(robot).q
+    target = pose(robot, q0, frame).translation + np.array([0.0, 0.4, -3.0])
+    answer = inverse_kinematics(robot, {frame: target}, q0, limits=False)
+    assert answer.iterations <= (10 + 2) * 60  # the descents and steps that `inverse_kinematics` states
+    assert not answer.converged
+    assert np.abs(residual(robot, answer.q)).max() <= 1e-10
+    (error,) = answer.errors
+    at = pose(robot, answer.q, frame).translation
+    assert error.position > 1.0
+    assert error.position == pytest.approx(np.linalg.norm(at - target))
+    # No motion of the motors brings it nearer: what the frame can do, if anything, is across the line to the target.
+    J = actuated_jacobian(robot, answer.q, frame, pin.LOCAL_WORLD_ALIGNED)[:3]
+    assert np.abs(J.T @ (at - target)).max() <= 1e-3 * error.position
+
+
+def test_short_arm_points_at_target() -> None:
+    robot = arm(1.0, 0.7)
+    answer = inverse_kinematics(robot, {"end": [3.0, 4.0, 0.0]}, np.array([0.3, 0.8]))
+    assert not answer.converged
+    assert answer.errors[0].position == pytest.approx(3.3, abs=1e-6)
+    np.testing.assert_allclose(pose(robot, answer.q, "end").translation, [1.02, 1.36, 0.0], atol=1e-3)
+
+
+def test_target_at_edge_of_reach_is_reached() -> None:
+    robot = arm(1.0, 0.7)
+    answer = inverse_kinematics(robot, {"end": [1.02, 1.36, 0.0]}, np.array([0.3, 0.8]), tolerance=1e-7)
+    assert answer.converged
+
+
+def test_limits_that_are_both_zero_are_no_range() -> None:
+    robot = arm(1.0, 1.0, limit=0.0)
+    assert inverse_kinematics(robot, {"end": [0.0, 1.5, 0.0]}, np.zeros(2)).converged
+    with pytest.raises(ValueError, match="limits is 'all'; use True or False"):
+        inverse_kinematics(robot, {}, limits="all")  # type: ignore[arg-type]
+
+
+def test_joints_at_limits_are_the_reason() -> None:
+    answer = inverse_kinematics(arm(1.0, 1.0, limit=0.5), {"end": [0.0, 2.0, 0.0]}, np.zeros(2))
+    assert answer.reason == "joint limits"
+    assert [(found.joint, found.side, found.limit) for found in answer.at_limits] == [
+        ("j0", "upper", 0.5),
+        ("j1", "upper", 0.5),
+    ]
+    assert "at their limits: 'j0' (upper limit 0.5), 'j1' (upper limit 0.5)" in repr(answer)
+
+
+def test_irrelevant_joint_at_limit_is_not_the_reason() -> None:
+    robot = arm(1.0, limit=0.5)
+    answer = inverse_kinematics(robot, {"end": [2.0 * np.cos(0.3), 2.0 * np.sin(0.3), 1.0]}, np.array([0.5]))
+    assert answer.q[0] == pytest.approx(0.3, abs=1e-4)
+    assert (answer.reason, answer.at_limits) == ("out of reach", ())
+    assert "no motion of the mechanism brings the frames nearer" in repr(answer)
+
+
+@pytest.mark.parametrize(("name", "frame"), [("four_bar", "rocker_pin_a"), ("five_bar", "tip_b")])
+def test_frame_at_dead_point_is_singular(name: str, frame: str) -> None:
+    answer = inverse_kinematics(robot_called(name), {frame: [0.0, 0.0, 9.0]}, restarts=1)
+    assert (answer.reason, answer.at_limits) == ("singular", ())
+
+
+def test_folded_start_is_not_the_reason() -> None:
+    # All pins of the parallelogram are on a line: there, it has two motions.
+    linkage = loop([("R", (0, 0, 0), Z), ("R", (0.5, 0, 0), Z), ("R", (1.5, 0, 0), Z)], "3d", (1.0, 0.0, 0.0))
+    for joint in (1, 2):
+        frame = pin.Frame(f"bar{joint}", joint, 0, translation(0.3, 0.2, 0.0), pin.FrameType.OP_FRAME)
+        linkage.model.addFrame(frame)
+    target = translation(0.5, 2.0, 0.0)
+    answer = inverse_kinematics(actuated(linkage), {"bar1": target, "bar2": target}, np.zeros(3), restarts=0)
+    assert answer.reason == "out of reach"
+
+
+def test_exhausted_steps_are_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("eurdf.kinematics.inverse_search.MOST_STEPS", 1)
+    answer = inverse_kinematics(arm(1.0, 0.7), {"end": [0.0, 1.2, 0.0]}, np.array([0.3, 0.8]), restarts=0)
+    assert (answer.converged, answer.reason) == (False, "steps")
+
+
+def test_loops_kept_open_by_limits_are_the_reason() -> None:
+    linkage = n_bar(4, away=0.7)
+    linkage.model.lowerPositionLimit, linkage.model.upperPositionLimit = np.full(4, -0.1), np.full(4, 0.2)
+    linkage.model.addFrame(pin.Frame("tip", 2, 0, translation(0.1, 0.0, 0.0), pin.FrameType.OP_FRAME))
+    answer = inverse_kinematics(actuated(linkage), {"tip": [1.0, 0.0, 0.0]})
+    assert (answer.converged, answer.reason) == (False, "closures open")
+    assert answer.at_limits
+    assert {found.joint for found in answer.at_limits} <= {"j0", "j1", "j2", "j3"}
+    assert "closures stay open; open: 'end' by" in repr(answer)
+
+
+def test_joint_can_leave_its_limit() -> None:
+    robot = arm(1.0, 1.0, 1.0, limit=0.5)
+    target = pose(robot, np.array([0.2, -0.3, 0.4]), "end")
+    answer = inverse_kinematics(robot, {"end": target}, np.array([0.5, 0.5, -0.5]))
+    assert answer.converged
+    assert pose(robot, answer.q, "end").isApprox(target, 1e-7)
+    assert np.abs(answer.q).max() < 0.5
+
+
+def test_loops_and_limits_hold_together() -> None:
+    found = 0
+    for seed in range(20):
+        random = np.random.default_rng(seed)
+        linkage = n_bar(6, away=random.uniform(-0.5, 0.5, 6))
+        model = linkage.model
+        model.addFrame(pin.Frame("tip", 3, 0, translation(0.4, 0.2, 0.0), pin.FrameType.OP_FRAME))
+        closed = assemble(linkage).q
+        model.lowerPositionLimit = closed - random.uniform(0.0, 0.4, 6)
+        model.upperPositionLimit = closed + random.uniform(0.0, 0.4, 6)
+        robot = actuated(linkage)
+        wanted = assemble(linkage, random.uniform(model.lowerPositionLimit, model.upperPositionLimit), limits=True).q
+        answer = inverse_kinematics(robot, {"tip": pose(robot, wanted, "tip").translation}, closed)
+        assert (model.lowerPositionLimit <= answer.q).all()
+        assert (answer.q <= model.upperPositionLimit).all()
+        assert np.abs(residual(robot, answer.q)).max() <= 1e-10
+        found += answer.converged
+    assert found >= 19
+
+
+def test_start_outside_limits_is_clipped() -> None:
+    robot = arm(1.0, 1.0, limit=0.5)
+    answer = inverse_kinematics(
+        robot, {"end": pose(robot, np.array([0.4, 0.1]), "end").translation}, np.array([2.0, -3.0])
+    )
+    assert answer.converged
+    assert np.abs(answer.q).max() <= 0.5
+
+
+def test_open_mechanism_is_reported() -> None:
+    linkage = loop([("R", (0, 0, 0), Z), ("R", (1, 0, 0), Z)], "3d", (2, 0, 0))
+    linkage = pulled_apart(linkage, translation(5.0, 0.0, 0.0))
+    linkage.model.addFrame(pin.Frame("tip", 1, 0, translation(1.0, 0.0, 0.0), pin.FrameType.OP_FRAME))
+    answer = inverse_kinematics(actuated(linkage), {"tip": [1.0, 0.0, 0.0]}, np.array([0.3, 0.4]), limits=False)
+    assert not answer.converged
+    assert answer.open[0].name == "end"
+    assert answer.open[0].position == pytest.approx(3.0, abs=1e-6)
+
+
+def test_start_is_closed_without_targets() -> None:
+    linkage = n_bar(4, away=0.7)
+    answer = inverse_kinematics(actuated(linkage), {}, limits=False)
+    np.testing.assert_allclose(answer.q, assemble(linkage).q, atol=1e-12)
+    assert answer.converged
+    assert answer.errors == ()
+
+
+@pytest.mark.parametrize(
+    ("targets", "reason"),
+    [
+        ({"fooot": [0, 0, 0]}, r"no frame 'fooot'; did you mean 'foot'\?"),
+        ({"foot": [0.0, 0.0]}, r"targets\['foot'\] has the shape \(2,\); expected \(3,\), or a pose"),
+        ({"foot": [0.0, 0.0, np.nan]}, r"expected finite numbers of shape \(3,\), or a pose"),
+        ({"foot": "here"}, r"expected finite numbers of shape \(3,\), or a pose"),
+        ({"foot": pin.SE3(2.0 * np.eye(3), np.zeros(3))}, "is not a pose"),
+        ({"foot": pin.SE3(-np.eye(3), np.zeros(3))}, "is not a pose"),
+        ({"foot": pin.SE3(np.eye(3), np.full(3, np.inf))}, "is not a pose"),
+    ],
+)
+def test_invalid_target_is_refused(targets: Any, reason: str) -> None:
+    with pytest.raises(ValueError, match=reason):
+        inverse_kinematics(robot_called("digit_leg"), targets)
+
+
+@given(seed=st.integers(0, 2**32 - 1), size=st.integers(1, 8), count=st.integers(0, 20))
+@settings(max_examples=200, deadline=None)
+def test_bounded_step_is_optimal_within_bounds(seed: int, size: int, count: int) -> None:
+    random = np.random.default_rng(seed)
+    A = random.normal(size=(size, size))
+    H, g = A @ A.T + 0.1 * np.eye(size), random.normal(size=size)
+    G, h = random.normal(size=(count, size)), random.uniform(0.0, 0.5, count) * random.integers(0, 2, count)
+    y = bounded_step(H, g, G, h)
+    assert (G @ y <= h + 1e-9).all()
+    # The conditions of the optimum: the slope is held up by bounds that are met, which push inward only.
+    slope, met = H @ y + g, np.flatnonzero(G @ y >= h - 1e-8)
+    pressures = np.zeros(0)
+    remaining = slope
+    if len(met):
+        pressures, _ = nnls(G[met].T, -slope)
+        remaining = slope + G[met].T @ pressures
+    np.testing.assert_allclose(remaining, 0.0, atol=1e-6)
+
+
+def test_limits_are_those_that_model_has_now() -> None:
+    robot = arm(1.0, 1.0, limit=0.5)
+    assert position_limits(robot).upper.tolist() == [0.5, 0.5]
+    assert position_limits(robot) is position_limits(robot)
+    robot.model.upperPositionLimit = np.array([0.5, 0.2])
+    assert position_limits(robot).upper.tolist() == [0.5, 0.2]
+    assert position_limits(robot).clip(np.array([0.3, 0.3])).tolist() == [0.3, 0.2]

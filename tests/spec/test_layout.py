@@ -1,0 +1,19 @@
+"""A test file has the path of what it tests."""
+
+from __future__ import annotations
+
+from support.places import ROOT
+
+#: Folders of tests that are about the repository, whole robots, and what a contributor adds.
+ELSEWHERE = {"recipes", "robots", "spec"}
+
+
+def test_each_file_has_the_path_of_a_module_or_package() -> None:
+    for file in (ROOT / "tests").rglob("test_*.py"):
+        path = file.relative_to(ROOT / "tests")
+        if path.parts[0] in ELSEWHERE:
+            continue
+        name = path.stem.removeprefix("test_")
+        places = [folder / path.parent / name for folder in (ROOT, ROOT / "reference", ROOT / "reference" / "eurdf")]
+        main = [place.parent / "__main__" for place in places if name == "main"]
+        assert any(place.is_dir() or place.with_suffix(".py").is_file() for place in places + main), file
