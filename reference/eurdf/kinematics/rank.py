@@ -162,12 +162,11 @@ def numerical_ranks(values: Matrix, reference: Vector | None = None) -> Indices:
     """`numerical_rank` of the singular values (…, k) of several matrices; by default relative to the first of each."""
     if values.shape[-1] == 0:
         return np.zeros(values.shape[:-1], dtype=np.intp)
-    largest = values[..., :1] if reference is None else reference[..., None]
-    counts = largest > NOTHING
-    relative = np.clip(values / np.where(counts, largest, 1.0), FLOOR, 1.0)
-    ends = np.ones_like(largest)
-    ladder = np.concatenate((ends, relative, FLOOR * ends), axis=-1)
-    return np.where(counts[..., 0], np.argmax(ladder[..., :-1] / ladder[..., 1:], axis=-1), 0)
+    most = values[..., :1] if reference is None else reference[..., None]
+    ladder = np.empty((*values.shape[:-1], values.shape[-1] + 2))
+    ladder[..., 0], ladder[..., -1] = 1.0, FLOOR
+    ladder[..., 1:-1] = np.minimum(np.maximum(values / np.maximum(most, NOTHING), FLOOR), 1.0)
+    return np.asarray(np.argmax(ladder[..., :-1] / ladder[..., 1:], axis=-1) * (most[..., 0] > NOTHING))
 
 
 def certain_inverse(gram: Matrix, norm: Vector) -> tuple[Matrix, Mask]:
