@@ -202,16 +202,18 @@ def least_solution(A: Matrix, b: Matrix, norm: Vector) -> tuple[Matrix, Mask]:
             return x, sure
     else:
         x, sure = np.zeros((len(A), n, b.shape[2])), np.zeros(len(A), dtype=bool)
-    doubtful = np.flatnonzero(~sure & np.isfinite(norm) & are_finite(A))
-    A, b = A[doubtful], b[doubtful]
+    doubtful = ~sure & np.isfinite(norm)  # and with it A
+    which = slice(None) if every(doubtful) else np.flatnonzero(doubtful)
+    A, b = A[which], b[which]
     left, values, right = np.linalg.svd(A, full_matrices=False)
-    counts = values > CERTAIN * norm[doubtful, None]
-    doubt = (~counts & (values > ZERO * values.max(axis=1, initial=0.0)[:, None])).any(axis=1)
+    counts = values > CERTAIN * norm[which, None]
     inverse = np.divide(1.0, values, out=np.zeros_like(values), where=counts)
-    own = np.swapaxes(right, 1, 2) @ (inverse[:, :, None] * (np.swapaxes(left, 1, 2) @ b))
+    own = right.swapaxes(1, 2) @ (inverse[:, :, None] * (left.swapaxes(1, 2) @ b))
     missed = np.abs(A @ own - b).max(axis=(1, 2), initial=0.0)
-    x[doubtful] = own
-    sure[doubtful] = ~doubt & (missed <= MISSED * np.abs(b).max(axis=(1, 2), initial=0.0))
+    certain = missed <= MISSED * np.abs(b).max(axis=(1, 2), initial=0.0)
+    if not counts.all():
+        certain &= ~(~counts & (values > ZERO * values.max(axis=1, initial=0.0)[:, None])).any(axis=1)
+    x[which], sure[which] = own, certain
     return x, sure
 
 
