@@ -38,7 +38,7 @@ def residual(robot: Robot, q: Vector) -> Vector:
     """
     q = checked_array("q", q, (robot.tree.nq,))
     with borrowed(robot, _constraints) as constraints:
-        r: Vector = constraints.residual(constraints.at(q[None]))[0]
+        r = np.array(constraints.residual(constraints.at(q[None]))[0])
     finite("the residual", r)
     return r
 
@@ -60,7 +60,7 @@ def residual_and_jacobian(robot: Robot, q: Vector) -> tuple[Vector, Matrix]:
     q = checked_array("q", q, (robot.tree.nq,))
     with borrowed(robot, _constraints) as constraints:
         at = constraints.at(q[None])
-        r, K = constraints.residual(at)[0], constraints.jacobian(at)[0]
+        r, K = np.array(constraints.residual(at)[0]), constraints.jacobian(at)[0]
     finite("the residual and its derivative", r, K)
     return r, K
 

@@ -5,10 +5,11 @@ Scaled residuals, steps and motions are dimensionless: angles in rad, lengths in
 
 from __future__ import annotations
 
+from eurdf.closures import CLOSED as CLOSED
+
 # How far loops are open: rows of the residual, m or rad.
 
-#: A closure that is open by no more than this counts as closed (EU-CLO-005).
-CLOSED = 1e-6
+# `CLOSED`: A closure that is open by no more than this counts as closed (EU-CLO-005).
 #: A residual of this norm, in m and rad and dimensionless, is of closed loops for certain: how far a closure is open
 #: differs from its rows by a factor below 10.
 WELL_CLOSED = 0.1 * CLOSED
