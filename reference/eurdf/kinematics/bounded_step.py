@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eurdf.kinematics.array import Matrix, Vector
+from eurdf.array import Matrix, Vector
 
 # Below this, relative to the largest entry, is rounding.
 _SLIGHT = 1e-12
