@@ -18,7 +18,7 @@ from eurdf.mechanism.constraint import Closure
 from eurdf.pinocchio.robot import build_robot
 
 if TYPE_CHECKING:
-    from eurdf.kinematics.array import Vector
+    from eurdf.array import Vector
     from eurdf.mechanism.pose import Vector3
     from eurdf.pinocchio.robot import Robot
 

@@ -22,7 +22,7 @@ from eurdf.commands.output_file import writing
 from eurdf.commands.terminal import cell, new_table, write_notes, write_rendered
 
 if TYPE_CHECKING:
-    from eurdf.kinematics.array import Matrix, Vector
+    from eurdf.array import Matrix, Vector
     from eurdf.transmissions.serial_twin import Choice, SerialTwin
 
 _DESCRIPTION = """\

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 import pinocchio as pin
+from eurdf.array import Vector
 from eurdf.closures.hinge import HingeClosure
 from eurdf.closures.point import PointClosure
 from eurdf.convert.common_losses import COMMON
 from eurdf.convert.losses import Loss, Losses
 from eurdf.kinematics.analysis import analyze
-from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.mechanism.constraint import Closure

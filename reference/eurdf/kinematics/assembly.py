@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
+from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.descend import Descended, descend, evaluated
 from eurdf.kinematics.exceptions import NotClosable

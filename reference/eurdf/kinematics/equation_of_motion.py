@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from eurdf.kinematics.array import Matrix, Vector
+from eurdf.array import Matrix, Vector
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.exceptions import InconsistentMotion, UndeterminedMotion
 from eurdf.kinematics.finite import finite

@@ -13,7 +13,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from eurdf.kinematics.array import Matrix, Vector
+from eurdf.array import Matrix, Vector
 from eurdf.kinematics.descend import descend
 from eurdf.kinematics.problem import Group, Problem
 from eurdf.kinematics.quadratic_forms import common_roots

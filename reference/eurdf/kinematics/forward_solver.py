@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from eurdf.kinematics.array import Matrix, Vector
+from eurdf.array import Matrix, Vector
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.equation_of_motion import Acceleration, EquationOfMotion
 from eurdf.kinematics.finite import finite, overflow_refused

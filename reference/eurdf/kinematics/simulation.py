@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from eurdf.array import Matrix, Vector
 from eurdf.kinematics.applied_force import AppliedForce, External
-from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import assemble, start
 from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.exceptions import NotClosable, SimulationDiverged, StepTooLongWarning

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from eurdf.array import Matrix
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.hinge import HingeClosure
 from eurdf.closures.point import PointClosure
 from eurdf.diagnostics import enumerated
-from eurdf.kinematics.array import Matrix
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import RIGID, Closure
 from eurdf.mechanism.pose import Pose, Vector3, direction
