@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, TypeVar
 
 import numpy as np
 
-from eurdf.closures.se3 import cross, log6, log6_derivative, turned
+from eurdf.closures.se3 import cross, log3, log3_derivative, log6, log6_derivative, transposed, turned
 from eurdf.mechanism.constraint import Closure, Form, Key
 
 if TYPE_CHECKING:
@@ -52,6 +52,14 @@ class RelativePoses:
     def logarithm_by_twist(self) -> Matrix:
         """Its derivative (B, k, 6, 6) by the twist of B against A, seen from A: Jlog6(ᴬM_B) Ad(ᴮM_A) = Jlog6(ᴮM_A)."""
         return log6_derivative(-self.logarithm())
+
+    def turn_from(self, rotation: Matrix) -> Matrix:
+        """log3(Sᵀ ᴬR_B) (B, k, 3), rad, how B is turned against the axes S (B, k, 3, 3), seen from A."""
+        return log3(transposed(rotation) @ self.rotation)
+
+    def turn_by_omega(self, turn: Matrix) -> Matrix:
+        """The derivative (B, k, 3, 3) of such a turn by the angular velocity of B against A, seen from A."""
+        return log3_derivative(turn) @ transposed(self.rotation)
 
     def once(self, compute: Callable[[RelativePoses, Any], _T], fixed: Any) -> _T:
         """What a function of a kind computes from the poses; it is kept for the next to ask for it."""

@@ -7,8 +7,8 @@ from contextlib import contextmanager
 
 import numpy as np
 
+from eurdf.array import Matrix
 from eurdf.errors import NumericalOverflow
-from eurdf.kinematics.array import Matrix
 
 
 def finite(result: str, *arrays: Matrix) -> None:

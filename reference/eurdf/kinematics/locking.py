@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from eurdf.array import Indices, Vector
 from eurdf.errors import CannotLock, LockedOpen
-from eurdf.kinematics.array import Indices, Vector
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.locked_mechanism import lock_joints
 from eurdf.kinematics.loop import find_loops

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from eurdf.array import Vector
 from eurdf.diagnostics.wording import enumerated, meant
-from eurdf.kinematics.array import Vector
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eurdf.kinematics.array import Matrix, Vector
+from eurdf.array import Matrix, Vector
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.evaluate import Evaluator, State, evaluator
 from eurdf.kinematics.finite import finite
@@ -38,7 +38,7 @@ def residual(robot: Robot, q: Named) -> Vector:
     """
     q = configuration_of(robot, q)
     with borrowed(robot, _constraints) as constraints:
-        r: Vector = constraints.residual(constraints.at(q[None]))[0]
+        r = np.array(constraints.residual(constraints.at(q[None]))[0])
     finite("the residual", r)
     return r
 
@@ -60,7 +60,7 @@ def residual_and_jacobian(robot: Robot, q: Named) -> tuple[Vector, Matrix]:
     q = configuration_of(robot, q)
     with borrowed(robot, _constraints) as constraints:
         at = constraints.at(q[None])
-        r, K = constraints.residual(at)[0], constraints.jacobian(at)[0]
+        r, K = np.array(constraints.residual(at)[0]), constraints.jacobian(at)[0]
     finite("the residual and its derivative", r, K)
     return r, K
 

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from eurdf.array import numbers
+from eurdf.array import Indices, Mask, Matrix, Vector, numbers
 from eurdf.errors import DependentActuators
-from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.finite import finite, overflow_refused

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices, Vector
+from eurdf.array import Indices, Vector
 from eurdf.kinematics.named import Named, configuration_of, velocity_of
 from eurdf.pinocchio.arguments import checked_array
 

@@ -75,6 +75,8 @@ def checked_tolerance(given: Any, name: str = "tolerance") -> float:
     Raises:
         ValueError: It is no finite number, or is negative.
     """
+    if type(given) is float and 0.0 <= given < math.inf:
+        return given  # sooner than by the steps below
     value = float(checked_array(name, given, ()))
     if value < 0.0:
         raise ValueError(f"{name} is {value}; expected a number of at least 0")

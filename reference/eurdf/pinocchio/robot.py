@@ -12,9 +12,9 @@ import pinocchio as pin
 from eurdf.array import Vector
 from eurdf.diagnostics import Diagnostic
 from eurdf.mechanism.constraint import Constraint
-from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.pinocchio.actuation import Actuation, build_actuation
-from eurdf.pinocchio.configuration import Slot, configuration_vector, joint_coordinates, own_coordinates, slots
+from eurdf.pinocchio.configuration import Slot, configuration_vector, joint_coordinates, slots
 from eurdf.pinocchio.constraint import build_constraint_models
 from eurdf.pinocchio.geometry import MeshCache, Resolve, build_geometry, meshes_of
 from eurdf.pinocchio.meshes import Mesh
@@ -179,7 +179,9 @@ class Robot:
         Raises:
             ValueError: q does not have the shape (nq,), or is not finite.
         """
-        return (joint_coordinates if mimic else own_coordinates)(self.mechanism, self.model, q)
+        every = joint_coordinates(self.mechanism, self.model, q)
+        own = (name for name in every if mimic or name in self.slots or name == ROOT_JOINT)
+        return {name: every[name] for name in own}
 
     def __getstate__(self) -> dict[str, Any]:
         """What is pickled and copied: the model and its own geometry; what is derived from them is computed anew."""

@@ -12,10 +12,9 @@ from eurdf.array import Matrix, Vector, numbers
 from eurdf.errors import NoTransmission
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.dynamics import mass_matrix
-from eurdf.kinematics.equation_of_motion import MASSLESS
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.named import Named
-from eurdf.kinematics.tolerances import FLOOR
+from eurdf.kinematics.tolerances import FLOOR, MASSLESS
 from eurdf.loading import of_any_robot
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array
