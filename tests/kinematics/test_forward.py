@@ -6,12 +6,12 @@ import dataclasses
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-import pinocchio as pin
 from eurdf.exceptions import EurdfError
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.exceptions import DependentActuators, NotClosable, TooFar

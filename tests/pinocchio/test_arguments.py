@@ -11,10 +11,10 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 
 #: Annotations of parameters that are arrays, or mappings to arrays.
 ARRAY = re.compile(r"\b(Vector|Matrix|ArrayLike|External|Mapping\[str, Any\]|tuple\[float)")

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.pinocchio import constrained_dynamics, tree
 from eurdf.pinocchio.tree_recursion import TreeRecursion
 from support.linkage import JOINTS, branching
