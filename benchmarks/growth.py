@@ -21,6 +21,7 @@ from eurdf.linking.robot_files import read_robot
 from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.mechanism import Mechanism
+from eurdf.pinocchio.configuration import slots
 from eurdf.pinocchio.constraint import build_constraint_models
 from eurdf.pinocchio.model import build_model
 from eurdf.pinocchio.tree import build_tree
@@ -123,7 +124,8 @@ def by_loops() -> None:
                 robot = eurdf.load(path, geometry=False)
 
                 def models(mechanism: Mechanism = mechanism) -> None:
-                    build_constraint_models(mechanism.constraints, build_tree(mechanism, build_model(mechanism)))
+                    tree = build_tree(mechanism, build_model(mechanism), slots(mechanism))
+                    build_constraint_models(mechanism.constraints, tree)
 
                 tasks: tuple[Callable[[], object], ...] = (
                     lambda p=path: read_robot(p),  # type: ignore[misc]

@@ -17,10 +17,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import eurdf
+from eurdf.closures import REGISTRY
 from eurdf.closures.distance import DistanceClosure
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.hinge import HingeClosure
-from eurdf.closures.kind import REGISTRY
 from eurdf.closures.point import PointClosure
 from eurdf.closures.se3 import plane_across
 from eurdf.commands.robot_info import robot_info
@@ -202,7 +202,8 @@ def hinged(turn: Any) -> Linkage:
     """A body that turns about x, with a hinge about the axis z of A and that of B, turned by ``turn``."""
     model = pin.Model()
     joint = model.addJoint(0, pin.JointModelRX(), pin.SE3.Identity(), "j0")
-    return Linkage(model, [HingeClosure("pin", Anchor("universe"), Anchor(model.names[joint], pose_of(turn)))])
+    z = (0.0, 0.0, 1.0)
+    return Linkage(model, [HingeClosure("pin", Anchor("universe"), Anchor(model.names[joint], pose_of(turn)), (z, z))])
 
 
 @pytest.mark.parametrize("angle", [0.0, 1e-9, 1e-4, 0.3, 0.499999, 0.500001, 1.5, 3.1])

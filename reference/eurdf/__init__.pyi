@@ -18,8 +18,6 @@ from eurdf.exceptions import InvalidRobot as InvalidRobot
 from eurdf.exceptions import MissingExtra as MissingExtra
 from eurdf.exceptions import RobotNotFound as RobotNotFound
 from eurdf.kinematics.analysis import Analysis as Analysis
-from eurdf.kinematics.analysis import LoopAnalysis as LoopAnalysis
-from eurdf.kinematics.analysis import Motion as Motion
 from eurdf.kinematics.analysis import analyze as analyze
 from eurdf.kinematics.assembly import Assembly as Assembly
 from eurdf.kinematics.assembly import assemble as assemble
@@ -28,6 +26,7 @@ from eurdf.kinematics.dynamics import InverseDynamics as InverseDynamics
 from eurdf.kinematics.dynamics import achievable_acceleration as achievable_acceleration
 from eurdf.kinematics.dynamics import forward_dynamics as forward_dynamics
 from eurdf.kinematics.dynamics import inverse_dynamics as inverse_dynamics
+from eurdf.kinematics.dynamics import mass_matrix as mass_matrix
 from eurdf.kinematics.exceptions import CannotLock as CannotLock
 from eurdf.kinematics.exceptions import DependentActuators as DependentActuators
 from eurdf.kinematics.exceptions import InconsistentMotion as InconsistentMotion
@@ -45,7 +44,8 @@ from eurdf.kinematics.inverse import InverseKinematics as InverseKinematics
 from eurdf.kinematics.inverse import inverse_kinematics as inverse_kinematics
 from eurdf.kinematics.locking import LockedRobot as LockedRobot
 from eurdf.kinematics.locking import lock as lock
-from eurdf.kinematics.mass_matrix import mass_matrix as mass_matrix
+from eurdf.kinematics.loop_analysis import LoopAnalysis as LoopAnalysis
+from eurdf.kinematics.loop_analysis import Motion as Motion
 from eurdf.kinematics.opening import Opening as Opening
 from eurdf.kinematics.position_limit import JointAtLimit as JointAtLimit
 from eurdf.kinematics.project import project_acceleration as project_acceleration
@@ -79,6 +79,7 @@ from eurdf.pinocchio.robot import Robot as Robot
 from eurdf.transmissions.exceptions import DependentVelocities as DependentVelocities
 from eurdf.transmissions.exceptions import NoTransmission as NoTransmission
 from eurdf.transmissions.exceptions import OutOfReach as OutOfReach
+from eurdf.transmissions.grid_search import BoundaryPoint as BoundaryPoint
 from eurdf.transmissions.impedance import Impedance as Impedance
 from eurdf.transmissions.impedance import impedance_map as impedance_map
 from eurdf.transmissions.inertia import ReflectedInertia as ReflectedInertia
@@ -100,7 +101,6 @@ from eurdf.transmissions.serial_twin import serial_twin as serial_twin
 from eurdf.transmissions.transmission import Transmission as Transmission
 from eurdf.transmissions.transmission import Transmissions as Transmissions
 from eurdf.transmissions.transmission import transmission as transmission
-from eurdf.transmissions.workspace import BoundaryPoint as BoundaryPoint
 from eurdf.transmissions.workspace import Workspace as Workspace
 from eurdf.transmissions.workspace import workspace as workspace
 from eurdf.viewing.shown import ShownRobot as ShownRobot

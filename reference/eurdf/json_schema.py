@@ -1,21 +1,25 @@
-"""What the JSON Schema of a result says of a value beside its type; it is generated from the fields of the result."""
+"""Results as values of JSON, and what their JSON Schema, made of their fields, says of a value beside its type."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import fields, is_dataclass
 from typing import Annotated, Any
+
+from eurdf.diagnostics.wording import encodable
 
 
 class Keywords:
-    """Keywords of JSON Schema, in the annotation of a field; None removes one."""
+    """Keywords of JSON Schema, in the annotation of a field; None removes one, a function gives its value."""
 
     def __init__(self, **keywords: Any) -> None:
         self.keywords = keywords
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Callable[[Any], dict[str, Any]]) -> dict[str, Any]:
         """Pydantic asks for them; an annotation with its own would import it, which a command does without."""
-        keywords = {**handler(schema), **self.keywords}
-        return {name: value for name, value in keywords.items() if value is not None}
+        keywords = {name: value() if callable(value) else value for name, value in self.keywords.items()}
+        return {name: value for name, value in {**handler(schema), **keywords}.items() if value is not None}
 
 
 class Values:
@@ -56,3 +60,19 @@ Count = Annotated[int, Keywords(minimum=0)]
 
 #: A number that is null in JSON where it is not finite.
 NullIfInfinite = Annotated[float, Keywords(type=None, anyOf=[{"type": "number"}, {"type": "null"}])]
+
+
+def to_json(result: Any) -> Any:
+    """A result, or part of one, as a value of JSON: what is not finite is null, and hidden fields are left out."""
+    if is_dataclass(result):
+        shown = (field.name for field in fields(result) if not field.metadata.get("exclude"))
+        return {name: to_json(getattr(result, name)) for name in shown}
+    if isinstance(result, str):
+        return encodable(str(result))
+    if isinstance(result, float):
+        return float(result) if math.isfinite(result) else None
+    if hasattr(result, "tolist"):  # an array
+        return to_json(result.tolist())
+    if isinstance(result, Mapping):
+        return {key: to_json(value) for key, value in result.items()}
+    return [to_json(value) for value in result] if isinstance(result, (list, tuple)) else result

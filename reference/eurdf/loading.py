@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING
 from eurdf.advice.angles import advise_on_angles
 from eurdf.advice.lengths import advise_on_lengths
 from eurdf.advice.loops import closure_diagnostics
-from eurdf.advice.mimics import advise_on_mimics
 from eurdf.advice.quaternions import advise_on_quaternions
 from eurdf.diagnostics import Diagnostic, Diagnostics, Severity, quoted
 from eurdf.diagnostics.report import Report
 from eurdf.exceptions import InvalidRobot
 from eurdf.format.urdf.data import Urdf
 from eurdf.linking.mesh_files import FoundFiles, find_meshes, place_of_file
+from eurdf.linking.mimics import warn_of_ignored_mimics
 from eurdf.linking.robot_files import ReadRobot, inertia_diagnostics, read_robot
 from eurdf.mechanism.mechanism import Root
 from eurdf.mesh_files.kinds import KINDS, suffix_of
@@ -191,7 +191,7 @@ def check(
                 _check_loops(read)
             else:
                 advise_on_quaternions(read, None, diagnostics)
-        advise_on_mimics(read, diagnostics)
+        warn_of_ignored_mimics(read.mechanism, read.urdf, diagnostics)
         advise_on_angles(read, diagnostics)
         advise_on_lengths(read, meshes, diagnostics)
     return Report(read.path, tuple(diagnostics))

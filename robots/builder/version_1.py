@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from eurdf.format.yaml_text import Entry, Value, lines_of, modeline, text_of
+from eurdf.format.yaml_text import Value, YamlEntry, lines_of, modeline, text_of
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 
@@ -32,6 +32,6 @@ def version_1_text(mechanism: Mechanism, schema: str, comments: Sequence[str]) -
         "joint_name": list(replaced),
         "joint_type": list(replaced.values()),
     }
-    first, *rest = (Entry(lines_of(key, value)) for key, value in content.items() if value or key == "closed_loop")
+    first, *rest = (YamlEntry(lines_of(key, value)) for key, value in content.items() if value or key == "closed_loop")
     head = (modeline(schema), *(f"# {line}" for line in comments))
-    return text_of([Entry(first.lines, head), *rest])
+    return text_of([YamlEntry(first.lines, head), *rest])

@@ -17,14 +17,12 @@ import numpy as np
 import pytest
 
 import eurdf
-from eurdf.closures.kind import REGISTRY
-from eurdf.convert.common_losses import UNKNOWN
-from eurdf.convert.export_format import ExportInput, export_format
+from eurdf.closures import REGISTRY
+from eurdf.convert.export_format import export_format
 from eurdf.convert.formats import EXPORTS
 from eurdf.convert.hinges import with_hinges
-from eurdf.convert.losses import Losses
 from eurdf.mechanism.body import Frame, Inertia, Shape
-from eurdf.mechanism.constraint import Closure, Compliance, Coupling
+from eurdf.mechanism.constraint import Compliance, Coupling
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism, Motor
@@ -204,28 +202,6 @@ def test_constraint_that_is_left_out_is_a_loss(name: str, kinds: set[str]) -> No
     lost = {loss.name for loss in eurdf.export(robot, name).losses if loss.effect == "dropped"}
     constraints = robot.mechanism.constraints
     assert lost & {each.name for each in constraints} == {each.name for each in constraints if each.type in kinds}
-
-
-class InPlane(Closure):
-    """A closure of a type that no format knows."""
-
-    type = "in-plane"
-    units = ("m",)
-
-
-@pytest.mark.parametrize("name", sorted(set(EXPORTS) - MISSING))
-def test_closure_of_an_unknown_type_is_a_loss_that_names_it(name: str) -> None:
-    robot = eurdf.load("four_bar", geometry=False)
-    (closure,) = robot.mechanism.closures
-    mechanism = replace(robot.mechanism, closures=(InPlane("rod", closure.a, closure.b),))
-    exported = eurdf.export(robot, name)
-    losses = Losses((*export_format(name).rows, *UNKNOWN))
-    losses.find(mechanism, "motor", export_format(name).exact)
-    given = ExportInput(mechanism, exported.coordinates.own, {"assembled": {}})
-    export_format(name).write(given, losses)
-    (loss,) = [each for each in losses.found if each.name == "rod"]
-    assert loss.code == "export-closure-kind"
-    assert "'in-plane'" in loss.message
 
 
 @pytest.mark.parametrize("name", sorted(set(EXPORTS) - MISSING))

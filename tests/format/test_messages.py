@@ -241,10 +241,10 @@ def test_long_or_unprintable_name_is_escaped() -> None:
     assert "'tab\\there'" in tab
 
 
-SOUND = f"{ROOT}joints: {{knee: {{damping: 2}}}}\nclosures: [{{name: pin, type: 3d, frames: [a, b]}}]\n"
+SOUND = f"{ROOT}joints: {{knee: {{damping: 2}}}}\n"
 
 
-def test_reading_loads_neither_simulator_nor_pydantic() -> None:
+def test_reading_without_closures_loads_neither_numpy_nor_pydantic() -> None:
     code = (
         "import sys; from eurdf.format.read import *; from eurdf.reading.yaml_reader import read_yaml;"
         "from eurdf.reading.source import Source; from eurdf.diagnostics import Diagnostics;"

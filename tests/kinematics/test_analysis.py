@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 import eurdf
 from eurdf.commands.robot_info import robot_info
 from eurdf.kinematics.analysis import analyze
+from eurdf.kinematics.loop_analysis import sparse_basis
 from eurdf.kinematics.residual import residual, residual_and_jacobian
-from eurdf.kinematics.sparse_basis import sparse_basis
 from support.described import load
 from support.linkage import (
     Linkage,

@@ -72,7 +72,9 @@ def test_regular_robot_is_solved_without_elimination(name: str, eliminations: Co
         a, lambdas = by_pinocchio(robot, q, v, tau)
         np.testing.assert_allclose(found.a, a, atol=1e-9 * np.abs(a).max())
         np.testing.assert_allclose(np.concatenate(found.forces), lambdas, atol=1e-9 * np.abs(lambdas).max())
-        exact = EquationOfMotion(robot, q, v, robot.data).eliminate(tau, [(0.0, 0.0)] * len(robot.constraints))
+        exact = EquationOfMotion(robot, q, v, robot.tree.dynamics(robot.data)).eliminate(
+            tau, [(0.0, 0.0)] * len(robot.constraints)
+        )
         np.testing.assert_allclose(found.a, exact.a, atol=1e-8 * np.abs(a).max())
         np.testing.assert_allclose(np.concatenate(found.forces), exact.lambdas, atol=1e-7 * np.abs(lambdas).max())
 
@@ -95,7 +97,7 @@ def test_redundant_rows_get_least_forces(name: str, eliminations: Counted) -> No
     q, v = state(robot)
     found = eurdf.forward_dynamics(robot, q, v)
     assert eliminations.count == 0
-    exact = EquationOfMotion(robot, q, v, robot.data).eliminate(
+    exact = EquationOfMotion(robot, q, v, robot.tree.dynamics(robot.data)).eliminate(
         np.zeros(robot.model.nv), [(0.0, 0.0)] * len(robot.constraints)
     )
     np.testing.assert_allclose(found.a, exact.a, atol=1e-9 * np.abs(exact.a).max())

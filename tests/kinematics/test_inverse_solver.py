@@ -98,4 +98,4 @@ def test_diagonal_of_inverse_mass_matrix_includes_armature() -> None:
     robot.model.armature = np.linspace(0.1, 0.3, robot.model.nv)
     q = pin.randomConfiguration(robot.model, -np.ones(robot.model.nq), np.ones(robot.model.nq))
     expected = np.linalg.inv(eurdf.mass_matrix(robot, q)).diagonal()
-    np.testing.assert_allclose(robot.tree.inverse_mass_diagonal(q, robot.data), expected, rtol=1e-8)
+    np.testing.assert_allclose(robot.tree.dynamics(robot.data).inverse_mass_diagonal(q), expected, rtol=1e-8)

@@ -1,4 +1,4 @@
-"""What the kinematics asks of a spanning tree: `TreeKinematics` alone, and what that answers."""
+"""What the kinematics asks of a spanning tree: a `Tree` alone, and what that answers."""
 
 from __future__ import annotations
 

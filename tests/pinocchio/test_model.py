@@ -20,7 +20,7 @@ from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.actuation import build_actuation
-from eurdf.pinocchio.configuration import configuration_vector, joint_coordinates
+from eurdf.pinocchio.configuration import configuration_vector, joint_coordinates, slots
 from eurdf.pinocchio.constraint import build_constraint_models
 from eurdf.pinocchio.frames import body_frame_ids
 from eurdf.pinocchio.model import build_model
@@ -244,7 +244,7 @@ def test_late_leader_keeps_coordinate_limits_and_motor() -> None:
     assert (leader.idx_q, leader.idx_v) == (7, 6)  # after the root, whose coordinates stay the first
     assert (model.lowerPositionLimit[7], model.upperPositionLimit[7]) == (-2.0, 1.0)
     assert (model.upperVelocityLimit[6], model.upperEffortLimit[6]) == (7.0, 3.0)
-    actuation = build_actuation(mechanism, model)
+    actuation = build_actuation(mechanism, model, slots(mechanism))
     assert (actuation.idx_q.tolist(), actuation.idx_v.tolist()) == ([7], [6])
 
 
@@ -341,7 +341,7 @@ def test_body_without_link_has_no_frame() -> None:
     assert model.frames[carried.parentFrame].name == "j_X"
     ids = body_frame_ids(mechanism)
     assert [model.frames[ids[body.name]].name for body in bodies] == ["base", "first", "j_X", "third"]
-    [constraint] = build_constraint_models(mechanism.constraints, build_tree(mechanism, model))
+    [constraint] = build_constraint_models(mechanism.constraints, build_tree(mechanism, model, slots(mechanism)))
     assert (constraint.joint1_id, constraint.joint2_id) == (model.getJointId("j_X"), model.getJointId("then"))
 
 

@@ -11,7 +11,8 @@ import pytest
 
 import eurdf
 from eurdf.pinocchio import constrained_dynamics, tree
-from eurdf.pinocchio.tree_recursion import TreeRecursion
+from eurdf.pinocchio.springs import NO_SPRINGS
+from eurdf.pinocchio.tree_dynamics import TreeRecursion
 from support.linkage import JOINTS, branching
 
 
@@ -41,12 +42,12 @@ def test_recursion_matches_pinocchio(make: Callable[[], Any]) -> None:
     model.armature = random.uniform(0.0, 1.0, model.nv)
     low, high = -np.ones(model.nq), np.ones(model.nq)
     q, v, a = pin.randomConfiguration(model, low, high), random.normal(size=model.nv), random.normal(size=model.nv)
-    recursion, data, still = TreeRecursion(model), model.createData(), np.zeros(model.nv)
+    recursion, data, still = TreeRecursion(model, NO_SPRINGS), model.createData(), np.zeros(model.nv)
     expected = np.array(pin.rnea(model, data, q, v, a))
     np.testing.assert_allclose(recursion.inverse_dynamics(q, v, a), expected, atol=1e-11 * np.abs(expected).max())
     gravity = np.array(pin.rnea(model, data, q, still, still))
     M = np.array([pin.rnea(model, data, q, still, each) - gravity for each in np.eye(model.nv)]).T
-    np.testing.assert_allclose(recursion.mass_matrix(q), M, atol=1e-11 * np.abs(M).max())
+    np.testing.assert_allclose(recursion.mass_times(q, np.eye(model.nv)), M, atol=1e-11 * np.abs(M).max())
     for direction, force in zip(np.eye(model.nv), gravity, strict=True):
         ends = [recursion.potential_energy(pin.integrate(model, q, sign * 1e-4 * direction)) for sign in (1.0, -1.0)]
         assert (ends[0] - ends[1]) / 2e-4 == pytest.approx(force, abs=1e-5)

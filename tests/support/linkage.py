@@ -10,14 +10,15 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from eurdf.closures.kind import REGISTRY
+from eurdf.closures import REGISTRY
 from eurdf.kinematics.residual import closure_openings
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Closure, Constraint
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.actuation import Actuation
+from eurdf.pinocchio.configuration import Slot
 from eurdf.pinocchio.constraint import build_constraint_models
-from eurdf.pinocchio.tree import PinocchioTree, Site
+from eurdf.pinocchio.tree import Site, Tree
 from support.plain_urdf import inertial, joint_element, link_element
 
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
@@ -34,12 +35,12 @@ class Linkage:
     derived: dict[Any, Any] = field(default_factory=dict, init=False)
 
     @cached_property
-    def tree(self) -> PinocchioTree:
+    def tree(self) -> Tree:
         """The bodies have the names of the joints that carry them."""
         model = self.model
         sites = {name: Site(joint, pin.SE3.Identity()) for joint, name in enumerate(model.names)}
-        first = zip(model.idx_qs, model.nqs, model.idx_vs, model.nvs, strict=True)
-        return PinocchioTree(model, sites, dict(zip(model.names, first, strict=True)))
+        at = zip(model.names, model.idx_qs, model.nqs, model.idx_vs, model.nvs, strict=True)
+        return Tree(model, sites, {name: Slot(None, *numbers) for name, *numbers in at})
 
     @cached_property
     def constraint_models(self) -> list[Any]:

@@ -10,10 +10,10 @@ import numpy as np
 import pinocchio as pin
 
 import eurdf
+from eurdf.closures import REGISTRY
 from eurdf.closures.distance import DistanceClosure
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.hinge import HingeClosure
-from eurdf.closures.kind import REGISTRY
 from eurdf.closures.point import PointClosure
 from eurdf.mechanism.body import Anchor, Body
 from eurdf.mechanism.constraint import Closure, Coupling

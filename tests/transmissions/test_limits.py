@@ -13,8 +13,7 @@ from scipy.optimize import linprog, minimize
 import eurdf
 from eurdf.mechanism.mechanism import Motor
 from eurdf.pinocchio.robot import build_robot
-from eurdf.transmissions.box import largest_box
-from eurdf.transmissions.polytope import image_of_box, preimage_of_box
+from eurdf.transmissions.polytope import image_of_box, largest_box, preimage_of_box
 from support.transmissions import DRIVEN, posed, slider_crank
 
 

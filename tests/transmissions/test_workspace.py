@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import eurdf
-from eurdf.transmissions.outline import outlines
+from eurdf.transmissions.grid_search import outlines
 from support.transmissions import slider_crank
 
 ANKLE = ("free_pitch", "free_roll")

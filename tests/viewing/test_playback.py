@@ -9,9 +9,15 @@ import numpy as np
 import pytest
 
 import eurdf
-from eurdf.viewing.playback import StepBudget, gravity_frames, sweep_frames, trajectory_frames
+from eurdf.viewing.playback import (
+    StepBudget,
+    Trajectory,
+    gravity_frames,
+    read_trajectory,
+    sweep_frames,
+    trajectory_frames,
+)
 from eurdf.viewing.session import Session
-from eurdf.viewing.trajectory import Trajectory, read_trajectory
 
 
 def silent(message: str) -> None:

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 from eurdf.advice.hinges import LikelyHinge, likely_hinge
 from eurdf.advice.passive import PassiveMotions
 from eurdf.diagnostics import quoted
-from eurdf.kinematics.analysis import Analysis, LoopAnalysis, analyze
+from eurdf.kinematics.analysis import Analysis, analyze
+from eurdf.kinematics.loop_analysis import LoopAnalysis
 from eurdf.pinocchio.robot import build_robot
 
 if TYPE_CHECKING:
@@ -35,12 +36,6 @@ def advise_on_actuation(read: ReadRobot, robot: Robot, q: Vector, diagnostics: D
     """Report loops without an actuator; else actuators that depend on one another, and motions left uncontrolled.
 
     Nothing is reported where an earlier warning may be the reason: a misspelt key, or a closure that is left out.
-
-    Args:
-        read: The robot as read; it has closures.
-        robot: The robot built from it.
-        q: A closed configuration (nq,).
-        diagnostics: Gets what is found.
     """
     mechanism = robot.mechanism
     if any(found.code in _REASONS for found in read.diagnostics):

@@ -38,15 +38,10 @@ _Found = tuple[float, str, _Place]
 
 
 def advise_on_angles(read: ReadRobot, diagnostics: Diagnostics) -> None:
-    """Report the angles of each file that are likely in degrees, at the first of them.
-
-    Args:
-        read: The robot as read.
-        diagnostics: Gets what is found.
-    """
+    """Report the angles of each file that are likely in degrees, at the first of them."""
     _report([*_in_urdf(read.urdf)], diagnostics)
     if read.yaml is not None:
-        _report([*_in_extension(read.description, read.mechanism)], diagnostics)
+        _report([*_in_description(read.description, read.mechanism)], diagnostics)
 
 
 def _report(found: list[_Found], diagnostics: Diagnostics) -> None:
@@ -93,13 +88,13 @@ def _in_urdf(urdf: Urdf) -> Iterator[_Found]:
         yield from open_ended
 
 
-def _in_extension(extension: Description, mechanism: Mechanism) -> Iterator[_Found]:
-    place_at = extension.document.place
+def _in_description(description: Description, mechanism: Mechanism) -> Iterator[_Found]:
+    place_at = description.document.place
 
     def found(value: float, what: str, pointer: Pointer) -> _Found:
         return value, what, partial(place_at, pointer)
 
-    for reference in extension.references:
+    for reference in description.references:
         for index, value in enumerate(reference.rpy):
             if _orientation_in_degrees(value):
                 yield found(value, "an angle of 'rpy'", (*reference.pointer, "rpy", index))
@@ -107,7 +102,7 @@ def _in_extension(extension: Description, mechanism: Mechanism) -> Iterator[_Fou
         joint.name: [index for index, name in enumerate(joint.type.coordinates) if name == "angle"]
         for joint in mechanism.joints
     }
-    for entry in extension.joints:
+    for entry in description.joints:
         for side in ("lower", "upper"):
             given = entry.properties.get(("limits", side))
             for value in given if isinstance(given, tuple) else () if given is None else (given,):
@@ -118,7 +113,7 @@ def _in_extension(extension: Description, mechanism: Mechanism) -> Iterator[_Fou
             if rest is not None and _position_in_degrees(rest):
                 yield found(rest, f"'rest' of joint '{entry.name}'", (*entry.pointer, "rest"))
                 break
-    for key, configuration in extension.configurations.items():
+    for key, configuration in description.configurations.items():
         for name, values in configuration.items():
             for index in angles.get(name, ()):
                 if _position_in_degrees(values[index]):

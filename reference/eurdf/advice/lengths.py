@@ -32,13 +32,7 @@ _Found = tuple[float, str, Callable[[], "Place"]]
 
 
 def advise_on_lengths(read: ReadRobot, meshes: Mapping[str, Mesh], diagnostics: Diagnostics) -> None:
-    """Report lengths that are likely in millimetres: of the whole robot, or else single ones far beyond the others.
-
-    Args:
-        read: The robot as read.
-        meshes: Each mesh that was read, by its URI.
-        diagnostics: Gets what is found.
-    """
+    """Report lengths that are likely in millimetres: of the whole robot, or else single ones far beyond the others."""
     urdf = read.urdf
     joints = [found for found in _between_joints(urdf) if found[0] > 0.0]
     if not joints:
@@ -54,12 +48,8 @@ def advise_on_lengths(read: ReadRobot, meshes: Mapping[str, Mesh], diagnostics: 
             message = f"{what} is {length:.4g} m; the median for all joints is {median:.4g} m{weight}"
             diagnostics.report("x-length-in-millimetres", message, place, _hint(length))
         return
-    in_urdf, in_extension = (
-        [*joints, *_centres_of_mass(urdf)],
-        list(_of_extension(read)),
-    )
     in_meshes = list(_of_meshes(urdf, meshes))
-    for of_a_kind in (in_urdf, in_extension, in_meshes):
+    for of_a_kind in ([*joints, *_centres_of_mass(urdf)], list(_of_description(read)), in_meshes):
         long = [found for found in of_a_kind if max(_LONG, _TIMES * median) < found[0] <= _MOST]
         if not long:
             continue
@@ -99,7 +89,7 @@ def _centres_of_mass(urdf: Urdf) -> Iterator[_Found]:
             )
 
 
-def _of_extension(read: ReadRobot) -> Iterator[_Found]:
+def _of_description(read: ReadRobot) -> Iterator[_Found]:
     """The positions of the frames that the description gives."""
     if read.yaml is None:
         return

@@ -26,12 +26,6 @@ def advise_on_limits(read: ReadRobot, robot: Robot, q: Vector, diagnostics: Diag
 
     It costs nothing where the closed configuration is within them. Where it is not, configurations within are searched
     for from the start of `assemble`, from q, and from the middle of each range.
-
-    Args:
-        read: The robot as read; it has closures.
-        robot: The robot built from it.
-        q: A closed configuration (nq,).
-        diagnostics: Gets what is found.
     """
     beyond = _beyond(robot, q)
     if not beyond:

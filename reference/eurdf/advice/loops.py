@@ -24,11 +24,6 @@ def closure_diagnostics(read: ReadRobot, robot: Robot, assembly: Assembly | None
     """EU-CLO-005, EU-CLO-006: the loops close, at the assembled configuration where there is one.
 
     EU-CLO-016: `assemble` starts at neutral, and searches longer than the least search of the specification.
-
-    Args:
-        read: The robot as read, with a mechanism.
-        robot: The robot built from it, where there already is one.
-        assembly: The result of `assemble`, if it was called already.
     """
     diagnostics = Diagnostics()
     mechanism = read.mechanism

@@ -35,12 +35,6 @@ def advise_on_massless_links(read: ReadRobot, robot: Robot, q: Vector, diagnosti
     A link that reaches to another place than its joint is a part whose mass was forgotten. Any link that can move while
     all that has mass is at rest, as a rod between two balls can spin, makes the mass matrix singular. Nothing is
     reported of a link whose joint has an armature.
-
-    Args:
-        read: The robot as read; it has closures.
-        robot: The robot built from it.
-        q: A closed configuration (nq,).
-        diagnostics: Gets what is found.
     """
     model = robot.model
     looped = set(joints_of_loops(robot))

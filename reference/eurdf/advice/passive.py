@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pinocchio as pin
 
-from eurdf.kinematics.analysis import LoopAnalysis, Motion
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.loop import joints_of_loops
+from eurdf.kinematics.loop_analysis import LoopAnalysis, Motion, sparse_basis
 from eurdf.kinematics.scale import characteristic_length
-from eurdf.kinematics.sparse_basis import sparse_basis
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot

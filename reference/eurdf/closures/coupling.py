@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Protocol
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,24 +11,20 @@ from eurdf.array import Indices, Matrix, Vector
 from eurdf.mechanism.constraint import Coupling
 
 
-class Coordinate(Protocol):
-    """The coordinate of a joint that has one."""
+class Coordinate(NamedTuple):
+    """The coordinate of a joint that has one.
 
-    @property
-    def joint(self) -> int:
-        """Index of the joint that has it as its own."""
+    Attributes:
+        joint: Index of the joint that has it as its own.
+        idx_q: Its index in q.
+        idx_v: Index of its velocity in v.
+        translates: Whether it is a length, m; else it is an angle, rad.
+    """
 
-    @property
-    def idx_q(self) -> int:
-        """Its index in q."""
-
-    @property
-    def idx_v(self) -> int:
-        """Index of its velocity in v."""
-
-    @property
-    def translates(self) -> bool:
-        """Whether it is a length, m; else it is an angle, rad."""
+    joint: int
+    idx_q: int
+    idx_v: int
+    translates: bool
 
 
 class Couplings:
@@ -63,7 +59,7 @@ class Couplings:
         self._translates = np.array([each.translates for each in at.values()])[largest]
 
     def residual(self, q: Matrix) -> Matrix:
-        """Σ cᵢ qᵢ - offset, (B, k), at q (B, nq)."""
+        """Σ cᵢ qᵢ - offset (EU-CPL-005), (B, k), at q (B, nq)."""
         return np.asarray(q[:, self._coordinates] @ self._C.T - self._offsets)
 
     def scale(self, length: float) -> Vector:

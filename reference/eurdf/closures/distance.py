@@ -26,7 +26,11 @@ class DistanceClosure(ClosureKind):
 
     type: ClassVar[str] = "distance"
     units: ClassVar[tuple[Unit, ...]] = ("m",)
-    length: float = key()
+    text: ClassVar[str] = "the origins of frames A and B are at a fixed distance, as those of the ball joints of a rod"
+    summary: ClassVar[str] = "Two frames whose origins are at a fixed distance."
+    length: float = key(
+        "Length", "Distance between the origins of A and B, m, at least 0.0001.", least=1e-4, example=0.155
+    )
 
     @classmethod
     def prepare(cls, closures: Sequence[DistanceClosure]) -> Vector:
@@ -35,7 +39,7 @@ class DistanceClosure(ClosureKind):
 
     @staticmethod
     def residual(poses: RelativePoses, fixed: Vector) -> Matrix:
-        """|p| - length."""
+        """|p| - length (EU-CLO-015)."""
         return np.asarray(norm(poses.position) - fixed)[..., None]
 
     @staticmethod

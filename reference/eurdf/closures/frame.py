@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -20,6 +20,8 @@ class FrameClosure(ClosureKind):
 
     type: ClassVar[str] = "6d"
     units: ClassVar[tuple[Unit, ...]] = ("m",) * 3 + ("rad",) * 3
+    text: ClassVar[str] = "their orientations also agree"
+    since: ClassVar[Literal["1", "2.1"]] = "1"
 
     def with_orientation_free(self) -> PointClosure:
         """The 3d closure of the same frames."""

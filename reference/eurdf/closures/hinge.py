@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
@@ -12,7 +12,7 @@ from eurdf.array import Matrix, Vector
 from eurdf.closures.kind import ClosureKind, RelativeMotions, RelativePoses
 from eurdf.closures.point import PointClosure
 from eurdf.closures.se3 import cross, dot, norm, outer, plane_across, skew, transposed, turned, velocity_of_origin
-from eurdf.mechanism.constraint import Unit, key
+from eurdf.mechanism.constraint import Form, Key, Unit, key
 from eurdf.mechanism.pose import Vector3
 
 # The sine of θ near half a turn, where the shortest rotation has no derivative, is taken as no less than this.
@@ -53,14 +53,38 @@ class HingeClosure(ClosureKind):
 
     type: ClassVar[str] = "hinge"
     units: ClassVar[tuple[Unit, ...]] = ("m",) * 3 + ("rad",) * 2
-    axes: tuple[Vector3, Vector3] = key(default=((0.0, 0.0, 1.0), (0.0, 0.0, 1.0)))
+    text: ClassVar[str] = "the origin of frame B is held on that of A, and an axis of B along an axis of A"
+    axes: tuple[Vector3, Vector3] = key(
+        "Axes",
+        "The axis in frame A, and the axis in frame B: vectors of any length but zero, no unit.",
+        example=[[0, 0, 1], [0, 1, 0]],
+    )
+
+    @classmethod
+    def forms(cls) -> tuple[Form, Form]:
+        """With ``axis`` where A and B have the same one, else with ``axes``."""
+        axis = Key(
+            "Axis",
+            "The axis in frame A and in frame B: a vector of any length but zero, no unit.",
+            [0, 1, 0],
+            type="Vector3",
+            default=(0.0, 0.0, 1.0),
+        )
+        about_two = "A hinge that holds an axis of frame B along an axis of frame A."
+        return (
+            Form("Hinge", "Hinge closure", "A hinge about one axis, which both frames have.", {"axis": axis}),
+            Form("HingeAboutTwo", "Hinge closure with two axes", about_two, cls.keys()),
+        )
+
+    @classmethod
+    def values_of(cls, stated: Mapping[str, Any]) -> Mapping[str, Any]:
+        """The axes."""
+        return {"axes": (stated["axis"], stated["axis"])} if "axis" in stated else stated
 
     def stated(self) -> dict[str, Any]:
-        """``axis`` where A and B have the same one, else ``axes``; nothing where that is z."""
+        """``axis`` or ``axes``."""
         one, other = self.axes
-        if one != other:
-            return {"axes": [list(one), list(other)]}
-        return {} if one == (0.0, 0.0, 1.0) else {"axis": list(one)}
+        return {"axis": one} if one == other else {"axes": self.axes}
 
     def with_orientation_free(self) -> PointClosure:
         """The 3d closure of the same frames."""

@@ -1,22 +1,21 @@
-"""What a kind of closure is, and the registry of the kinds.
+"""What a kind of closure is.
 
 A kind is a class in a file of its own: a dataclass of what a file states of one closure, and the mathematics of k
-closures of the kind, as functions of the poses of their frames B in A. To add a kind: its file, and its line in
-`MODULES`.
+closures of the kind, as functions of the poses of their frames B in A. The schema, the reading and the writing of a
+closure are made of its fields. To add a kind: its file, and its line in `eurdf.closures.MODULES`.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from importlib import import_module
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import MISSING, dataclass, fields
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, TypeVar
 
 import numpy as np
 
-from eurdf.closures.se3 import cross, log6, log6_derivative, turned
-from eurdf.mechanism.constraint import Closure
+from eurdf.closures.se3 import cross, log3, log3_derivative, log6, log6_derivative, transposed, turned
+from eurdf.mechanism.constraint import Closure, Form, Key
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -53,6 +52,14 @@ class RelativePoses:
     def logarithm_by_twist(self) -> Matrix:
         """Its derivative (B, k, 6, 6) by the twist of B against A, seen from A: Jlog6(ᴬM_B) Ad(ᴮM_A) = Jlog6(ᴮM_A)."""
         return log6_derivative(-self.logarithm())
+
+    def turn_from(self, rotation: Matrix) -> Matrix:
+        """log3(Sᵀ ᴬR_B) (B, k, 3), rad, how B is turned against the axes S (B, k, 3, 3), seen from A."""
+        return log3(transposed(rotation) @ self.rotation)
+
+    def turn_by_omega(self, turn: Matrix) -> Matrix:
+        """The derivative (B, k, 3, 3) of such a turn by the angular velocity of B against A, seen from A."""
+        return log3_derivative(turn) @ transposed(self.rotation)
 
     def once(self, compute: Callable[[RelativePoses, Any], _T], fixed: Any) -> _T:
         """What a function of a kind computes from the poses; it is kept for the next to ask for it."""
@@ -118,7 +125,38 @@ class ClosureKind(Closure, ABC):
     """A closure whose residual r is a function of the pose of B in A, and how that is computed for k of its kind.
 
     The residual is zero where the closure holds; its derivatives are exact everywhere (EU-CLO-010).
+
+    Attributes:
+        text: What the type means, in the words of the schema.
+        summary: What a closure of the type is.
+        since: The first version of the format that has it.
     """
+
+    text: ClassVar[str]
+    summary: ClassVar[str] = "Two frames that are joined."
+    since: ClassVar[Literal["1", "2.1"]] = "2.1"
+
+    @classmethod
+    def keys(cls) -> dict[str, Key]:
+        """What the kind has beside name, frames and compliance, by field."""
+        return {
+            each.name: each.metadata["key"]._replace(
+                type=str(each.type), default=None if each.default is MISSING else each.default
+            )
+            for each in fields(cls)
+            if "key" in each.metadata
+        }
+
+    @classmethod
+    def forms(cls) -> tuple[Form, ...]:
+        """The mappings that state one: by default, one with a key for each of `keys`."""
+        name = "".join(map(str.capitalize, cls.type.split("-")))
+        return (Form(name, f"{cls.type.capitalize()} closure", cls.summary, cls.keys()),)
+
+    @classmethod
+    def values_of(cls, stated: Mapping[str, Any]) -> Mapping[str, Any]:
+        """The values of the fields that a form states, the inverse of `stated`."""
+        return stated
 
     @classmethod
     def prepare(cls, closures: Sequence[Self]) -> Any:
@@ -144,37 +182,6 @@ class ClosureKind(Closure, ABC):
     @abstractmethod
     def opening(poses: RelativePoses, fixed: Any) -> tuple[Vector, Vector]:
         """How far each closure is open, a length, m, and an angle, rad (EU-CLO-005): (B, k) each."""
-
-
-#: The module of each kind that files can state, by its type there.
-MODULES = {"3d": "point", "6d": "frame", "hinge": "hinge", "distance": "distance"}
-
-
-class _Registry(Mapping[str, type[ClosureKind]]):
-    """The kinds by type; each is imported when it is first used."""
-
-    def __init__(self) -> None:
-        self._found: dict[str, type[ClosureKind] | None] = dict.fromkeys(MODULES)
-
-    def __getitem__(self, type_: str) -> type[ClosureKind]:
-        kind = self._found[type_]
-        if kind is None:
-            kind = self._found[type_] = import_module(f"{__package__}.{MODULES[type_]}").KIND
-        return kind
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._found)
-
-    def __len__(self) -> int:
-        return len(self._found)
-
-    def add(self, kind: type[ClosureKind]) -> None:
-        """Take a kind that has no line in `MODULES`."""
-        self._found[kind.type] = kind
-
-
-#: The kinds of closure that files can state, by their type there.
-REGISTRY = _Registry()
 
 
 def no_angle(lengths: Vector) -> tuple[Vector, Vector]:

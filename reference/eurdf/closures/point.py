@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -19,6 +19,8 @@ class PointClosure(ClosureKind):
 
     type: ClassVar[str] = "3d"
     units: ClassVar[tuple[Unit, ...]] = ("m",) * 3
+    text: ClassVar[str] = "the origins of frames A and B coincide"
+    since: ClassVar[Literal["1", "2.1"]] = "1"
 
     @staticmethod
     def residual(poses: RelativePoses, fixed: Any) -> Matrix:

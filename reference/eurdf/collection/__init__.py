@@ -12,7 +12,7 @@ from eurdf.mesh_files.folders import MANIFEST
 from eurdf.reading.robot_source import STDIN, RobotSource, display_name, is_stream, is_xml, source_of
 from eurdf.reading.source import Source, unreadable
 
-_HERE = Path(__file__).parent
+_FOLDER = Path(__file__).parent
 _YAML = (".yaml", ".yml")
 _URDF = (".urdf", ".xml", ".xacro")
 # What a folder may have instead: a message names it, so that the next one says what to do with it.
@@ -31,7 +31,7 @@ class RobotFiles(NamedTuple):
 
 def collection_folder() -> Path | None:
     """The folder of the collection: in an installed package beside this file, in a checkout at its root."""
-    for folder in (_HERE / "robots", _HERE.parents[2] / "robots"):
+    for folder in (_FOLDER / "robots", _FOLDER.parents[2] / "robots"):
         if folder.is_dir():
             return folder
     return None

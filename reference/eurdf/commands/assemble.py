@@ -14,7 +14,7 @@ from eurdf.commands.terminal import cell, new_table, write_notes, write_rendered
 from eurdf.exceptions import CannotRun
 from eurdf.json_schema import Count, NullIfInfinite
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.mechanism import ROOT_JOINT
+from eurdf.mechanism.mechanism import root_joint
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -186,7 +186,7 @@ def _assemble(robot: Robot, q0: Vector, hold: list[str], limits: bool) -> Assemb
 def _assembly_info(
     robot: Robot, assembly: Assembly, start: str, held: Collection[str], beyond: Collection[str]
 ) -> AssemblyInfo:
-    types = {ROOT_JOINT: JointType.FLOATING} | {joint.name: joint.type for joint in robot.mechanism.joints}
+    types = {joint.name: joint.type for joint in (root_joint(""), *robot.mechanism.joints)}
     joints = tuple(
         JointPosition(
             name,

@@ -57,7 +57,7 @@ def _xacro_arg(text: str) -> tuple[str, str]:
 
 
 #: Where a URDF, or a robot, may find other files: the function gets them as ``options``.
-_URDF_OPTIONS = (
+URDF_OPTIONS = (
     option(
         "a folder with ROS packages, to find meshes and xacro files (repeatable)",
         "--package-dir",
@@ -86,7 +86,7 @@ _ROBOT_OPTIONS = (
         group="places",
     ),
     flag("read meshes that are outside the robot's folder", "--allow-outside", group="places"),
-    *_URDF_OPTIONS,
+    *URDF_OPTIONS,
 )
 
 #: One robot: the function gets its path, and its other arguments as ``options``, those of `eurdf.load`.
@@ -99,17 +99,7 @@ ROBOTS: Any = (
 )
 
 #: A URDF: the function gets what is given, and ``options``.
-URDF: Any = (option("a .urdf or .xacro file, or - for standard input", "urdf", metavar="URDF"), *_URDF_OPTIONS)
-
-#: A URDF whose names a schema has; the function gets ``options``.
-SCHEMA_URDF: Any = (
-    option(
-        "include the names of the links and joints of this robot, so that editors complete them",
-        "--for",
-        metavar="URDF",
-    ),
-    *_URDF_OPTIONS,
-)
+URDF: Any = (option("a .urdf or .xacro file, or - for standard input", "urdf", metavar="URDF"), *URDF_OPTIONS)
 
 ROOT: Any = option("default: as the description says", choices=("fixed", "floating"))
 JSON: Any = flag("write one JSON object")
@@ -200,12 +190,7 @@ def command(
 
 
 def ending(exit_codes: str, *examples: str) -> str:
-    """The end of the help text of a command.
-
-    Args:
-        exit_codes: Their meanings.
-        examples: Command lines.
-    """
+    """The end of the help text of a command."""
     shown = "\n".join(f"  {example}" for example in examples)
     return f"{'example' if len(examples) == 1 else 'examples'}:\n{shown}\n\nExit codes: {exit_codes}"
 

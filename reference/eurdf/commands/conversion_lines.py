@@ -18,12 +18,7 @@ _STYLES = {"exact": "green", "approximate": "yellow", "dropped": "red"}
 
 
 def loss_lines(losses: Sequence[Loss], place_of: Callable[[Loss], Place | None]) -> Iterator[Line]:
-    """The losses, by code.
-
-    Args:
-        losses: In any order.
-        place_of: Where the element of a loss is stated, if it is in a file.
-    """
+    """The losses, by code."""
     from eurdf.diagnostics.wording import visible
 
     groups: dict[str, list[Loss]] = {}
@@ -44,11 +39,7 @@ def loss_lines(losses: Sequence[Loss], place_of: Callable[[Loss], Place | None])
 
 
 def verification_lines(found: Verification) -> Iterator[Line]:
-    """The comparison, then what is wrong, what differs as losses say, and what was not compared.
-
-    Args:
-        found: The result of `Export.verify`.
-    """
+    """The comparison, then what is wrong, what differs as losses say, and what was not compared."""
     from eurdf.convert.verification.fall import amount
     from eurdf.diagnostics.wording import visible
 

@@ -46,9 +46,6 @@ _START_FASTER = {"OPENBLAS_NUM_THREADS": "1", "PYDANTIC_DISABLE_PLUGINS": "__all
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line.
 
-    Args:
-        argv: The arguments; those of the process by default.
-
     Returns:
         The exit code: 0 success, 1 a robot has errors, 2 the command cannot run.
     """

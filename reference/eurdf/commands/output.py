@@ -7,10 +7,9 @@ from __future__ import annotations
 
 import inspect
 import json
-import math
 import re
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
 from importlib import import_module
 from pathlib import Path
@@ -19,7 +18,7 @@ from typing import Any, cast, get_args, get_type_hints
 
 from eurdf.commands.terminal import write_json
 from eurdf.diagnostics.report import report_schema
-from eurdf.diagnostics.wording import encodable
+from eurdf.json_schema import to_json
 
 #: The results by the names of their schemas: the module and the class of each.
 RESULTS = {
@@ -31,22 +30,6 @@ RESULTS = {
     "serial": ("transmission_info", "SerialInfo"),
     "transmission": ("transmission_info", "TransmissionInfo"),
 }
-
-
-def to_json(result: Any) -> Any:
-    """A result, or part of one, as a value of JSON: what is not finite is null, and hidden fields are left out."""
-    if is_dataclass(result):
-        shown = (field.name for field in fields(result) if not field.metadata.get("exclude"))
-        return {name: to_json(getattr(result, name)) for name in shown}
-    if isinstance(result, str):
-        return encodable(str(result))
-    if isinstance(result, float):
-        return float(result) if math.isfinite(result) else None
-    if hasattr(result, "tolist"):  # an array
-        return to_json(result.tolist())
-    if isinstance(result, Mapping):
-        return {key: to_json(value) for key, value in result.items()}
-    return [to_json(value) for value in result] if isinstance(result, (list, tuple)) else result
 
 
 def write_result(result: Any) -> None:

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
 
-from eurdf.closures.kind import REGISTRY
+from eurdf.closures import REGISTRY
 from eurdf.json_schema import Count, Keywords, NullIfInfinite
-from eurdf.kinematics.analysis import Analysis, LoopAnalysis, Motion
+from eurdf.kinematics.analysis import Analysis
+from eurdf.kinematics.loop_analysis import LoopAnalysis, Motion
 from eurdf.mechanism.joint_types import JointType
+from eurdf.mechanism.mechanism import root_joint
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -50,7 +52,7 @@ class ClosureInfo:
 
     name: str
     """Name of the closure."""
-    type: Annotated[str, Keywords(enum=sorted(REGISTRY))]
+    type: Annotated[str, Keywords(enum=lambda: sorted(REGISTRY))]
     """3d for position, 6d for position and orientation, hinge for position and an axis, distance for a distance."""
     rows: Count
     """Number of its constraint rows."""
@@ -175,12 +177,7 @@ class RobotInfo:
 
 
 def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
-    """The output for one robot.
-
-    Args:
-        robot: The robot.
-        analysis: The result of `eurdf.analyze`.
-    """
+    """The output for one robot."""
     from eurdf.kinematics.residual import residual
 
     mechanism = robot.mechanism
@@ -246,8 +243,8 @@ def _joint_infos(robot: Robot) -> Iterator[JointInfo]:
 
     mechanism = robot.mechanism
     if mechanism.root == "floating":
-        child = mechanism.bodies[0].name
-        yield JointInfo("root_joint", JointType.FLOATING, "world", child, 7, 6, False, None, (), ())
+        root = root_joint(mechanism.bodies[0].name)
+        yield JointInfo(root.name, root.type, "world", root.child, 7, 6, False, None, (), ())
     at, actuated = slots(mechanism), set(robot.actuation.joints)
     for joint in mechanism.joints:
         if joint.type.is_fixed:

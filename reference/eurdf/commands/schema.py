@@ -4,10 +4,19 @@ from __future__ import annotations
 
 from typing import Any
 
-from eurdf.commands.command import OUTPUT, SCHEMA_URDF, command, flag, option, require_urdf
+from eurdf.commands.command import OUTPUT, URDF_OPTIONS, command, flag, option, require_urdf
 from eurdf.commands.output_file import write_new
 from eurdf.commands.terminal import write_notes, write_text
 from eurdf.exceptions import CannotRun
+
+_NAMES: Any = (
+    option(
+        "include the names of the links and joints of this robot, so that editors complete them",
+        "--for",
+        metavar="URDF",
+    ),
+    *URDF_OPTIONS,
+)
 
 
 @command(
@@ -20,7 +29,7 @@ from eurdf.exceptions import CannotRun
 def schema(
     options: dict[str, Any],
     version: Any = option("version of the format; default: 2, which is 2.0", choices=("1", "2", "2.1"), default="2"),
-    urdf: str | None = SCHEMA_URDF,
+    urdf: str | None = _NAMES,
     output: str | None = OUTPUT,
     force: bool = flag("replace OUT if it exists"),
 ) -> int:

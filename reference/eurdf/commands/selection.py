@@ -56,9 +56,6 @@ def without_robot(paths: Sequence[str]) -> list[str]:
 
     Empty if no path is left without them: that is an error of the caller.
 
-    Args:
-        paths: The paths that the user gave.
-
     Raises:
         CannotRun: A folder cannot be read.
     """

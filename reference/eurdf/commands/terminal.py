@@ -109,10 +109,6 @@ def write_refusal(path: str, diagnostics: Iterable[Diagnostic], as_json: bool, s
 def progress_bar(what: str, wanted: bool = True) -> Iterator[Callable[[float, float], None] | None]:
     """A bar on the standard error, if that is a terminal, while the context lasts.
 
-    Args:
-        what: What is done.
-        wanted: Whether it takes long enough.
-
     Yields:
         What to call with the amount that is done and the whole; None if there is no bar.
     """

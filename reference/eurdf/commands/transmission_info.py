@@ -12,7 +12,7 @@ from eurdf.json_schema import PAIRS, ROW, Count
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.transmissions.inertia import reflected_inertia
 from eurdf.transmissions.limits import CommonLimits, SerialLimits, serial_limits
-from eurdf.transmissions.linkage_bodies import linkage_bodies
+from eurdf.transmissions.motors import linkage_bodies
 from eurdf.transmissions.polynomial_map import PolynomialMap
 from eurdf.transmissions.positions import beyond_limits
 from eurdf.transmissions.selection import Selection
@@ -129,9 +129,9 @@ def transmission_info(
     inside = [q for q, pose in zip(configurations, poses, strict=True) if pose.limits is not None]
     return TransmissionInfo(
         name=robot.mechanism.name,
-        joints=_axes(robot, joints),
-        motors=_axes(robot, motors),
-        linkage=linkage_bodies(robot, joints.joints, motors.joints),
+        joints=_axes(joints),
+        motors=_axes(motors),
+        linkage=linkage_bodies(robot, joints, motors),
         limits_reason=reasons[0] if reasons else None,
         poses=tuple(poses),
         common=_limits(serial_limits(robot, joints.joints, np.array(inside), motors.joints)) if inside else None,
@@ -183,12 +183,8 @@ def _limits(found: SerialLimits | CommonLimits) -> LimitsInfo:
     return LimitsInfo(torque, tuple(found.torque_box.tolist()), velocity, tuple(found.velocity_box.tolist()))
 
 
-def _axes(robot: Robot, chosen: Selection) -> tuple[AxisInfo, ...]:
-    units: list[Literal["rad", "m"]] = []
-    for name in chosen.joints:
-        kinds = robot.slots[name].joint.type.coordinates
-        units += ["m" if kind == "length" else "rad" for kind in kinds]
-    return tuple(AxisInfo(name, unit) for name, unit in zip(chosen.names, units, strict=True))
+def _axes(chosen: Selection) -> tuple[AxisInfo, ...]:
+    return tuple(map(AxisInfo, chosen.names, chosen.units))
 
 
 def _rows(matrix: Matrix) -> Rows:

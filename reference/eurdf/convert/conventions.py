@@ -7,7 +7,7 @@ from itertools import combinations, product
 import numpy as np
 import numpy.typing as npt
 
-from eurdf.closures.kind import REGISTRY, PoseArrays
+from eurdf.closures.kind import ClosureKind, PoseArrays
 from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Vector3
@@ -17,6 +17,10 @@ Matrix = npt.NDArray[np.float64]
 
 #: Error at which a position actuator reaches the effort limit, rad or m; and its gain without such a limit.
 FULL_EFFORT_AT, GAIN = 0.1, 100.0
+
+#: kg and kg·m² that a link without inertia gets where the program that reads the file needs some: far below any of a
+#: robot, and ten times the larger of MuJoCo's bounds; in single precision, far above 0.
+LEAST, LIGHT = 1e-13, 1e-9
 
 #: Distance of the points that hold a hinge, or a frame, where a format has constraints of points alone, m.
 WIDTH = 0.1
@@ -34,9 +38,10 @@ def point_on(unit: Vector3) -> Vector3:
 
 def opening_of(closure: Closure, a: Matrix, b: Matrix) -> tuple[float, float]:
     """How far a closure is open, m and rad, with its frames at poses (4, 4) in one frame."""
-    kind, relative = REGISTRY[closure.type], np.linalg.inv(a) @ b
+    assert isinstance(closure, ClosureKind)
+    relative = np.linalg.inv(a) @ b
     poses = PoseArrays(relative[None, None, :3, :3], relative[None, None, :3, 3])
-    distance, angle = kind.opening(poses, kind.prepare([closure]))  # type: ignore[list-item]
+    distance, angle = closure.opening(poses, closure.prepare([closure]))
     return float(distance[0, 0]), float(angle[0, 0])
 
 

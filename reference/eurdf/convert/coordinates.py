@@ -12,7 +12,6 @@ import numpy as np
 import numpy.typing as npt
 
 from eurdf.convert.parts import UPRIGHT, OwnVectors, Part
-from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import Pose, Quaternion
 from eurdf.writing.xml_text import rpy_of
 
@@ -141,9 +140,9 @@ class Coordinates:
                 angles = _angles(self._own_coordinates(part, q))
                 rates = np.asarray(inverse @ v[at : at + 3])
                 found[row : row + 3] -= inverse @ (_rate_of_angle_axes(angles, rates.tolist()) @ rates)
-            if part.type not in (JointType.PLANAR, JointType.FLOATING) or not self.at_rest:
+            if not (part.type.moving_frame and part.type.slides and self.at_rest):
                 continue  # an angular velocity has the same rate along the axes at rest: ω × ω = 0
-            n = 2 if part.type is JointType.PLANAR else 3
+            n = 2 if part.type.quaternion is None else 3
             linear = np.zeros(3)
             linear[:n] = v[at : at + n]
             angular = np.array((0.0, 0.0, v[at + 2])) if n == 2 else v[at + 3 : at + 6]
@@ -226,11 +225,11 @@ class Coordinates:
             return np.asarray(np.linalg.inv(_angle_axes(_angles(own))))
         if not self.at_rest:
             return np.eye(part.nv)
-        if part.type is JointType.PLANAR:
+        if part.type.quaternion is None:
             c, s = math.cos(own[2]), math.sin(own[2])
             return np.array(((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0)))
         turn = rotation_matrix(Pose(quaternion=part.turn).inverse().quaternion)
-        if part.type is JointType.SPHERICAL:
+        if not part.type.slides:
             return turn if part.rotation == "quaternion" else rotation_matrix(own)
         block = np.zeros((6, 6))
         block[:3, :3] = rotation_matrix(own[3:])

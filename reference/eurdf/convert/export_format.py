@@ -15,7 +15,7 @@ from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.formats import Actuators, MeshFileChoice
 from eurdf.convert.losses import Losses, LossKind
 from eurdf.convert.parts import OwnVectors
-from eurdf.mechanism.joint import Joint, Mimic, drivers
+from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mesh_files.folders import Folders
 from eurdf.mesh_files.reader import MeshReader
@@ -69,7 +69,7 @@ class ExportInput:
     @property
     def mimics(self) -> dict[str, Mimic]:
         """For each mimic joint, the joint at the end of its chain of leaders, and the relation between the two."""
-        return drivers({joint.name: joint.mimic for joint in self.mechanism.joints if joint.mimic is not None})
+        return self.mechanism.leaders
 
 
 def coordinates_at(

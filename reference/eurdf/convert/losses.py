@@ -13,7 +13,7 @@ from enum import Enum
 from functools import partial
 from typing import Any, NamedTuple
 
-from eurdf.closures.kind import REGISTRY
+from eurdf.closures import REGISTRY
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
@@ -97,8 +97,7 @@ def _of_closure_type(kind: str) -> Elements:
 
 #: What a mechanism can contain, the rows of the overview of losses: by its name, the elements that a mechanism has.
 ELEMENTS: dict[str, Elements] = {
-    **{f"{kind} joint": _of_joint_type(kind) for kind in JointType if kind is not JointType.FIXED},
-    "fixed joint": _of_joint_type(JointType.FIXED),
+    **{f"{kind} joint": _of_joint_type(kind) for kind in sorted(JointType, key=lambda kind: kind.is_fixed)},
     "floating root": lambda mechanism: mechanism.bodies[:1] if mechanism.root == "floating" else (),
     "mimic joint": _joints(lambda joint: joint.mimic is not None),
     "position limit": _joints(lambda joint: any(map(math.isfinite, joint.properties.lower + joint.properties.upper))),

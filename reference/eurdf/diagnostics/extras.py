@@ -14,11 +14,7 @@ _CHECKOUT = Path(__file__).parents[3]
 
 
 def install_command(extra: str) -> str:
-    """The command that installs an extra of this package, from where the package itself came.
-
-    Args:
-        extra: Name of the extra, such as ``conformance``.
-    """
+    """The command that installs an extra of this package, from where the package itself came."""
     pip = _pip()
     try:
         folder, editable = _installed_from(distribution("eurdf"))

@@ -28,13 +28,7 @@ _COLOR = {Severity.ERROR: "red", Severity.WARNING: "yellow"}
 
 
 def report_lines(report: Report, width: int = SOURCE_WIDTH, bar: str = "|") -> Iterator[Line]:
-    """The diagnostics of one robot, by file and position.
-
-    Args:
-        report: The diagnostics.
-        width: Columns for the text of a source line.
-        bar: Separator between line numbers and lines.
-    """
+    """The diagnostics of one robot, by file and position."""
     for found in _by_position(report.diagnostics):
         yield _headline(found, report.path)
         yield from _excerpt_lines(found, width, bar)

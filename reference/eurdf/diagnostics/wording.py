@@ -80,6 +80,12 @@ def did_you_mean(wrong: str, known: Iterable[str], beside: str = "") -> str | No
     return None if nearest is None else f"did you mean '{nearest}'?"
 
 
+def meant(wrong: object, known: Iterable[str]) -> str:
+    """The hint of `did_you_mean` as the end of a message: after a semicolon, or empty."""
+    hint = did_you_mean(wrong, known) if isinstance(wrong, str) else None
+    return f"; {hint}" if hint else ""
+
+
 def _about_as_near(wrong: str, close: list[str]) -> list[str]:
     """Of similar names, sorted by similarity, those about as similar as the first."""
     ratios = [_ratio(wrong, name) for name in close]

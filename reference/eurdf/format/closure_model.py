@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar, Literal
+from dataclasses import fields, make_dataclass
+from functools import cache
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
-from eurdf.format.conventions import VERSION2_1, is_own_key
+from eurdf.closures import REGISTRY
+from eurdf.format.conventions import VERSION2_1, Version, is_own_key
 from eurdf.format.mappings import Alone, Entry, OneOf, Record, entry, key, key_like, required
 from eurdf.format.value_types import (
     FRAME_NAME,
@@ -23,9 +26,14 @@ from eurdf.format.value_types import (
     Number,
     Schema,
     Schemas,
+    ValueType,
 )
+from eurdf.mechanism.constraint import Form, Key
 from eurdf.mechanism.pose import Vector3
 from eurdf.reading.yaml_node import Pointer
+
+if TYPE_CHECKING:
+    from eurdf.closures.kind import ClosureKind
 
 ORIGIN: Vector3 = (0.0, 0.0, 0.0)
 
@@ -134,28 +142,15 @@ class Compliance(Entry):
     )
 
 
-class ClosureType(Choice):
-    """A type of closure without keys of its own; one that begins with ``x-`` is user-defined (EU-CLO-012)."""
-
-    def check(self, value: Any, at: Pointer, file: Check) -> None:
-        known = CLOSURE.values_of_type(file.version)
-        if type(value) is not str:
-            allowed = " or ".join(f"'{each}'" for each in self.values)
-            file.report(at, "wrong-type", f"must be {allowed}, or begin with 'x-'", value)
-        elif value not in known and not is_own_key(value):
-            later = value in CLOSURE.values_of_type(VERSION2_1)
-            file.report(at, "later-value" if later else "choice", value=value, about=known)
-
-    def schema(self, schemas: Schemas) -> Schema:
-        return {"oneOf": [super().schema(schemas), {"pattern": "^x-", "type": "string"}]}
-
-
 @entry
-class _Closure(Entry):
-    """Two frames, related by a closure of some type."""
+class Closure(Entry):
+    """Two frames, related by a closure of some type.
+
+    What a type has besides is in subclasses, which are made of its kind.
+    """
 
     name: str = required(NAME, "Name", "Name of the closure, unique in the file.", "knee_rod")
-    type: str
+    type: str = required(NAME, "Type", "")
     frames: tuple[FrameReference, FrameReference] = required(
         ListOf(FRAME_REFERENCE, 2, 2),
         "Frames A and B",
@@ -171,99 +166,112 @@ class _Closure(Entry):
         since=VERSION2_1,
     )
 
+    @property
+    def stated(self) -> dict[str, Any]:
+        """What its type has besides, by key."""
+        common = {each.name for each in fields(Closure)}
+        return {each.name: getattr(self, each.name) for each in fields(self) if each.name not in common}
 
-@entry
-class Closure(_Closure):
-    """Two frames that are joined."""
 
-    title = "Closure"
-    type: str = required(
-        ClosureType("3d", "6d"),
-        "Type",
-        "3d: the origins of frames A and B coincide (3 rows, m). 6d: their orientations also agree (6 rows, m and"
-        " rad). A user-defined type begins with x-.",
-        "6d",
-        "3d",
+class _PlainType(Choice):
+    """A type of version 1; one that begins with ``x-`` is user-defined (EU-CLO-012)."""
+
+    def check(self, value: Any, at: Pointer, file: Check) -> None:
+        known = CLOSURE.forms.values_of_type(file.version)
+        if type(value) is not str:
+            allowed = " or ".join(f"'{each}'" for each in self.values)
+            file.report(at, "wrong-type", f"must be {allowed}, or begin with 'x-'", value)
+        elif value not in known and not is_own_key(value):
+            later = value in CLOSURE.forms.values_of_type(VERSION2_1)
+            file.report(at, "later-value" if later else "choice", value=value, about=known)
+
+    def schema(self, schemas: Schemas) -> Schema:
+        return {"oneOf": [super().schema(schemas), {"pattern": "^x-", "type": "string"}]}
+
+
+def _meaning(kind: type[ClosureKind]) -> str:
+    """What the schema says of a type."""
+    rows = f"{len(kind.units)} row{'s' if len(kind.units) > 1 else ''}"
+    return f"{kind.type}: {kind.text} ({rows}, {' and '.join(dict.fromkeys(kind.units))})."
+
+
+def _key(stated: Key) -> Any:
+    """The field of a model that is what a kind states in a key."""
+    values: ValueType = VECTOR if stated.type == "Vector3" else ListOf(VECTOR, 2, 2)
+    if stated.type == "float":
+        values = NUMBER if stated.least is None else Number(least=stated.least)
+    if stated.default is None:
+        return required(values, stated.title, stated.text, stated.example)
+    return key(values, stated.title, stated.text, stated.example, default=stated.default)
+
+
+def _record(form: Form, since: Version, own: dict[str, Any]) -> Record:
+    """A mapping that states a closure.
+
+    Args:
+        form: What its kind says of it.
+        since: The first version that has it.
+        own: Its fields in place of those of `Closure`.
+    """
+    keys = own | {name: _key(each) for name, each in form.keys.items()}
+    typed = [(name, Any, each) for name, each in keys.items()]
+    about = {"title": form.title, "since": since, "__doc__": form.text}
+    return Record(
+        make_dataclass(form.name, typed, bases=(Closure,), namespace=about, kw_only=True, eq=False, repr=False)
     )
 
 
-@entry
-class _TypedClosure(_Closure):
-    """Two frames, related by a closure of a type that has keys of its own."""
-
-    since = VERSION2_1
-    name: str = key_like(_Closure, "name", "knee_pin")
-    frames: tuple[FrameReference, FrameReference] = key_like(_Closure, "frames", ["coupler_tip", "rocker_tip"])
-
-
-@entry
-class _Hinge(_TypedClosure):
-    """Two frames that turn about one axis."""
-
-    type: str = required(
-        Choice("hinge"),
-        "Type",
-        "hinge: the origin of frame B is held on that of A, and an axis of B along an axis of A (5 rows, m and rad).",
-        "hinge",
-    )
+@cache
+def _forms(types: tuple[str, ...]) -> OneOf:
+    """The mappings of the types of closure: one for all those of version 1."""
+    kinds = [REGISTRY[each] for each in types]
+    plain = [kind for kind in kinds if kind.since == "1"]
+    text = " ".join((*map(_meaning, plain), "A user-defined type begins with x-."))
+    names = [kind.type for kind in plain]
+    typed = {"type": required(_PlainType(*names), "Type", text, *reversed(names))}
+    records = [_record(Form("Closure", "Closure", plain[0].summary, {}), "1", typed)]
+    for kind in kinds:
+        own = {
+            "name": key_like(Closure, "name", "knee_pin"),
+            "type": required(Choice(kind.type), "Type", _meaning(kind), kind.type),
+            "frames": key_like(Closure, "frames", ["coupler_tip", "rocker_tip"]),
+        }
+        records += [_record(form, kind.since, own) for form in kind.forms() if kind not in plain]
+    return OneOf("a mapping {name: …, type: …, frames: …}", *records, apart="'{key}' goes with type '{owner}'")
 
 
-@entry
-class Hinge(_Hinge):
-    """A hinge about one axis, which both frames have."""
+class AnyClosure(ValueType):
+    """A closure of any type: its forms are made of the kinds when a file first has a closure."""
 
-    title = "Hinge closure"
-    axis: Vector3 = key(
-        VECTOR,
-        "Axis",
-        "The axis in frame A and in frame B: a vector of any length but zero, no unit.",
-        [0, 1, 0],
-        default=AXES["z"],
-    )
+    types = (dict,)
 
     @property
-    def axes(self) -> tuple[Vector3, Vector3]:
-        """The axis in frame A, and that in frame B."""
-        return self.axis, self.axis
+    def forms(self) -> OneOf:
+        """A mapping for the types of version 1, and those of each other type."""
+        return _forms(tuple(REGISTRY))
+
+    def entry(self, type_: str, stated: Mapping[str, Any], **common: Any) -> Closure:
+        """A closure of a type, with what that has besides, by key."""
+        records = (record for record in self.forms.records if type_ in record.values_of_type())
+        model = next(record.model for record in records if stated.keys() <= record.all_keys.keys())
+        closure: Closure = model(type=type_, **stated, **common)
+        return closure
+
+    def check(self, value: Any, at: Pointer, file: Check) -> None:
+        self.forms.check(value, at, file)
+
+    def read(self, value: Any, at: Pointer) -> Closure:
+        closure: Closure = self.forms.read(value, at)
+        return closure
+
+    def write(self, value: Closure) -> Any:
+        return self.forms.write(value)
+
+    def schema(self, schemas: Schemas) -> Schema:
+        return self.forms.schema(schemas)
 
 
-@entry
-class HingeAboutTwo(_Hinge):
-    """A hinge that holds an axis of frame B along an axis of frame A."""
-
-    title = "Hinge closure with two axes"
-    axes: tuple[Vector3, Vector3] = required(
-        ListOf(VECTOR, 2, 2),
-        "Axes",
-        "The axis in frame A, and the axis in frame B: vectors of any length but zero, no unit.",
-        [[0, 0, 1], [0, 1, 0]],
-    )
-
-
-@entry
-class Distance(_TypedClosure):
-    """Two frames whose origins are at a fixed distance."""
-
-    title = "Distance closure"
-    type: str = required(
-        Choice("distance"),
-        "Type",
-        "distance: the origins of frames A and B are at a fixed distance, as those of the ball joints of a rod (1 row,"
-        " m).",
-        "distance",
-    )
-    length: float = required(
-        Number(least=1e-4), "Length", "Distance between the origins of A and B, m, at least 0.0001.", 0.155
-    )
-
-
-AnyClosure = Closure | Hinge | HingeAboutTwo | Distance
-
-CLOSURE = OneOf(
-    "a mapping {name: …, type: …, frames: …}",
-    *map(Record, (Closure, Hinge, HingeAboutTwo, Distance)),
-    apart="'{key}' goes with type '{owner}'",
-)
+CLOSURE = AnyClosure()
 
 
 @entry

@@ -262,10 +262,20 @@ class _JointRecord(Record):
         return {name: written[name] for name in (*needed, *dict(in_order(self.all_keys))) if name in written}
 
 
+_RECORDS = [_JointRecord(model) for model in Joint.__subclasses__()]
+
+#: The types that need no more than their name.
+NAMED = [
+    name
+    for record in _RECORDS
+    for name in record.values_of_type()
+    if all(key == "type" or not each.required for key, each in record.all_keys.items())
+]
+
 JOINT = OneOf(
     "a joint type, or a mapping {type: …, limits: …}",
-    Alone(Choice("spherical", "cylindrical", "fixed"), "type"),
-    *map(_JointRecord, (Overridden, Spherical, Universal, Cylindrical, Helical, Fixed)),
+    Alone(Choice(*NAMED), "type"),
+    *_RECORDS,
     name="Joint",
     apart="'{key}' belongs to type '{owner}', not to type '{kind}'",
 )

@@ -39,9 +39,6 @@ _OF_JOINTS = {*_JOINT_KEYS, *Record(Limits).all_keys, *ACTUATOR.keys(VERSION2_1)
 _OF_JOINTS |= {"limit", "dynamics", "actuated", "actuator", "motor"}
 _OF_JOINTS -= {"name", "type", "joint", "axes"}
 
-#: Keys of closures that some type or version does not have.
-_OF_SOME_CLOSURES = CLOSURE.keys(VERSION2_1).keys() - CLOSURE.keys(VERSION2_0)
-
 #: Keys of the file whose values are mappings of names that the user chooses, and what these are names of.
 _NAMED = {"joints": "joint", "configurations": "configuration"}
 
@@ -75,12 +72,10 @@ class _Messages:
         self.document = document
         self.omitted = len(found) - MOST
         mistyped = {each.pointer[:2] for each in found[:MOST] if each.pointer[::2] == ("closures", "type")}
-        # A key may go with the type that was meant.
-        self.found = [
-            each
-            for each in found[:MOST]
-            if not (each.pointer[:2] in mistyped and each.pointer[-1] in _OF_SOME_CLOSURES)
-        ]
+        # A key that some type or version does not have may go with the type that was meant.
+        forms = CLOSURE.forms if mistyped else None
+        some = forms.keys(VERSION2_1).keys() - forms.keys(VERSION2_0) if forms is not None else ()
+        self.found = [each for each in found[:MOST] if not (each.pointer[:2] in mistyped and each.pointer[-1] in some)]
         self.faulty = {each.pointer[:end] for each in self.found for end in range(1, len(each.pointer) + 1)}
 
     def diagnostics(self) -> list[Diagnostic]:

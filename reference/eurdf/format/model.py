@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import field
 from typing import Any, ClassVar, Literal
 
-from eurdf.format.closure_model import CLOSURE, FRAME, AnyClosure, Coupling, Frame, FrameReference
+from eurdf.format.closure_model import CLOSURE, FRAME, Closure, Coupling, Frame, FrameReference
 from eurdf.format.conventions import VERSION2_0, VERSION2_1, VERSION_KEY, Version
 from eurdf.format.joint_model import ACTUATOR, JOINT, Geared, Joint, OneOrList
 from eurdf.format.mappings import Entry, Record, entry, key, required
@@ -59,7 +59,7 @@ class Version2(Entry):
         "floating",
         default="fixed",
     )
-    closures: tuple[AnyClosure, ...] = key(
+    closures: tuple[Closure, ...] = key(
         ListOf(CLOSURE),
         "Loop closures",
         "Pairs of frames that are held together.",

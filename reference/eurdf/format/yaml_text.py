@@ -28,7 +28,7 @@ _ESCAPES = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\r": "\\r", "\t": "\\t"}
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class YamlEntry:
     """An entry of a mapping or a list, with the comments that go with it.
 
     Attributes:
@@ -89,23 +89,23 @@ def item_of_mapping(mapping: Mapping[str, Value]) -> tuple[str, ...]:
     return (f"- {first}", *(f"  {line}" for line in rest))
 
 
-def section(key: str, items: Iterable[Entry], above: Iterable[str] = (), beside: str = "") -> Entry:
+def section(key: str, items: Iterable[YamlEntry], above: Iterable[str] = (), beside: str = "") -> YamlEntry:
     """A key and, indented below it, the entries of its mapping or list."""
     lines = (line for item in items for line in item.text("  "))
-    return Entry((f"{scalar(key)}:", *lines), tuple(above), beside)
+    return YamlEntry((f"{scalar(key)}:", *lines), tuple(above), beside)
 
 
-def entries_of(content: Mapping[str, Any]) -> Iterator[Entry]:
+def entries_of(content: Mapping[str, Any]) -> Iterator[YamlEntry]:
     """The entries of a description of version 2: a line for each key of a closure, and for each element of others."""
     for key, value in content.items():
         if key == "closures":
-            yield section(key, [Entry(item_of_mapping(item)) for item in value])
+            yield section(key, [YamlEntry(item_of_mapping(item)) for item in value])
         elif key in ("couplings", "frames"):
-            yield section(key, [Entry(lines_of_item(item)) for item in value])
+            yield section(key, [YamlEntry(lines_of_item(item)) for item in value])
         elif key in ("joints", "configurations", "metadata"):
-            yield section(key, [Entry(lines_of(name, item)) for name, item in value.items()])
+            yield section(key, [YamlEntry(lines_of(name, item)) for name, item in value.items()])
         else:
-            yield Entry(lines_of(key, value))
+            yield YamlEntry(lines_of(key, value))
 
 
 def modeline(schema: str) -> str:
@@ -113,7 +113,7 @@ def modeline(schema: str) -> str:
     return f"# yaml-language-server: $schema={schema}"
 
 
-def text_of(entries: Iterable[Entry]) -> str:
+def text_of(entries: Iterable[YamlEntry]) -> str:
     """The text of a file."""
     return "".join(f"{line}\n" for entry in entries for line in entry.text())
 

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from eurdf.json_schema import HIDDEN, Count, NullIfInfinite
-from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
+from eurdf.array import Mask, Matrix, Vector
 from eurdf.kinematics.assembly import Assembly, assembled, close, start
 from eurdf.kinematics.derived import borrowed
-from eurdf.kinematics.finite_mobility import Evidence, FiniteMobility, MobilityTest
+from eurdf.kinematics.finite_mobility import MobilityTest
 from eurdf.kinematics.loop import LoopGroup
-from eurdf.kinematics.problem import Group, Problem
-from eurdf.kinematics.rank import norms, numerical_rank
-from eurdf.kinematics.sparse_basis import sparse_basis
+from eurdf.kinematics.loop_analysis import LoopAnalysis, Motion, analyze_group
+from eurdf.kinematics.problem import Problem
+from eurdf.kinematics.rank import norms, null_space
 from eurdf.kinematics.tolerances import SOLVED
 
 if TYPE_CHECKING:
@@ -29,75 +27,6 @@ _MOST_WORK = 1e9
 
 # Steps to further closed configurations that are analysed (rad, or characteristic lengths).
 _MOVES = (0.05, 0.1, 0.2, 0.2)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Motion:
-    """A motion left with every actuator held.
-
-    Attributes:
-        joints: Names of the joints that it moves.
-        velocities: Indices (k,) in v of the nonzero velocities.
-        values: These velocities (k,), rad/s and m/s; the largest is 1 in units of rad and characteristic lengths.
-        q: The closed configuration (nq,) of the motion.
-    """
-
-    joints: tuple[str, ...]
-    velocities: Indices = field(metadata=HIDDEN)
-    values: Vector = field(metadata=HIDDEN)
-    q: Vector = field(metadata=HIDDEN)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class LoopAnalysis:
-    """An independent group of loops: they share joints with one another and with no other loop.
-
-    Attributes:
-        closures: Names of its closures and couplings, in file order.
-        joints: Names of its joints, in the model's order.
-        nv: Number of velocities of its joints.
-        nc: Number of its constraint rows.
-        rank: Rank of its block of the constraint Jacobian.
-        mobility: Degrees of freedom of the closed loops, nv - rank.
-        redundant: Redundant constraint rows, nc - rank.
-        uncontrolled: Degrees of freedom left with its actuators held, nv - rank [K; Sᵀ].
-        actuated: Number of its velocities that are actuated.
-        controlled: Degrees of freedom that its actuators control, mobility - uncontrolled: the rank of Sᵀ on the null
-            space of K.
-        singularity: Its distance to singularity, as for the whole robot.
-        actuation_singularity: Its distance to a singularity of the actuation, as for the whole robot.
-        dependent_actuators: Its sets of dependent actuators: see `Analysis`.
-        motions: Its uncontrolled motions: see `Analysis`.
-        infinitesimal_mobility: Degrees of freedom to first order at the analysed configuration, nv - rank of K there.
-        finite_mobility: Degrees of freedom of motions that continue from the analysed configuration; 'unknown' if it
-            was not decided.
-        evidence: What decides the finite mobility: the rank is the same all around (a proof), the second-order test (a
-            proof), or continuation (numerical evidence); None if it is unknown.
-        branches: Degrees of freedom of each branch of closed configurations that was found to pass through the analysed
-            one; if more than two velocities are free there, each dimension once.
-        rigid_order: Order p of rigidity, if the finite mobility is 0; else None. A motion of size h opens the loops by
-            about hᵖ, so at p = 2 and above they are shaky.
-    """
-
-    closures: tuple[str, ...]
-    joints: tuple[str, ...]
-    nv: Count
-    nc: Count
-    rank: Count
-    mobility: Count
-    redundant: Count
-    uncontrolled: Count
-    actuated: Count
-    controlled: Count
-    singularity: NullIfInfinite
-    actuation_singularity: NullIfInfinite
-    dependent_actuators: tuple[tuple[str, ...], ...] = field(metadata=HIDDEN)
-    motions: tuple[Motion, ...] = field(metadata=HIDDEN)
-    infinitesimal_mobility: Count
-    finite_mobility: Count | Literal["unknown"]
-    evidence: Evidence | None
-    branches: tuple[Count, ...]
-    rigid_order: Count | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -231,7 +160,7 @@ def _analysis(robot: Robot, problem: Problem, assembly: Assembly) -> Analysis:
     if ranked:
         closures = [constraint.name for constraint in robot.constraints]
         loops = tuple(
-            _analyze(group, at, finite, actuated[group.loops.velocities], names, closures)
+            analyze_group(group, at, finite, actuated[group.loops.velocities], names, closures)
             for group, at, finite in zip(
                 problem.groups,
                 _generic_jacobians(problem, assembly.q),
@@ -241,7 +170,8 @@ def _analysis(robot: Robot, problem: Problem, assembly: Assembly) -> Analysis:
         )
         motions = [motion for loop in loops for motion in loop.motions]
         motions += [
-            _unit_motion(names, velocity, assembly.q) for velocity in np.flatnonzero(outside & ~actuated).tolist()
+            Motion((names[velocity],), np.array([velocity]), np.ones(1), assembly.q)
+            for velocity in np.flatnonzero(outside & ~actuated).tolist()
         ]
     count = int(actuated.sum())
     rank = sum(loop.rank for loop in loops)
@@ -305,7 +235,7 @@ def _generic_jacobians(problem: Problem, q: Vector) -> list[list[tuple[Vector, M
     groups = problem.groups
     open_by = [norms(group.residual(q[None]))[0] for group in groups]
     found = [[(q, group.jacobian_at(q[None])[0])] for group in groups]
-    bases = [_null_space(blocks[0][1]) for blocks in found]
+    bases = [null_space(blocks[0][1]) for blocks in found]
     for number, length in enumerate(_MOVES):
         steps = [_free_step(basis, number, length)[None] for basis in bases]
         near = close(problem, problem.moved(q[None], groups, steps)).q
@@ -313,130 +243,6 @@ def _generic_jacobians(problem: Problem, q: Vector) -> list[list[tuple[Vector, M
             if norms(group.residual(near))[0] <= max(10.0 * error, 1e-8):
                 blocks.append((near[0], group.jacobian_at(near)[0]))
     return found
-
-
-def _analyze(
-    group: Group,
-    at: Sequence[tuple[Vector, Matrix]],
-    finite: FiniteMobility,
-    actuated: Mask,
-    names: Sequence[str],
-    closures: Sequence[str],
-) -> LoopAnalysis:
-    """Analyse one group of loops.
-
-    Args:
-        group: The group.
-        at: Closed configurations, each with its dimensionless block of K; the first is the one to analyse.
-        finite: What was found of its finite mobility.
-        actuated: Which of its velocities (n,) are actuated.
-        names: For each velocity of the robot, the name of its joint.
-        closures: Names of the robot's closures.
-    """
-    loops = group.loops
-    ranks = [_ranks(A, actuated) for _, A in at]
-    rank, held = max(rank for rank, _ in ranks), max(held for _, held in ranks)
-    q, A = next(place for place, found in zip(at, ranks, strict=True) if found[1] == held)
-    looked_at = at[0][1]
-    nv, nc = len(loops.velocities), len(loops.rows)
-    members = [names[velocity] for velocity in loops.velocities.tolist()]
-    stacked = np.vstack([looked_at, np.eye(nv)[actuated]])
-    return LoopAnalysis(
-        closures=tuple(closures[index] for index in loops.closures),
-        joints=_distinct(members),
-        nv=nv,
-        nc=nc,
-        rank=rank,
-        mobility=nv - rank,
-        redundant=nc - rank,
-        uncontrolled=nv - held,
-        actuated=int(actuated.sum()),
-        controlled=held - rank,
-        singularity=_nth(_singular_values(looked_at), rank),
-        actuation_singularity=_nth(_singular_values(stacked), held),
-        dependent_actuators=_dependent_actuators(A, rank, held - rank, actuated, members),
-        motions=_motions(A, held, actuated, group, members, q),
-        infinitesimal_mobility=finite.infinitesimal,
-        finite_mobility="unknown" if finite.finite is None else finite.finite,
-        evidence=finite.evidence,
-        branches=finite.branches,
-        rigid_order=finite.rigid_order,
-    )
-
-
-def _ranks(A: Matrix, actuated: Mask) -> tuple[int, int]:
-    """Ranks of K and of [K; Sᵀ]; the latter is the number of actuated velocities plus the rank of the other columns."""
-    values = _singular_values(A)
-    reference = values.max(initial=0.0)
-    rest = numerical_rank(_singular_values(A[:, ~actuated]), reference)
-    return numerical_rank(values, reference), int(actuated.sum()) + rest
-
-
-def _dependent_actuators(
-    A: Matrix, rank: int, controlled: int, actuated: Mask, members: Sequence[str]
-) -> tuple[tuple[str, ...], ...]:
-    """Names of the actuators whose velocities depend on one another, set by set.
-
-    Torques z with zᵀ Sᵀ v = 0 for all v with K v = 0 do no work in any motion. The actuators in one vector of a sparse
-    basis of them depend on one another, and so do those of two vectors that have an actuator in common.
-    """
-    count = int(actuated.sum())
-    if count == controlled:
-        return ()
-    basis = _right_vectors(A)[rank:].T[actuated]  # actuated velocities of the free motions, (nu, mobility)
-    columns = np.linalg.svd(basis, full_matrices=True)[0][:, controlled:]
-    names = [name for name, moves in zip(members, actuated.tolist(), strict=True) if moves]
-    sets: list[set[str]] = []
-    for row in sparse_basis(columns.T):
-        together = {name for name, value in zip(names, row.tolist(), strict=True) if value}
-        apart = [other for other in sets if not other & together]
-        sets = [*apart, together.union(*(other for other in sets if other & together))]
-    order = {name: index for index, name in enumerate(_distinct(names))}
-    ordered = (tuple(sorted(together, key=order.__getitem__)) for together in sets)
-    return tuple(sorted(ordered, key=lambda together: order[together[0]]))
-
-
-def _motions(
-    A: Matrix, held: int, actuated: Mask, group: Group, members: Sequence[str], q: Vector
-) -> tuple[Motion, ...]:
-    """The motions of a group at q (nq,) with its actuators held; A is its block of K."""
-    free = np.flatnonzero(~actuated)
-    basis = _right_vectors(A[:, free])[held - int(actuated.sum()) :]
-    motions = []
-    for row in sparse_basis(basis):
-        moving = free[np.flatnonzero(row)]
-        values = row[np.flatnonzero(row)] * group.unit[moving]
-        joints = _distinct(members[index] for index in moving.tolist())
-        motions.append(Motion(joints, group.loops.velocities[moving], values, q))
-    return tuple(motions)
-
-
-def _unit_motion(names: Sequence[str], velocity: int, q: Vector) -> Motion:
-    return Motion((names[velocity],), np.array([velocity]), np.ones(1), q)
-
-
-def _distinct(names: Iterable[str]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(names))
-
-
-def _nth(values: Vector, number: int) -> float:
-    """Singular value number ``number``; inf for number 0, since there is no rank to lose."""
-    return float(values[number - 1]) if number > 0 else math.inf
-
-
-def _singular_values(A: Matrix) -> Vector:
-    return np.asarray(np.linalg.svd(A, compute_uv=False), dtype=np.float64)
-
-
-def _right_vectors(A: Matrix) -> Matrix:
-    """All right singular vectors (n, n) of A, one a row, those of the largest singular values first."""
-    return np.asarray(np.linalg.svd(A, full_matrices=True)[2], dtype=np.float64)
-
-
-def _null_space(A: Matrix) -> Matrix:
-    """Orthonormal basis (k, n) of the null space of A, one vector a row."""
-    _, values, right = np.linalg.svd(A, full_matrices=True)
-    return np.asarray(right[numerical_rank(values, values.max(initial=0.0)) :], dtype=np.float64)
 
 
 def _free_step(basis: Matrix, number: int, length: float) -> Vector:

@@ -17,7 +17,7 @@ import numpy as np
 
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.derived import borrowed
-from eurdf.kinematics.descend import Descended, descend, measured
+from eurdf.kinematics.descend import Descended, descend, evaluated
 from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits, chosen_limits
@@ -177,11 +177,9 @@ def close(
         q: Where to start (B, nq).
         tolerance: Bound of the norm of the residual, m and rad.
         restarts: Maximum number of restarts while a group is open by more than `CLOSED`.
-        limits: The position limits to respect, or None.
+        limits: The position limits to respect, as q does, or None.
     """
     with np.errstate(all="ignore"):  # lengths such as 1e200 m overflow and never close
-        if limits is not None and problem.groups:
-            q = limits.clip(q, np.concatenate([group.loops.velocities for group in problem.groups]))
         little = (restarts + 2) * MOST_STEPS * problem.work <= MOST_WORK
         if not little or not (problem.at_once or len(problem.groups) == 1):
             return _Closing(problem, q, tolerance, limits).closed(restarts)
@@ -305,14 +303,17 @@ def is_closed(problem: Problem, q: Matrix, tolerance: float) -> Mask:
     """Whether (B,) `close` would leave configurations (B, nq) as they are."""
     if not problem.parts:
         return np.ones(len(q), dtype=bool)
-    error, scaled = measured(problem.parts, [part.residual(q) for part in problem.parts])
-    return np.asarray((error <= tolerance**2) & (scaled <= (WELL_CLOSED / problem.spaces.length) ** 2))
+    _, _, _, error, scaled = evaluated(problem.parts, q)
+    closed = (error <= tolerance**2) & (scaled <= (WELL_CLOSED / problem.spaces.length) ** 2)
+    return np.array(closed, ndmin=1)
 
 
 def assembled(
     problem: Problem, q: Vector, tolerance: float, restarts: int = RESTARTS, limits: PositionLimits | None = None
 ) -> Assembly:
     """As `assemble`, from a configuration (nq,)."""
+    if limits is not None and problem.groups:
+        q = limits.clip(q, np.concatenate([group.loops.velocities for group in problem.groups]))
     closed = close(problem, q[None], tolerance, restarts, limits)
     with np.errstate(over="ignore", invalid="ignore"):
         (r,), found = _measured(problem, closed.q)

@@ -101,7 +101,7 @@ class Branch:
             residual = float(np.abs(self._group.evaluator.residual(at)).max(initial=0.0))
             K = self._group.jacobian(at)[0]
         left, values, right = np.linalg.svd(K[:, self._passive], full_matrices=False)
-        rank = numerical_rank(values, values.max(initial=0.0))
+        rank = numerical_rank(values)
         inverse = np.zeros(K.T.shape)
         inverse[self._passive] = (right[:rank].T / values[:rank]) @ left[:, :rank].T
         smallest = float(values[rank - 1]) if rank else math.inf

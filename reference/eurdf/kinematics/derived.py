@@ -20,14 +20,15 @@ class _Keeper(Protocol):
 _Kept = TypeVar("_Kept", bound=_Keeper)
 
 
-def derived(robot: _Kept, compute: Callable[[_Kept], _T]) -> _T:
-    """What a function computes from a robot or a tree alone, computed when first asked for.
+def derived(robot: _Kept, compute: Callable[..., _T], *key: Hashable) -> _T:
+    """What a function computes from a robot or a tree, and a key, computed when first asked for.
 
     Threads that ask at once all get the same.
     """
-    if compute not in robot.derived:
-        robot.derived.setdefault(compute, compute(robot))
-    kept: _T = robot.derived[compute]
+    name = (compute, *key) if key else compute
+    if name not in robot.derived:
+        robot.derived.setdefault(name, compute(robot, *key))
+    kept: _T = robot.derived[name]
     return kept
 
 

@@ -8,14 +8,28 @@ redundant rows. Each element has its own damping and its own end; elements that 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.position_limit import PositionLimits
 from eurdf.kinematics.problem import Group, Problem
-from eurdf.kinematics.rank import diagonals, solutions, squares
+from eurdf.kinematics.rank import (
+    Numbers,
+    at_least,
+    choose,
+    column,
+    diagonals,
+    every,
+    largest,
+    numbers,
+    solutions,
+    some,
+    square,
+    times,
+    total,
+)
 from eurdf.kinematics.tolerances import (
     FIRST_DAMPING,
     GOOD_SHARE,
@@ -68,13 +82,9 @@ class Descended(NamedTuple):
         self.steps[to], self.cut[to] = here.steps[which], here.cut[which]
 
 
-_FACTORS = np.array([4.0, 1.0, 0.1])
-
-
-def next_damping(damping: Vector, gain: Vector) -> Vector:
+def next_damping(damping: Numbers, gain: Numbers) -> Numbers:
     """The damping after accepted steps that reduced the square by so much of what was expected."""
-    factor = _FACTORS[np.add(gain > POOR_SHARE, gain > GOOD_SHARE, dtype=np.intp)]
-    return np.asarray(np.maximum(damping * factor, LEAST_DAMPING))
+    return at_least(damping * choose(gain > GOOD_SHARE, 0.1, choose(gain > POOR_SHARE, 1.0, 4.0)), LEAST_DAMPING)
 
 
 def descend(
@@ -97,82 +107,91 @@ def descend(
     """
     B, enough = len(q), tolerance * tolerance
     on, ended = np.arange(B), None
-    at = [group.evaluator.at(q) for group in groups]
-    r = [group.evaluator.residual(each) for group, each in zip(groups, at, strict=True)]
-    error, square = before, expected = measured(groups, r)
-    if not np.count_nonzero(error > enough):
-        return Descended(q, r, error, square, np.zeros(B, dtype=np.intp), np.zeros(B, dtype=bool))
+    at, r, b, error, squared = evaluated(groups, q)
+    if not some(error > enough):
+        return _ended(q, r, error, squared, 0)
+    before = expected = squared
     A: list[Matrix] = []
-    damping, more, idle = np.full(B, FIRST_DAMPING), np.full(B, MORE_DAMPING), np.zeros(B, dtype=np.intp)
-    stale: Mask | None = None  # whose A is not that at q; None for all of them, with the states `at`
+    damping, more, idle = numbers(B, FIRST_DAMPING), numbers(B, MORE_DAMPING), numbers(B, 0)
+    stale: Numbers | None = None  # whose A is not that at q; None for all of them, with the states `at`
     for step in range(MOST_STEPS + 1):
         going, cut = error > enough, None
-        if step and np.count_nonzero(going):
-            idle = (idle + 1) * ~(square < (1.0 - IDLE) * before)
-            going &= (idle <= MOST_IDLE_STEPS) & (expected > LEAST_GAIN * square)
+        if step and some(going):
+            idle = choose(squared < (1.0 - IDLE) * before, 0, idle + 1)
+            going = going & (idle <= MOST_IDLE_STEPS) & (expected > LEAST_GAIN * squared)
         if most is not None:
             cut = going & (most[on] <= step)
-            going &= ~cut
-        count = np.count_nonzero(going) if step < MOST_STEPS else 0
-        if count < len(on) or not count:
-            no: Mask = np.zeros(len(on), dtype=bool)
-            here = Descended(q, r, error, square, np.full(len(on), step), no if cut is None else cut)
-            if not count and ended is None:
+            going = going & ~cut
+        goes_on = step < MOST_STEPS and some(going)
+        if not (goes_on and every(going)):
+            here = _ended(q, r, error, squared, step, cut)
+            if not goes_on and ended is None:
                 return here  # all at once
             ended = here.copy() if ended is None else ended
-            ended.keep(here, ~going if count else ~no, on)
-            if not count:
+            ended.keep(here, ~going if goes_on else np.ones(len(on), dtype=bool), on)
+            if not goes_on:
                 break
-            on, q, r, A = on[going], q[going], [each[going] for each in r], [each[going] for each in A]
-            error, square, damping, more, idle = error[going], square[going], damping[going], more[going], idle[going]
+            on, q, r, A, b = on[going], q[going], *([each[going] for each in of] for of in (r, A, b))
+            error, squared, damping, more, idle = error[going], squared[going], damping[going], more[going], idle[going]
             if stale is None:
                 at = [group.evaluator.at(q) for group in groups]
             else:
                 stale = stale[going]
         if stale is None:
             A = [group.jacobian(each) for group, each in zip(groups, at, strict=True)]
-        elif stale.any():
+        elif some(stale):
             for group, own in zip(groups, A, strict=True):
                 own[stale] = group.jacobian_at(q[stale])
-        b = [group.row_scale * each for group, each in zip(groups, r, strict=True)]
-        steps = _steps(groups, A, b, q, damping * square, limits)
-        expected = square - _predicted(A, steps, b)
+        steps = _steps(groups, A, b, q, damping * squared, limits)
+        expected, before = squared - _predicted(A, steps, b), squared
         trial = problem.moved(q, groups, steps)
-        at = [group.evaluator.at(trial) for group in groups]
-        r_there = [group.evaluator.residual(each) for group, each in zip(groups, at, strict=True)]
-        error_there, reached = measured(groups, r_there)
-        progress, before = square - reached, square
+        at, r_there, b_there, error_there, reached = evaluated(groups, trial)
+        progress = squared - reached
         accepted = (expected > 0.0) & (progress > LEAST_SHARE * expected)
-        if np.count_nonzero(accepted) == len(on):
-            q, r, error, square, stale = trial, r_there, error_there, reached, None
-            damping, more[:] = next_damping(damping, progress / expected), MORE_DAMPING
+        if every(accepted):
+            q, r, b, error, squared, stale = trial, r_there, b_there, error_there, reached, None
+            damping, more = next_damping(damping, progress / expected), numbers(len(on), MORE_DAMPING)
             continue
-        rows = accepted[:, None]
-        q = np.where(rows, trial, q)
-        error, square = np.where(accepted, error_there, error), np.where(accepted, reached, square)
-        r = [np.where(rows, there, here) for there, here in zip(r_there, r, strict=True)]
-        gain = np.divide(progress, expected, out=np.zeros(len(on)), where=accepted)
-        damping = np.where(accepted, next_damping(damping, gain), damping * more)
-        more = np.where(accepted, MORE_DAMPING, 2.0 * more)  # doubles with each step that follows
         stale = accepted
+        if some(accepted):
+            rows = accepted[:, None]
+            q = np.where(rows, trial, q)
+            error, squared = np.where(accepted, error_there, error), np.where(accepted, reached, squared)
+            r = [np.where(rows, there, here) for there, here in zip(r_there, r, strict=True)]
+            b = [np.where(rows, there, here) for there, here in zip(b_there, b, strict=True)]
+        gain = choose(accepted, progress, 0.0) / choose(accepted, expected, 1.0)
+        damping = choose(accepted, next_damping(damping, gain), damping * more)
+        more = choose(accepted, MORE_DAMPING, 2.0 * more)  # doubles with each step that follows
     assert ended is not None
     return ended
 
 
-def measured(groups: Sequence[Group], r: Sequence[Matrix]) -> tuple[Vector, Vector]:
-    """The squares (B,) of the norms of all residuals, as they are and dimensionless."""
-    both = _sum([(each * each) @ group.weights for group, each in zip(groups, r, strict=True)])
-    return both[:, 0], both[:, 1]
+def evaluated(groups: Sequence[Group], q: Matrix) -> tuple[list[Any], list[Matrix], list[Matrix], Numbers, Numbers]:
+    """Of each group its state and its residual, as it is and dimensionless; the squares of the norms of all of both."""
+    at, r, b, error, squared = [], [], [], 0.0, 0.0
+    for group in groups:
+        at.append(group.evaluator.at(q))
+        r.append(group.evaluator.residual(at[-1]))
+        b.append(group.row_scale * r[-1])
+        error, squared = error + square(r[-1]), squared + square(b[-1])
+    return at, r, b, error, squared
 
 
-def _predicted(A: Sequence[Matrix], steps: Sequence[Matrix], b: Sequence[Matrix]) -> Vector:
-    """Σ |A δ + b|² (B,)."""
-    parts = zip(A, steps, b, strict=True)
-    return _sum([squares((own @ step[:, :, None])[:, :, 0] + rows) for own, step, rows in parts])
+def _ended(
+    q: Matrix, r: list[Matrix], error: Numbers, squared: Numbers, step: int, cut: Numbers | None = None
+) -> Descended:
+    no: Mask = np.zeros(len(q), dtype=bool)
+    return Descended(
+        q, r, np.array(error, ndmin=1), np.array(squared, ndmin=1), no + step, no if cut is None else np.array(cut)
+    )
 
 
-def _sum(parts: Sequence[Vector]) -> Vector:
-    return parts[0] if len(parts) == 1 else np.add.reduce(parts)
+def _predicted(A: Sequence[Matrix], steps: Sequence[Matrix], b: Sequence[Matrix]) -> Numbers:
+    """Σ |A δ + b|² of each element."""
+    found: Numbers = 0.0
+    for own, step, rows in zip(A, steps, b, strict=True):
+        found = found + square(times(own, step) + rows)
+    return found
 
 
 def _steps(
@@ -180,7 +199,7 @@ def _steps(
     A: Sequence[Matrix],
     b: Sequence[Matrix],
     q: Matrix,
-    damping: Vector,
+    damping: Numbers,
     limits: PositionLimits | None,
 ) -> list[Matrix]:
     """The next steps (B, n) of each group, of at most 1 rad or characteristic length, within the limits."""
@@ -188,32 +207,39 @@ def _steps(
     rooms: list[tuple[Matrix, Matrix]] = []
     if limits is not None:
         for group in groups:
-            down, up = limits.room(q, group.loops.velocities)
+            down, up = limits.room(q, group.own)
             rooms.append((down / group.unit, up / group.unit))
-        _stay_within(A, b, damping, steps, rooms)
-    largest = np.abs(steps[0]).max(axis=1, initial=1.0)
-    for step in steps[1:]:
-        np.maximum(largest, np.abs(step).max(axis=1, initial=0.0), out=largest)
-    steps = [step / largest[:, None] for step in steps]
-    if limits is not None:
+        if all(not ((step < down) | (step > up)).any() for step, (down, up) in zip(steps, rooms, strict=True)):
+            rooms = []  # no limit is in the way
+        else:
+            _stay_within(A, b, np.array(damping, ndmin=1), steps, rooms)
+    longest: Numbers = 1.0
+    for step in steps:
+        longest = at_least(longest, largest(step))
+    if some(longest != 1.0):
+        steps = [step / column(longest) for step in steps]
+    if rooms:
         steps = [np.minimum(np.maximum(step, down), up) for step, (down, up) in zip(steps, rooms, strict=True)]
     return steps
 
 
-def _damped(A: Sequence[Matrix], b: Sequence[Matrix], damping: Vector) -> list[Matrix]:
+def _damped(A: Sequence[Matrix], b: Sequence[Matrix], damping: Numbers) -> list[Matrix]:
     """The δ (B, n) that minimise Σ |A δ + b|² + λ |δ|², from the smaller of A Aᵀ and Aᵀ A of each group."""
-    transposed = [each.swapaxes(1, 2) for each in A]
-    wide = [each.shape[1] < each.shape[2] for each in A]
-    grams = [own @ back if is_wide else back @ own for own, back, is_wide in zip(A, transposed, wide, strict=True)]
-    trace = _sum([diagonals(gram).sum(axis=1) for gram in grams])
+    grams, wide = [], [own.shape[1] < own.shape[2] for own in A]
+    trace: Numbers = 0.0
+    for own, is_wide in zip(A, wide, strict=True):
+        back = own.swapaxes(1, 2)
+        gram = own @ back if is_wide else back @ own
+        diagonal = diagonals(gram)
+        grams.append((gram, diagonal))
+        trace = trace + total(diagonal)
     # Invertible even with redundant rows.
-    damping = np.maximum(np.maximum(damping, 1e-13 * trace), 1e-300)[:, None]
+    damping = column(at_least(damping, 1e-13 * trace + 1e-300))
     steps: list[Matrix] = []
-    for back, gram, rows, is_wide in zip(transposed, grams, b, wide, strict=True):
-        diagonals(gram)[:] += damping
-        column = rows[:, :, None]
-        step = back @ solutions(gram, -column) if is_wide else solutions(gram, back @ -column)
-        steps.append(np.asarray(step[:, :, 0]))
+    for own, is_wide, (gram, diagonal), rows in zip(A, wide, grams, b, strict=True):
+        diagonal += damping
+        back = own.swapaxes(1, 2)
+        steps.append(times(back, solutions(gram, -rows)) if is_wide else solutions(gram, -times(back, rows)))
     return steps
 
 

@@ -1,4 +1,4 @@
-"""Forward and inverse dynamics of the closed mechanism.
+"""Forward and inverse dynamics of the closed mechanism, and the mass matrix of its spanning tree.
 
 The equation of motion and the second derivative of the closures are
 
@@ -17,16 +17,18 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from eurdf.array import Matrix, Vector
 from eurdf.kinematics.applied_force import AppliedForce, External
-from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.derived import borrowed
-from eurdf.kinematics.equation_of_motion import MASSLESS, EquationOfMotion, by_joint, per_constraint
+from eurdf.kinematics.equation_of_motion import EquationOfMotion, by_joint, per_constraint
 from eurdf.kinematics.exceptions import UnderactuatedMotion
 from eurdf.kinematics.finite import finite, overflow_refused
-from eurdf.kinematics.forward_solver import SOLVED, ForwardSolver
+from eurdf.kinematics.forward_solver import ForwardSolver
 from eurdf.kinematics.inverse_solver import InverseSolver
+from eurdf.kinematics.tolerances import FORCES_SOLVED, MASSLESS
 from eurdf.pinocchio.arguments import checked_array, checked_tolerance
+from eurdf.pinocchio.tree_dynamics import TreeDynamics
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -103,14 +105,14 @@ def forward_dynamics(
     """
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"), borrowed(robot, ForwardSolver) as solver:
         q, v = start(robot, q, "q"), checked_array("v", v, (robot.tree.nv,))
-        data = None if data is None else solver.checked(data)
+        dynamics = solver.dynamics(data)
         force = AppliedForce(robot, external, dissipation).total(q, v, u, tau)
         if gains is None:
             each = solver.gains.now()
         else:
             kp, kd = checked_array("gains", gains, (2,)).tolist()
             each = [(kp, kd)] * len(robot.constraints)
-        a, lambdas = solver.solve(robot, q, v, force, each, data)
+        a, lambdas = solver.solve(robot, q, v, force, each, dynamics)
         forces = tuple([lambdas[rows] for rows in solver.rows])
     return ForwardDynamics(a, forces)
 
@@ -167,13 +169,13 @@ def inverse_dynamics(
         borrowed(robot, ForwardSolver) as solver,
         borrowed(robot, InverseSolver) as inverse_solver,
     ):
-        q, v, a, data = _state(robot, q, v, a, solver, data)
+        q, v, a, dynamics = _state(robot, q, v, a, solver, data)
         norm, tolerance = _norm(robot, weights), checked_tolerance(tolerance)
         applied = AppliedForce(robot, external, dissipation).total(q, v, None, tau)
-        found = inverse_solver.solve(solver, q, v, a, applied, tolerance, data)
+        found = inverse_solver.solve(solver, q, v, a, applied, tolerance, dynamics)
         if found is not None:
             return InverseDynamics(found.u, tuple([found.lambdas[rows] for rows in solver.rows]))
-        motion, S = EquationOfMotion(robot, q, v, solver.data if data is None else data), robot.actuation.selection
+        motion, S = EquationOfMotion(robot, q, v, dynamics), robot.actuation.selection
         motion.refuse_open(a, tolerance)
         force = motion.bias - applied
         inertial = motion.mass(a)
@@ -227,8 +229,8 @@ def achievable_acceleration(
         NumericalOverflow: The result is not finite.
     """
     with overflow_refused("the acceleration"), borrowed(robot, ForwardSolver) as solver:
-        q, v, a, data = _state(robot, q, v, a, solver, data)
-        motion = EquationOfMotion(robot, q, v, solver.data if data is None else data)
+        q, v, a, dynamics = _state(robot, q, v, a, solver, data)
+        motion = EquationOfMotion(robot, q, v, dynamics)
         motion.refuse_open(a, checked_tolerance(tolerance))
         force = motion.bias - AppliedForce(robot, external, dissipation).total(motion.q, motion.v, None, tau)
         deviation, missing = _uncontrolled(motion, motion.mass(a), force)
@@ -239,12 +241,43 @@ def achievable_acceleration(
     return achievable
 
 
+@overflow_refused("the mass matrix")
+def mass_matrix(robot: Robot, q: Vector, *, data: Any = None) -> Matrix:
+    """Mass matrix M(q) of the spanning tree, the armature included: its kinetic energy is ½ vᵀ M v.
+
+    It is computed by `pin.crba`, except for robots with mimic joints: up to Pinocchio 4.1, `pin.crba` has wrong entries
+    if a mimic joint carries several branches. Their M is computed from the inverse dynamics, column by column:
+    M eᵢ = rnea(q, 0, eᵢ) - rnea(q, 0, 0).
+
+    Source: Featherstone, *Rigid Body Dynamics Algorithms*, 2008, chapter 6.
+
+    Args:
+        robot: The robot.
+        q: Configuration (nq,), closed or open.
+        data: A `pin.Data` of the model to compute in; by default a new one is created, or none for more than 130
+            velocities.
+
+    Returns:
+        M (nv, nv), symmetric, in kg between two velocities in m/s, kg·m between m/s and rad/s, kg·m² between two in
+        rad/s.
+
+    Raises:
+        ValueError: ``q`` is not a configuration, or ``data`` is of another model.
+        NumericalOverflow: M is not finite.
+    """
+    tree = robot.tree
+    M = tree.dynamics(data).mass_times(start(robot, q, "q"), np.eye(tree.nv))
+    symmetric = np.asarray(0.5 * (M + M.T))
+    finite("the mass matrix", symmetric)
+    return symmetric
+
+
 def _state(
     robot: Robot, q: Vector, v: Vector, a: Vector, solver: ForwardSolver, data: Any
-) -> tuple[Vector, Vector, Vector, Any]:
-    """Configuration, velocity, acceleration and memory, all checked."""
-    nv, data = (robot.tree.nv,), None if data is None else solver.checked(data)
-    return start(robot, q, "q"), checked_array("v", v, nv), checked_array("a", a, nv), data
+) -> tuple[Vector, Vector, Vector, TreeDynamics]:
+    """Configuration, velocity, acceleration and dynamics of the tree, all checked."""
+    nv, dynamics = (robot.tree.nv,), solver.dynamics(data)
+    return start(robot, q, "q"), checked_array("v", v, nv), checked_array("a", a, nv), dynamics
 
 
 def _uncontrolled(motion: EquationOfMotion, inertial: Vector, force: Vector) -> tuple[Vector, Vector]:
@@ -268,7 +301,7 @@ def _uncontrolled(motion: EquationOfMotion, inertial: Vector, force: Vector) -> 
     U = motion.N @ Z @ axes
     along = U.T @ (inertial + force)
     terms = np.abs(U.T) @ (np.abs(inertial) + np.abs(force))
-    unborne = np.where(massive | (np.abs(along) <= SOLVED * terms), 0.0, along)
+    unborne = np.where(massive | (np.abs(along) <= FORCES_SOLVED * terms), 0.0, along)
     deviation = U[:, massive] @ (along[massive] / inertia[massive])
     return deviation, motion.free @ (Z @ (axes @ unborne)) / motion.unit
 

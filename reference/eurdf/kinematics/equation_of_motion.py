@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -16,13 +16,12 @@ from eurdf.kinematics.loop import find_loops
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.residual import acceleration_drift, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
-from eurdf.kinematics.tree_kinematics import TreeKinematics
+from eurdf.kinematics.tolerances import MASSLESS
+from eurdf.pinocchio.tree import Tree
+from eurdf.pinocchio.tree_dynamics import TreeDynamics
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
-
-#: An inertia below this, relative to the largest one of a free motion, counts as zero.
-MASSLESS = 1e-14
 
 
 class Acceleration(NamedTuple):
@@ -45,15 +44,15 @@ class EquationOfMotion:
         bias: h (nv,).
     """
 
-    def __init__(self, robot: Robot, q: Vector, v: Vector, data: Any) -> None:
-        """Take a normalized q (nq,) and v (nv,), and memory of the whole tree."""
-        self.robot, self.q, self.v, self.data = robot, q, v, data
+    def __init__(self, robot: Robot, q: Vector, v: Vector, dynamics: TreeDynamics) -> None:
+        """Take a normalized q (nq,) and v (nv,), and the dynamics of the tree."""
+        self.robot, self.q, self.v, self._dynamics = robot, q, v, dynamics
         self.r, self.K = residual_and_jacobian(robot, q)
         self.drift = acceleration_drift(robot, q, v)
         spaces = derived(robot, TangentSpaces)
         space = spaces.at(self.K)
         self.P, self.unit, self._space = space.inverse, spaces.scale, space
-        self.bias: Vector = robot.tree.inverse_dynamics(q, v, np.zeros(robot.tree.nv), data)
+        self.bias = dynamics.inverse_dynamics(q, v, np.zeros(robot.tree.nv))
         finite("the equation of motion", self.r, self.drift, self.bias, self.P)
 
     @cached_property
@@ -76,7 +75,7 @@ class EquationOfMotion:
         if not S.shape[1]:
             return np.zeros((self.N.shape[1], 0)), np.eye(self.N.shape[1])
         basis, values, _ = np.linalg.svd(self.free.T @ S)
-        rank = numerical_rank(values, values.max(initial=0.0))
+        rank = numerical_rank(values)
         return basis[:, :rank], basis[:, rank:]
 
     def differ(self, change: Vector, given: Vector, tolerance: float) -> bool:
@@ -86,11 +85,11 @@ class EquationOfMotion:
 
     def mass(self, a: Vector) -> Vector:
         """M a, including the armature."""
-        return self.robot.tree.inverse_dynamics(self.q, self.v, a, self.data) - self.bias
+        return self._dynamics.inverse_dynamics(self.q, self.v, a) - self.bias
 
     def mass_along(self, motions: Matrix) -> Matrix:
         """M times the columns (nv, n)."""
-        return self.robot.tree.mass_times(self.q, motions, self.data)
+        return self._dynamics.mass_times(self.q, motions)
 
     def refuse_open(self, a: Vector, tolerance: float) -> None:
         """Raise `InconsistentMotion` if v or a would open the closures."""
@@ -137,7 +136,7 @@ def per_constraint(robot: Robot, lambdas: Vector) -> tuple[Vector, ...]:
     return tuple(lambdas[loop.rows] for loop in find_loops(robot))
 
 
-def by_joint(tree: TreeKinematics, values: Vector) -> dict[str, tuple[float, ...]]:
+def by_joint(tree: Tree, values: Vector) -> dict[str, tuple[float, ...]]:
     """The values (nv,) by joint name, for the joints that have a value above rounding."""
     least = 1e-6 * np.abs(values).max(initial=0.0)
     owned: dict[str, list[float]] = {}

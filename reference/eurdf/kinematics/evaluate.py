@@ -23,8 +23,8 @@ from eurdf.mechanism.constraint import Constraint, Coupling
 from eurdf.pinocchio.tree_few import FewPairs, Pair, as_slice, poses_once
 
 if TYPE_CHECKING:
-    from eurdf.kinematics.tree_kinematics import TreeKinematics
     from eurdf.pinocchio.robot import Robot
+    from eurdf.pinocchio.tree import Tree
 
 
 class _Group(NamedTuple):
@@ -41,7 +41,7 @@ class _Group(NamedTuple):
 
     kind: type[ClosureKind]
     fixed: Any
-    members: Indices
+    members: slice | Indices
     pairs: slice
     rows: slice | Indices
     m: int
@@ -73,9 +73,7 @@ class Evaluator:
         n: Number of columns.
     """
 
-    def __init__(
-        self, tree: TreeKinematics, constraints: Sequence[Constraint], velocities: Indices, *, few: bool
-    ) -> None:
+    def __init__(self, tree: Tree, constraints: Sequence[Constraint], velocities: Indices, *, few: bool) -> None:
         """Take constraints, in the order of their rows, and indices in v; for few configurations at once, or many.
 
         Raises:
@@ -92,11 +90,11 @@ class Evaluator:
             self.m += constraint.rows
         self._sites: list[Pair] = []
         self._groups: list[_Group] = []
-        self._couplings: tuple[Couplings, Indices, slice | Indices] | None = None
+        self._couplings: tuple[Couplings, slice | Indices, slice | Indices] | None = None
         for kind, found in members.items():
             own: list[Any] = [constraints[index] for index in found]
             rows = np.array([first[each] + row for each in found for row in range(own[0].rows)], dtype=np.intp)
-            indices, chosen = np.array(found, dtype=np.intp), as_slice(rows)
+            indices, chosen = as_slice(np.array(found, dtype=np.intp)), as_slice(rows)
             if kind is Coupling:
                 self._couplings = Couplings(own, tree.coordinate, velocities), indices, chosen
                 continue
@@ -107,9 +105,9 @@ class Evaluator:
             self._groups.append(_Group(kind, kind.prepare(own), indices, pairs, chosen, len(rows)))
         # The rows of the residual are those of one kind, in order.
         self._is_plain = self._couplings is None and len(self._groups) == 1
-        self._tree: TreeKinematics | None = tree
+        self._tree: Tree | None = tree
         self._key: bytes | None = None  # of the configuration of the last state of one element
-        self._last: Any = None
+        self._last = State(np.empty((1, 0)), None, [])
         if not few:
             self._pairs = ManyPairs(derived(tree, TreeMany), self._sites, velocities)
             self._sites, self._tree = [], None  # what is Pinocchio's cannot be sent to another process
@@ -136,9 +134,8 @@ class Evaluator:
         # Solvers ask for the residual and for K at one configuration, in different places.
         key = q.tobytes()
         if key != self._key:
-            self._last, self._key = self._state(np.array(q)), key
-        state: State = self._last
-        return state
+            self._last, self._key = self._state(q.copy()), key
+        return self._last
 
     def at_once(self, q: Matrix) -> State:
         """The constraints at q (1, nq), by Pinocchio, sooner than memory to evaluate them in is made."""
@@ -146,11 +143,11 @@ class Evaluator:
         return self._state(q, poses_once(self._tree.model, self._tree.parents, self._sites, q[0]))
 
     def residual(self, at: State) -> Matrix:
-        """The residual (B, m), m and rad."""
+        """The residual (B, m), m and rad, to read: it may be kept with the poses."""
         B = len(at.q)
         if self._is_plain:
             (group,), (poses,) = self._groups, at.by_kind
-            return np.array(group.kind.residual(poses, group.fixed)).reshape(B, self.m)  # poses are kept
+            return group.kind.residual(poses, group.fixed).reshape(B, self.m)
         r = np.empty((B, self.m))
         for group, poses in zip(self._groups, at.by_kind, strict=True):
             r[:, group.rows] = group.kind.residual(poses, group.fixed).reshape(B, group.m)
@@ -185,6 +182,9 @@ class Evaluator:
 
     def openings(self, at: State) -> tuple[Matrix, Matrix]:
         """How far each constraint is open, m and rad, (B, c) each."""
+        if self._is_plain:
+            (group,), (poses,) = self._groups, at.by_kind
+            return group.kind.opening(poses, group.fixed)
         lengths, angles = np.empty((2, len(at.q), self._count))
         for group, poses in zip(self._groups, at.by_kind, strict=True):
             lengths[:, group.members], angles[:, group.members] = group.kind.opening(poses, group.fixed)
@@ -216,7 +216,7 @@ def evaluator(
     return made
 
 
-def _few_pairs(tree: TreeKinematics, sites: Sequence[Pair], velocities: Indices) -> FewPairs | ManyPairs:
+def _few_pairs(tree: Tree, sites: Sequence[Pair], velocities: Indices) -> FewPairs | ManyPairs:
     try:
         return FewPairs(tree.model, tree.parents, sites, velocities)
     except NotImplementedError:
@@ -260,7 +260,7 @@ def frames(robot: Robot, names: Sequence[str], *, few: bool) -> Frames:
     return frames_at(robot.tree, robot.tree.frame_sites(names), few=few)
 
 
-def frames_at(tree: TreeKinematics, sites: Sequence[Any], *, few: bool) -> Frames:
+def frames_at(tree: Tree, sites: Sequence[Any], *, few: bool) -> Frames:
     """Frames at some sites of the tree, as `eurdf.pinocchio.tree_few.Site`."""
     pairs, velocities = [(tree.world, site) for site in sites], np.arange(tree.nv)
     if few:
@@ -271,14 +271,15 @@ def frames_at(tree: TreeKinematics, sites: Sequence[Any], *, few: bool) -> Frame
 class TreeFew:
     """The spanning tree at few configurations, one after the other; as `TreeMany`."""
 
-    def __init__(self, tree: TreeKinematics) -> None:
+    def __init__(self, tree: Tree) -> None:
         self.nq, self.nv = tree.nq, tree.nv
         self._tree = tree
 
     def integrate(self, q: Matrix, v: Matrix) -> Matrix:
         """See `TreeMany.integrate`."""
-        tree = self._tree
-        return _each(lambda a, b: tree.normalized(tree.integrate(a, b)), self.nq, q, v)
+        there = _each(self._tree.integrate, self.nq, q, v)
+        # A quaternion, and a cosine and a sine, are one number more than they have velocities.
+        return there if self.nq == self.nv else _each(self._tree.normalized, self.nq, there)
 
     def difference(self, q: Matrix, other: Matrix) -> Matrix:
         """See `TreeMany.difference`."""
@@ -304,7 +305,7 @@ class TreeFew:
 def _each(function: Callable[..., Matrix], shape: int | tuple[int, ...], *arrays: Matrix) -> Matrix:
     """The results of a function of one element after the other, which have the given shape."""
     if len(arrays[0]) == 1:
-        return function(*(array[0] for array in arrays))[None]
+        return function(*[array[0] for array in arrays])[None]
     found = [function(*each) for each in zip(*arrays, strict=True)]
     return np.array(found) if found else np.empty((0, *np.atleast_1d(shape)))
 

@@ -18,7 +18,7 @@ from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.descend import descend
 from eurdf.kinematics.problem import Group, Problem
 from eurdf.kinematics.quadratic_forms import common_roots
-from eurdf.kinematics.rank import numerical_rank
+from eurdf.kinematics.rank import null_space, numerical_rank, singular_values
 from eurdf.kinematics.tolerances import CONTINUED, FILE_ROUNDING, FLOOR
 
 #: What decides the finite mobility: the rank of K is the same at all configurations around q, closed or not (a proof);
@@ -174,7 +174,7 @@ class MobilityTest:
         """The same; ``error`` is the dimensionless residual at q, and ``deeper`` whether branches may be examined."""
         A = _jacobian(group, q)
         left, values, right = np.linalg.svd(A, full_matrices=True)
-        rank = numerical_rank(values, values.max(initial=0.0))
+        rank = numerical_rank(values)
         Z, Y = right[rank:].T, left[:, rank:]
         free = Z.shape[1]
         if not free or not Y.shape[1]:
@@ -204,9 +204,7 @@ class MobilityTest:
         for path in paths:
             if path.q is None:
                 continue
-            A = _jacobian(group, path.q)
-            values, right = np.linalg.svd(A, full_matrices=True)[1:]
-            basis = right[numerical_rank(values, values.max(initial=0.0)) :]
+            basis = null_space(_jacobian(group, path.q))
             dimension: int | None = len(basis)
             if len(basis) > 1 and not self._is_constant(group, path.q):
                 dimension = self._decide(group, path.q, floor, deeper=False).finite if deeper else None
@@ -283,8 +281,7 @@ def _jacobian(group: Group, q: Vector) -> Matrix:
 
 
 def _rank(A: Matrix) -> int:
-    values = np.asarray(np.linalg.svd(A, compute_uv=False), dtype=np.float64)
-    return numerical_rank(values, values.max(initial=0.0))
+    return numerical_rank(singular_values(A))
 
 
 def _order(errors: Sequence[float], floor: float) -> int | None:

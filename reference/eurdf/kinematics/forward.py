@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -24,6 +23,8 @@ from eurdf.pinocchio.arguments import checked_array, checked_tolerance
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
+
+_T = TypeVar("_T")
 
 # Smallest step where the springs are kept at rest, as a part of the path: if that takes many steps, they are brought
 # into equilibrium afterwards.
@@ -71,7 +72,8 @@ def forward_kinematics(
         ValueError: ``actuated`` or ``q0`` does not fit this robot.
     """
     tolerance, given = checked_tolerance(tolerance), _given(robot, actuated)
-    with _driving(robot, given, tolerance) as driving:
+
+    def there(driving: Driving) -> Vector:
         first = _closed_start(driving, start(robot, q0))
         goal = np.array(first)
         goal[given.coordinates] = given.values
@@ -80,6 +82,8 @@ def forward_kinematics(
         if part < 1.0:
             raise _stopped(robot, driving, q, goal)
         return q
+
+    return _with_driving(robot, given, tolerance, there)
 
 
 def _closed_start(driving: Driving, q: Vector) -> Vector:
@@ -110,8 +114,7 @@ def farthest(
     given = _given_by_name(robot, values)
     goal = np.array(first)
     goal[given.coordinates] = given.values
-    with _driving(robot, given, SOLVED) as driving:
-        return _moved(robot, driving, first, goal, shortest)
+    return _with_driving(robot, given, SOLVED, lambda driving: _moved(robot, driving, first, goal, shortest))
 
 
 class Driving(NamedTuple):
@@ -164,16 +167,15 @@ class Driving(NamedTuple):
         return follow_given(self.driven, first, goal, self.coordinates, self.tolerance, shortest, free=self.free)
 
 
-@contextmanager
-def _driving(robot: Robot, given: _Given, tolerance: float) -> Iterator[Driving]:
-    """A robot with given joints, for one element."""
-    velocities, resting = tuple(given.velocities.tolist()), joints_at_rest(robot, given.velocities)
+def _with_driving(robot: Robot, given: _Given, tolerance: float, use: Callable[[Driving], _T]) -> _T:
+    """What a function makes of a robot with given joints, for one element."""
+    velocities = tuple(given.velocities.tolist())
+    resting = joints_at_rest(robot, given.velocities) if len(robot.tree.springs.idx_v) else None
     with borrowed(robot, Problem) as free, borrowed(robot, Problem, velocities) as driven:
         if resting is None:
-            yield Driving(free, driven, given.coordinates, None, None, tolerance)
-            return
+            return use(Driving(free, driven, given.coordinates, None, None, tolerance))
         with borrowed(robot, Problem, (*velocities, *resting.velocities.tolist())) as at_rest:
-            yield Driving(free, driven, given.coordinates, resting, at_rest, tolerance)
+            return use(Driving(free, driven, given.coordinates, resting, at_rest, tolerance))
 
 
 def _moved(
@@ -193,7 +195,7 @@ def _moved(
 
 def in_equilibrium(robot: Robot, q: Vector, driving: Driving) -> Vector:
     """The configuration (nq,) near a closed one at which the springs are in equilibrium."""
-    if not len(robot.tree.springs):
+    if not len(robot.tree.springs.idx_v):
         return q
     return spring_equilibrium(robot, q, driving.coordinates, driving.driven, driving.tolerance)
 

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import math
-import weakref
-from collections.abc import Callable
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from eurdf.kinematics.array import Matrix, Vector
@@ -16,19 +13,16 @@ from eurdf.kinematics.independence import Independence, norm
 from eurdf.kinematics.loop import find_loops
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
-from eurdf.kinematics.tree_kinematics import ConstrainedDynamics, ConstrainedMotion
-from eurdf.pinocchio.constrained_dynamics import StatedGains, build_constrained_dynamics
+from eurdf.kinematics.tolerances import CLOSED_FOR_FORCES, FORCES_SOLVED
+from eurdf.pinocchio.constrained_dynamics import (
+    ConstrainedDynamics,
+    StatedGains,
+    build_constrained_dynamics,
+)
+from eurdf.pinocchio.tree_dynamics import TreeDynamics
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
-
-#: Residuals (m, rad), and the norm of their rates relative to 1 plus that of v, up to which closures count as closed
-#: here. Such a residual changes the acceleration as much as what the solver leaves out. `eurdf.assemble` closes to
-#: 1e-10.
-CLOSED = 1e-9
-
-#: Accepted error of the solver in either equation, relative to the largest term.
-SOLVED = 1e-9
 
 
 class ForwardSolver:
@@ -47,22 +41,22 @@ class ForwardSolver:
         self.rows = tuple(loop.rows for loop in find_loops(robot))
         spaces = derived(robot, TangentSpaces)
         self._independence = Independence(spaces.row_scale, spaces.scale)
-        self._checked: Callable[[], Any] = _nothing
+        self._own: TreeDynamics | None = None
 
-    @cached_property
-    def data(self) -> Any:
-        """Memory of the whole tree."""
-        return self._tree.memory()
+    @property
+    def own(self) -> TreeDynamics:
+        """The dynamics of the tree, in memory that is made on first use and kept."""
+        if self._own is None:
+            self._own = self._tree.dynamics()
+        return self._own
 
-    def checked(self, data: Any) -> Any:
-        """The given `pin.Data`, checked.
+    def dynamics(self, data: Any) -> TreeDynamics:
+        """Those in the given `pin.Data`, or its own if there is none.
 
         Raises:
             ValueError: It is no `pin.Data`, or one of another model.
         """
-        if self._checked() is not data:
-            self._checked = weakref.ref(self._tree.memory(data))
-        return data
+        return self.own if data is None else self._tree.dynamics(data)
 
     def solve(
         self,
@@ -71,7 +65,7 @@ class ForwardSolver:
         v: Vector,
         force: Vector,
         gains: list[tuple[float, float]],
-        data: Any = None,
+        dynamics: TreeDynamics,
         *,
         nearly_closed: bool = False,
     ) -> Acceleration:
@@ -83,7 +77,7 @@ class ForwardSolver:
             v: Velocity (nv,).
             force: τ (nv,).
             gains: Baumgarte gains of each constraint: kp, 1/s², and kd, 1/s.
-            data: Memory of the whole tree; by default its own.
+            dynamics: Those of the tree.
             nearly_closed: Whether a drift will do that equals K̇ v only where the constraints hold and K v = 0, as
                 between the steps of an integration, which start and end there.
 
@@ -91,10 +85,10 @@ class ForwardSolver:
             UndeterminedMotion: A joint without inertia can move.
             NumericalOverflow: The result is not finite.
         """
-        solution = self.beyond_doubt(q, v, force, gains, data, nearly_closed=nearly_closed)
+        solution = self.beyond_doubt(q, v, force, gains, dynamics, nearly_closed=nearly_closed)
         if solution is None:
             with overflow_refused("the acceleration"):
-                motion = EquationOfMotion(robot, q, v, self.data if data is None else data)
+                motion = EquationOfMotion(robot, q, v, dynamics)
                 solution = motion.eliminate(force, gains)
             finite("the acceleration", *solution)
         return solution
@@ -105,48 +99,27 @@ class ForwardSolver:
         v: Vector,
         force: Vector,
         gains: list[tuple[float, float]],
-        data: Any = None,
+        dynamics: TreeDynamics,
         *,
         nearly_closed: bool = False,
     ) -> Acceleration | None:
-        """The solution by the tree's own solver; None if it has none, or if the solution is in doubt.
+        """The solution by the tree's own solver, as `solve`; None if it has none, or if the solution is in doubt.
 
-        For the arguments see `solve`.
+        It is, unless the constraints hold, the rank of K is certain, and the solution satisfies both equations.
         """
         if self._solver is None:
             return None
-        is_own = data is None
-        data = self.data if is_own else data
-        found = self._solver.solve(q, v, force, gains, data, is_own)
-        on_a = self._forces_beyond_doubt(found, q, v, force, data, nearly_closed)
-        return None if on_a is None else Acceleration(found.a, -on_a)
-
-    def closures(self, robot: Robot, q: Vector) -> tuple[Vector, Matrix]:
-        """The residual (nc,) at q (nq,), and K (nc, nv), which is its derivative where the closures are closed."""
-        return self.closures_of_tree(q) or residual_and_jacobian(robot, q)
-
-    def closures_of_tree(self, q: Vector, data: Any = None) -> tuple[Vector, Matrix] | None:
-        """The same by the tree's own solver; None if it has none."""
-        if self._solver is None:
-            return None
-        return self._solver.closures(q, self.data if data is None else data)
-
-    def _forces_beyond_doubt(
-        self, found: ConstrainedMotion, q: Vector, v: Vector, force: Vector, data: Any, nearly_closed: bool
-    ) -> Vector | None:
-        """The forces on bodies A (nc,) with the least norm.
-
-        They are None unless the constraints hold, the rank of K is certain, and the solution satisfies both equations.
-        """
+        found = self._solver.solve(q, v, force, gains, dynamics.data, dynamics is self._own)
         # By dot, which takes half the time of @ for small matrices.
         a, on_a, J, target = found.a, found.on_a, found.J, found.target
-        if not nearly_closed and not (found.closed_to(CLOSED) and norm(J.dot(v)) <= CLOSED * (1.0 + norm(v))):
+        bound = CLOSED_FOR_FORCES
+        if not nearly_closed and not (found.closed_to(bound) and norm(J.dot(v)) <= bound * (1.0 + norm(v))):
             return None
         missed = norm(J.dot(a) - target)
         if not (_is_small(missed, norm(target)) or _is_small(missed, norm(J.ravel()) * norm(a))):
             return None
         carried = on_a.dot(J)
-        wrong = self._tree.inverse_dynamics(q, v, a, data)
+        wrong = dynamics.inverse_dynamics(q, v, a)
         wrong -= force
         wrong -= carried
         error = norm(wrong)
@@ -154,12 +127,17 @@ class ForwardSolver:
         terms = norm(carried)
         if not (_is_small(error, terms) or _is_small(error, terms + norm(force)) or _is_small(error, norm(found.bias))):
             return None
-        return self._independence.least_forces(J, on_a)
+        least = self._independence.least_forces(J, on_a)
+        return None if least is None else Acceleration(a, -least)
 
+    def closures(self, robot: Robot, q: Vector) -> tuple[Vector, Matrix]:
+        """The residual (nc,) at q (nq,), and K (nc, nv), which is its derivative where the closures are closed."""
+        return self.closures_of_tree(q, self.own) or residual_and_jacobian(robot, q)
 
-def _nothing() -> None:
-    """The reference to no memory."""
+    def closures_of_tree(self, q: Vector, dynamics: TreeDynamics) -> tuple[Vector, Matrix] | None:
+        """The same by the tree's own solver; None if it has none."""
+        return None if self._solver is None else self._solver.closures(q, dynamics.data)
 
 
 def _is_small(error: float, terms: float) -> bool:
-    return error <= SOLVED * terms < math.inf
+    return error <= FORCES_SOLVED * terms < math.inf

@@ -30,6 +30,9 @@ if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 
+_ONE = np.eye(3)
+
+
 @dataclass(frozen=True, slots=True)
 class FrameError:
     """How far a frame is from its target.
@@ -166,7 +169,7 @@ def _target(name: str, target: Any) -> Any:
     """A target, checked: a pose, or a position (3,)."""
     if isinstance(target, SE3):
         R = target.rotation
-        if np.isfinite(target.translation).all() and np.abs(R.T.dot(R) - np.eye(3)).max() <= 1e-6:
+        if np.isfinite(target.translation).all() and np.abs(R.T.dot(R) - _ONE).max() <= 1e-6:
             x, y, z = R.tolist()
             volume = sum(x[i] * (y[i - 2] * z[i - 1] - y[i - 1] * z[i - 2]) for i in range(3))
             if volume > 0.0:  # no reflection
@@ -195,7 +198,7 @@ def checked_targets(name: str, target: Any) -> Target:
             raise ValueError(f"{error}, or poses: (B, 4, 4), or a list of pin.SE3") from None
     poses = checked_array(argument, target, shape)
     R = poses[:, :3, :3]
-    wrong = np.abs(np.swapaxes(R, 1, 2) @ R - np.eye(3)).max(axis=(1, 2), initial=0.0) > 1e-6
+    wrong = np.abs(np.swapaxes(R, 1, 2) @ R - _ONE).max(axis=(1, 2), initial=0.0) > 1e-6
     wrong |= (np.linalg.det(R) < 0.0) | (np.abs(poses[:, 3] - (0.0, 0.0, 0.0, 1.0)).max(axis=1, initial=0.0) > 1e-9)
     if wrong.any():
         raise ValueError(f"{argument}[{int(np.argmax(wrong))}] is not a pose: its rotation is not orthonormal")

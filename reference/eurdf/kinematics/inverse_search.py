@@ -12,14 +12,31 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
-from eurdf.closures.se3 import log3, log3_derivative
+from eurdf.closures.se3 import velocity_of_origin
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import Closed, close
 from eurdf.kinematics.bounded_step import bounded_step
 from eurdf.kinematics.descend import next_damping
 from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits
 from eurdf.kinematics.problem import Problem
-from eurdf.kinematics.rank import certain_inverse, damped_step, norms, numerical_ranks, squares
+from eurdf.kinematics.rank import (
+    Numbers,
+    alone,
+    at_least,
+    certain_inverse,
+    choose,
+    column,
+    damped_step,
+    every,
+    largest,
+    norms,
+    numbers,
+    numerical_ranks,
+    some,
+    square,
+    squares,
+    times,
+)
 from eurdf.kinematics.tolerances import (
     CLOSED,
     FIRST_DAMPING,
@@ -33,6 +50,7 @@ from eurdf.kinematics.tolerances import (
     SOLVED,
 )
 from eurdf.mechanism.joint import LIMIT_TOLERANCE
+from eurdf.pinocchio.tree_few import as_slice
 
 if TYPE_CHECKING:
     pass
@@ -116,13 +134,16 @@ class _Search:
 
     def __init__(self, task: InverseTask, goals: Sequence[Target], count: int) -> None:
         self._task, self._problem, self._spaces = task, task.problem, task.problem.spaces
-        poses = [index for index, is_pose in enumerate(task.poses) if is_pose]
-        self._poses = np.array(poses, dtype=np.intp)
-        self._position = np.stack([goal.position for goal in goals], axis=1) if goals else np.empty((count, 0, 3))
-        rotations = [goal.rotation for goal in goals if goal.rotation is not None]
-        self._inverse = np.stack(rotations, axis=1).swapaxes(2, 3) if rotations else np.empty((count, 0, 3, 3))
+        self._position, self._rotation = np.empty((count, len(goals), 3)), np.empty((count, len(goals), 3, 3))
+        for index, goal in enumerate(goals):
+            self._position[:, index] = goal.position
+            self._rotation[:, index] = np.eye(3) if goal.rotation is None else goal.rotation
         # Rows of the errors in the order of the frames: those of its position, then those of its rotation.
-        self._used = np.repeat(np.array([[True, is_pose] for is_pose in task.poses], dtype=bool).ravel(), 3)
+        used = np.repeat(np.array([[True, is_pose] for is_pose in task.poses], dtype=bool).ravel(), 3)
+        bound = task.tolerance / np.array([self._spaces.length, 1.0])
+        self._near = np.concatenate([bound[: 1 + is_pose] for is_pose in (False, *task.poses)])[1:] ** 2
+        self._rows, self._turns = len(used), any(task.poses)
+        self._used = as_slice(np.flatnonzero(used))
         self._iterations = np.zeros(count, dtype=np.intp)
         self._begun: list[tuple[Indices, Matrix]] = []  # elements and where descents of them began
         self._farthest: dict[int, tuple[int, int, float]] = {}
@@ -179,60 +200,64 @@ class _Search:
         """
         e, at = self._error(q, which)
         end, errors = np.array(q), np.array(e)
-        on, cost = np.arange(len(q)), squares(e)
-        damping, idle = np.full(len(q), FIRST_DAMPING), np.zeros(len(q), dtype=np.intp)
+        on, cost = np.arange(len(q)), square(e)
+        damping, idle = numbers(len(q), FIRST_DAMPING), numbers(len(q), 0)
         E: Matrix | None = None
         for step in range(MOST_STEPS + 1):
             going = ~self._reached(e) & (idle <= MOST_IDLE_STEPS)
-            if not step and np.count_nonzero(going):
+            if not step and some(going):
                 self._begun.append((which[going], q[going]))
-            if step == MOST_STEPS or np.count_nonzero(going) < len(on) or not len(on):
+            if step == MOST_STEPS or not (len(on) and every(going)):
                 end[on], errors[on] = q, e
-                if step == MOST_STEPS or not np.count_nonzero(going):
+                if step == MOST_STEPS or not some(going):
                     break
                 on, q, e, cost, damping, idle = on[going], q[going], e[going], cost[going], damping[going], idle[going]
                 E, at = None if E is None else E[going], None
             if E is None:
                 E = self._jacobian(self._task.frames.at(q) if at is None else at, e)
             v = self._steps(q, e, E, damping * cost)
-            expected = cost - squares(e + (E @ v[:, :, None])[:, :, 0])
+            expected = cost - square(e + times(E, v))
             worth = expected > LEAST_GAIN * cost
-            if np.count_nonzero(worth) < len(on):
+            if not every(worth):
                 end[on], errors[on] = q, e
+                if not some(worth):
+                    break
                 on, q, e, cost, damping, idle = on[worth], q[worth], e[worth], cost[worth], damping[worth], idle[worth]
                 E, v, expected = E[worth], v[worth], expected[worth]
-                if not len(on):
-                    break
             self._iterations[which[on]] += 1
             closed = self._close(self._moved(q, v))
             e_there, at = self._error(closed.q, which[on])
-            reached = squares(e_there)
-            gain = np.where(closed.closes, (cost - reached) / expected, 0.0)
-            idle = np.where(closed.closes & (reached < (1.0 - idle_below) * cost), 0, idle + 1)
+            closes, reached = alone(closed.closes), square(e_there)
+            gain = choose(closes, (cost - reached) / expected, 0.0)
+            idle = choose(closes & (reached < (1.0 - idle_below) * cost), 0, idle + 1)
             accepted = gain > LEAST_SHARE
-            damping = np.where(accepted, next_damping(damping, gain), MORE_DAMPING * damping)
-            if np.count_nonzero(accepted) == len(on):
+            damping = choose(accepted, next_damping(damping, gain), MORE_DAMPING * damping)
+            if every(accepted):
                 q, e, cost, E = closed.q, e_there, reached, None
                 continue
-            q, e = np.where(accepted[:, None], closed.q, q), np.where(accepted[:, None], e_there, e)
-            cost, at = np.where(accepted, reached, cost), None
-            if accepted.any():
+            at = None
+            if some(accepted):
+                q, e = np.where(accepted[:, None], closed.q, q), np.where(accepted[:, None], e_there, e)
+                cost = np.where(accepted, reached, cost)
                 E[accepted] = self._jacobian(self._task.frames.at(q[accepted]), e[accepted])
         return end, errors
 
-    def _steps(self, q: Matrix, e: Matrix, E: Matrix, damping: Vector) -> Matrix:
+    def _steps(self, q: Matrix, e: Matrix, E: Matrix, damping: Numbers) -> Matrix:
         """The v (b, nv) with K v = 0 that minimise |E v + e|² + λ|v|² within the limits; at most 1 rad or length."""
         scale = self._spaces.scale
         A, K, _ = self._projected(q, E)
-        damping = np.maximum(np.maximum(damping, 1e-13 * squares(A)), 1e-300)
-        v = scale * damped_step(A, e, damping)
+        damping = at_least(damping, 1e-13 * square(A) + 1e-300)
+        step = damped_step(A, e, damping)
+        v = scale * step
         if self._task.limits is not None:
             down, up = self._task.limits.room(q)
-            over = (((up <= scale) & (v > up)) | ((-down <= scale) & (v < down))).any(axis=1)
-            for element in np.flatnonzero(over).tolist():
-                own = e[element], float(damping[element])
-                v[element] = self._bounded_step(q[element], K[element], E[element], *own)
-        return np.asarray(v / np.abs(v / scale).max(axis=1, initial=1.0)[:, None])
+            over = ((v > up) & (up <= scale)) | ((v < down) & (-down <= scale))
+            if over.any():
+                for element in np.flatnonzero(over.any(axis=1)).tolist():
+                    own = e[element], float(np.broadcast_to(damping, len(q))[element])
+                    v[element] = self._bounded_step(q[element], K[element], E[element], *own)
+                step = v / scale
+        return np.asarray(v / column(at_least(largest(step), 1.0)))
 
     def _bounded_step(self, q: Vector, K: Matrix, E: Matrix, e: Vector, damping: float) -> Vector:
         """The step (nv,) of one element that limits may bound."""
@@ -334,28 +359,27 @@ class _Search:
     def _error(self, q: Matrix, which: Indices) -> tuple[Matrix, Any]:
         """Stacked errors (b, k) of some elements, in characteristic lengths and rad, and the frames there."""
         at = self._task.frames.at(q)
-        R, p = self._task.frames.poses(at)
         errors = np.empty((len(q), len(self._task.poses), 6))
-        errors[:, :, :3] = (p - self._position[which]) / self._spaces.length
-        if len(self._poses):
-            errors[:, self._poses, 3:] = log3(self._inverse[which] @ R[:, self._poses])
-        return errors.reshape(len(q), len(self._used))[:, self._used], at
+        errors[:, :, :3] = (at.position - self._position[which]) / self._spaces.length
+        if self._turns:
+            errors[:, :, 3:] = at.turn_from(self._rotation[which])
+        return errors.reshape(len(q), self._rows)[:, self._used], at
 
     def _jacobian(self, at: Any, e: Matrix) -> Matrix:
         """Derivatives (b, k, nv) of the errors by v, where the frames are, and the errors (b, k) are these."""
-        J = np.array(self._task.frames.jacobians(at))
-        J[:, :, :3] /= self._spaces.length
-        if len(self._poses):
-            R = self._task.frames.poses(at)[0][:, self._poses]
-            turn = self._by_frame(e)[:, self._poses, 1]
-            J[:, self._poses, 3:] = log3_derivative(turn) @ R.swapaxes(2, 3) @ J[:, self._poses, 3:]
-        return J.reshape(len(J), len(self._used), self._problem.tree.nv)[:, self._used]
+        b, F = at.position.shape[:2]
+        rows = np.zeros((b, F, 6, 6))
+        rows[:, :, :3] = velocity_of_origin(at.position) / self._spaces.length
+        if self._turns:
+            rows[:, :, 3:, 3:] = at.turn_by_omega(self._by_frame(e)[:, :, 1])
+        J: Matrix = self._task.frames.rows(at, rows)
+        return J[:, self._used]
 
     def _by_frame(self, e: Matrix) -> Matrix:
         """The errors of each frame (b, F, 2, 3): of its position, and of its rotation, zero if that is free."""
         errors = e
-        if len(self._poses) < len(self._task.poses):
-            errors = np.zeros((len(e), len(self._used)))
+        if e.shape[1] < self._rows:
+            errors = np.zeros((len(e), self._rows))
             errors[:, self._used] = e
         return errors.reshape(len(e), len(self._task.poses), 2, 3)
 
@@ -366,5 +390,5 @@ class _Search:
 
     def _reached(self, e: Matrix) -> Mask:
         """Whether (b,) every frame is at its target within the tolerance."""
-        position, angle = self._distances(e)
-        return np.asarray((np.maximum(position, angle) <= self._task.tolerance).all(axis=1))
+        squared = np.add.reduce(np.square(e).reshape(len(e), len(self._near), 3), axis=2)
+        return np.asarray((squared <= self._near).all(axis=1))

@@ -12,16 +12,18 @@ the motions that no motor controls. Whether it is possible, forward dynamics dec
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.derived import derived
-from eurdf.kinematics.forward_solver import CLOSED, ForwardSolver
+from eurdf.kinematics.forward_solver import ForwardSolver
 from eurdf.kinematics.independence import norm
 from eurdf.kinematics.rank import certain_inverse
 from eurdf.kinematics.tangent_space import TangentSpaces
+from eurdf.kinematics.tolerances import CLOSED_FOR_FORCES
+from eurdf.pinocchio.tree_dynamics import TreeDynamics
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -42,17 +44,24 @@ class InverseSolver:
 
     def __init__(self, robot: Robot) -> None:
         # No reference to the robot: the cache would keep it alive.
-        self._tree, spaces = robot.tree, derived(robot, TangentSpaces)
+        nv, spaces = robot.tree.nv, derived(robot, TangentSpaces)
         self._scale, self._row_scale, self._dimensionless = spaces.scale, spaces.row_scale, spaces.dimensionless
         self._driven = robot.actuation.idx_v
-        self._others = np.setdiff1d(np.arange(self._tree.nv), self._driven)
+        self._others = np.setdiff1d(np.arange(nv), self._driven)
         self._no_gains = [(0.0, 0.0)] * len(robot.constraints)
         # How many motions are left with the motors locked, if the rows of K_o are independent.
         self._uncontrolled = len(self._others) - len(self._row_scale)
-        self._is_possible = self._uncontrolled >= 0 and len(self._others) + len(self._driven) == self._tree.nv
+        self._is_possible = self._uncontrolled >= 0 and len(self._others) + len(self._driven) == nv
 
     def solve(
-        self, solver: ForwardSolver, q: Vector, v: Vector, a: Vector, force: Vector, tolerance: float, data: Any
+        self,
+        solver: ForwardSolver,
+        q: Vector,
+        v: Vector,
+        a: Vector,
+        force: Vector,
+        tolerance: float,
+        dynamics: TreeDynamics,
     ) -> Torques | None:
         """Solve M a + h = S u + τ + Kᵀ λ; None if the rank of K_o or the possibility of the motion is in doubt.
 
@@ -63,24 +72,23 @@ class InverseSolver:
             a: Acceleration (nv,).
             force: τ (nv,).
             tolerance: Accepted difference of v and a from the nearest possible ones, as in `inverse_dynamics`.
-            data: Memory of the whole tree; by default that of the solver.
+            dynamics: Those of the tree.
         """
         if not self._is_possible:
             return None
-        closures = solver.closures_of_tree(q, data)
+        closures = solver.closures_of_tree(q, dynamics)
         if closures is None:
             return None
-        memory = solver.data if data is None else data
         r, K = closures
         opening = K.dot(v)
-        if not (norm(r) <= CLOSED and norm(opening) <= CLOSED * (1.0 + norm(v))):
+        if not (norm(r) <= CLOSED_FOR_FORCES and norm(opening) <= CLOSED_FOR_FORCES * (1.0 + norm(v))):
             return None
         A = K * self._dimensionless
         locked = A[:, self._others]
         (inverse,), (certain,) = certain_inverse((locked @ locked.T)[None], np.array([norm(A.ravel())]))
         if not certain:
             return None
-        taken = self._tree.inverse_dynamics(q, v, a, memory)
+        taken = dynamics.inverse_dynamics(q, v, a)
         required = taken - force
         needed = self._scale * required
         others = needed[self._others]
@@ -90,7 +98,7 @@ class InverseSolver:
         u = required[self._driven] - lambdas.dot(K[:, self._driven])
         applied = np.array(force)
         applied[self._driven] += u
-        forward = solver.beyond_doubt(q, v, applied, self._no_gains, data)
+        forward = solver.beyond_doubt(q, v, applied, self._no_gains, dynamics)
         if forward is None:
             return None
         # The motion with the motors at rest that closes what v opens: the least one that does is no longer.
@@ -99,11 +107,13 @@ class InverseSolver:
         accepted = self._accepted(a, tolerance)
         if not (opened <= self._accepted(v, tolerance) and norm(change / self._scale) <= accepted):
             return None
-        if self._uncontrolled and not self._uncontrolled_part(q, v, forward.a, change, taken, memory) <= accepted:
+        if self._uncontrolled and not self._uncontrolled_part(q, v, forward.a, change, taken, dynamics) <= accepted:
             return None
         return Torques(u, lambdas)
 
-    def _uncontrolled_part(self, q: Vector, v: Vector, a: Vector, change: Vector, before: Vector, data: Any) -> float:
+    def _uncontrolled_part(
+        self, q: Vector, v: Vector, a: Vector, change: Vector, before: Vector, dynamics: TreeDynamics
+    ) -> float:
         """A bound of the part of a change of the acceleration along motions that no motor controls.
 
         That part is a projection in the metric of the mass matrix, so that its energy is at most that of the change.
@@ -114,10 +124,10 @@ class InverseSolver:
             a: Acceleration (nv,) after the change.
             change: Change (nv,).
             before: M a + h (nv,) before the change.
-            data: Memory of the whole tree.
+            dynamics: Those of the tree.
         """
-        energy = change.dot(self._tree.inverse_dynamics(q, v, a, data) - before)
-        lightest = (self._tree.inverse_mass_diagonal(q, data) / self._scale**2).max()
+        energy = change.dot(dynamics.inverse_dynamics(q, v, a) - before)
+        lightest = (dynamics.inverse_mass_diagonal(q) / self._scale**2).max()
         return math.sqrt(abs(energy) * lightest)
 
     def _accepted(self, given: Vector, tolerance: float) -> float:

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
+from eurdf.diagnostics.wording import meant
 from eurdf.kinematics.exceptions import CannotLock
 from eurdf.mechanism.constraint import Constraint
-from eurdf.mechanism.joint import Joint, Mimic, drivers
+from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 from eurdf.mechanism.spanning_tree import rigid_roots
@@ -58,7 +58,7 @@ def lock_joints(mechanism: Mechanism, joints: Iterable[str], coordinates: Coordi
         ValueError: The number of coordinates of a joint is wrong, or a quaternion has length 0.
     """
     by_name = {joint.name: joint for joint in mechanism.joints}
-    mimics = drivers({joint.name: joint.mimic for joint in mechanism.joints if joint.mimic is not None})
+    mimics = mechanism.leaders
     locked = _locked(by_name, joints, mimics)
     at = {name: by_name[name].transform(_coordinates(by_name, name, coordinates, mimics)) for name in locked}
     ordered = tuple(_fixed(joint, at) for joint in mechanism.joints)
@@ -105,8 +105,7 @@ def _locked(by_name: Mapping[str, Joint], names: Iterable[str], mimics: Mapping[
     """The joints to lock, in the mechanism's order: those named and their mimic joints, without fixed ones."""
     named = set(names)
     for name in sorted(named - by_name.keys()):
-        near = difflib.get_close_matches(name, list(by_name), n=1)
-        raise CannotLock(name, "the robot has no such joint" + (f"; did you mean '{near[0]}'?" if near else ""))
+        raise CannotLock(name, f"the robot has no such joint{meant(name, by_name)}")
     locked = []
     for name in by_name:
         leader = mimics[name].joint if name in mimics else name

@@ -9,9 +9,9 @@ import numpy as np
 
 from eurdf.kinematics.array import Indices
 from eurdf.kinematics.derived import derived
-from eurdf.kinematics.tree_kinematics import TreeKinematics
 from eurdf.mechanism.constraint import Constraint
 from eurdf.pinocchio.ancestry import Ancestry
+from eurdf.pinocchio.tree import Tree
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -56,7 +56,7 @@ def _trace(robot: Robot) -> tuple[Loop, ...]:
     return tuple(loops)
 
 
-def _chains(constraint: Constraint, tree: TreeKinematics, ancestry: Ancestry) -> tuple[Chain, ...]:
+def _chains(constraint: Constraint, tree: Tree, ancestry: Ancestry) -> tuple[Chain, ...]:
     ends = [tree.joint_of(anchor) for anchor in constraint.anchors]
     related = [tree.coordinate(name).joint for name in constraint.joints]
     between = [Chain(joint, ancestry.common(*ends)) for joint in ends]

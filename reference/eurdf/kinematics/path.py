@@ -9,7 +9,7 @@ import numpy as np
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import close
 from eurdf.kinematics.problem import Problem
-from eurdf.kinematics.rank import squares
+from eurdf.kinematics.rank import alone, at_least, choose, column, every, largest, some, square
 from eurdf.kinematics.tolerances import (
     FASTEST,
     LEAST_CORRECTION,
@@ -91,24 +91,25 @@ def follow_given(
         here = q[on]
         v = _followed(problem, here, driven[on], free)
         motion = v / scale
-        fastest = np.abs(motion).max(axis=1, initial=0.0)
-        while np.count_nonzero(far := (fastest * h > LONGEST_MOTION) & (h > shortest)):
-            h = np.where(far, 0.5 * h, h)
+        done, h, fastest = alone(done), alone(h), largest(motion)
+        while some(far := (fastest * h > LONGEST_MOTION) & (h > shortest)):
+            h = choose(far, 0.5 * h, h)
         to, at = done + h, ends[on]
-        if np.count_nonzero(to < 1.0):
-            between = tree.integrate(first[on], to[:, None] * path[on])
-            at = np.where((to < 1.0)[:, None], between[:, coordinates], at)
-        expected = tree.integrate(here, h[:, None] * v)
+        if some(to < 1.0):
+            between = tree.integrate(first[on], column(to) * path[on])
+            at = np.where(np.reshape(to < 1.0, (-1, 1)), between[:, coordinates], at)
+        expected = tree.integrate(here, column(h) * v)
         expected[:, coordinates] = at
         closed = close(problem, expected, tolerance)
-        corrected = squares(tree.difference(expected, closed.q) / scale)
-        allowed = np.maximum((MOST_CORRECTION * h) ** 2 * squares(motion), LEAST_CORRECTION**2)
+        corrected = square(tree.difference(expected, closed.q) / scale)
+        allowed = at_least((MOST_CORRECTION * h) ** 2 * square(motion), LEAST_CORRECTION**2)
         accepted = closed.closes & (corrected <= allowed)
-        if np.count_nonzero(accepted) == len(h):
+        h = np.array(h, ndmin=1)
+        if every(accepted):
             q[on] = closed.q
             return h, accepted
         q[on] = np.where(accepted[:, None], closed.q, here)
-        lost = np.isnan(fastest)
+        lost = np.array(np.isnan(fastest), ndmin=1)
         stopped[on] = lost
         return np.where(lost, 0.0, h), accepted
 

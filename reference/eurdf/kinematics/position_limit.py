@@ -74,11 +74,10 @@ class PositionLimits:
         within[..., coordinates] = np.minimum(np.maximum(q[..., coordinates], lower), upper)
         return within
 
-    def room(self, q: Matrix, velocities: Indices | None = None) -> tuple[Matrix, Matrix]:
+    def room(self, q: Matrix, velocities: Indices | slice = slice(None)) -> tuple[Matrix, Matrix]:
         """Distances from q (…, nq) to the lower limits (at most 0) and to the upper ones (at least 0), by velocity."""
-        chosen = slice(None) if velocities is None else velocities
-        at = q[..., self.coordinates[chosen]]
-        return np.minimum(self.lower[chosen] - at, 0.0), np.maximum(self.upper[chosen] - at, 0.0)
+        at = q[..., self.coordinates[velocities]]
+        return np.minimum(self.lower[velocities] - at, 0.0), np.maximum(self.upper[velocities] - at, 0.0)
 
     def pressed(self, q: Vector, v: Vector) -> tuple[JointAtLimit, ...]:
         """The joints that are within 1e-9 of a limit at q, and that v (nv,) would move beyond it."""

@@ -15,6 +15,7 @@ from eurdf.kinematics.loop import LoopGroup, independent_groups, merged, moving_
 from eurdf.kinematics.rank import least_solution, norms
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.kinematics.tolerances import MOST_VELOCITIES_AT_ONCE
+from eurdf.pinocchio.tree_few import as_slice
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -37,6 +38,7 @@ class Group:
         factors: Factors (m, n) that make K dimensionless.
         spread: Ratio of the largest unit of all these velocities to the smallest.
         work: Multiplications for the smaller of A Aᵀ and Aᵀ A, and for the evaluation of A.
+        own: Indices in v of the velocities that close them.
         held: A direction (n,) of unit length along which no step moves, or None.
     """
 
@@ -49,6 +51,7 @@ class Group:
     factors: Matrix
     spread: float
     work: float
+    own: slice | Indices
     held: Vector | None = None
 
     def residual(self, q: Matrix) -> Matrix:
@@ -137,6 +140,7 @@ class Problem:
             factors,
             float(units.max() / units.min()) if len(units) else 1.0,
             float(m) * n * min(m, n) + _WORK_OF_A_CLOSURE * len(loops.closures),
+            as_slice(loops.velocities),
         )
 
     @property
@@ -146,6 +150,10 @@ class Problem:
 
     def measured(self, q: Matrix) -> tuple[Matrix, Matrix, Matrix]:
         """At q (B, nq) the residual (B, nc), m and rad, and how far each constraint is open (B, c), m and rad."""
+        if len(self.parts) == 1:
+            (part,) = self.parts
+            at = part.evaluator.at(q)
+            return part.evaluator.residual(at), *part.evaluator.openings(at)
         r = np.empty((len(q), len(self.spaces.row_scale)))
         lengths, angles = np.empty((2, len(q), len(self.names)))
         for part in self.parts:
@@ -168,6 +176,9 @@ class Problem:
         K = np.zeros((len(q), len(self.spaces.row_scale), self.tree.nv))
         for part in self.parts:
             block = part.evaluator.jacobian(part.evaluator.at(q))
+            if len(self.parts) == 1 and not len(part.by):
+                K[:, :, part.own] = block
+                break
             K[:, part.loops.rows[:, None], np.concatenate((part.loops.velocities, part.by))] = block
         return K
 
@@ -183,7 +194,7 @@ class Problem:
         """Configurations (B, nq) after steps (B, n) of groups; lengths are in characteristic lengths."""
         v = np.zeros((len(q), self.tree.nv))
         for group, step in zip(groups, steps, strict=True):
-            v[:, group.loops.velocities] = group.unit * step
+            v[:, group.own] = group.unit * step
         return np.asarray(self.tree.integrate(q, v))
 
     def velocity(self, q: Matrix, driven: Matrix) -> tuple[Matrix, Mask]:
@@ -198,7 +209,7 @@ class Problem:
                 drive = driven if len(group.by) == len(self.given) else v[:, group.by]
                 if np.count_nonzero(drive):
                     solution, is_sure = group.following(q, drive[:, :, None])
-                    v[:, group.loops.velocities] = solution[:, :, 0]
+                    v[:, group.own] = solution[:, :, 0]
                     if np.count_nonzero(is_sure) < len(q):
                         sure &= is_sure | ~drive.any(axis=1)
         return v, sure

@@ -15,11 +15,10 @@ from eurdf.kinematics.assembly import assembled, close, start
 from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.finite import finite, overflow_refused
-from eurdf.kinematics.metric import metric, nearest
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import are_finite
 from eurdf.kinematics.residual import acceleration_drift, residual_and_jacobian
-from eurdf.kinematics.tangent_space import TangentSpace, TangentSpaces
+from eurdf.kinematics.tangent_space import TangentSpace, TangentSpaces, metric, nearest
 from eurdf.kinematics.tolerances import RESTARTS, SOLVED
 from eurdf.pinocchio.arguments import checked_array, checked_tolerance
 

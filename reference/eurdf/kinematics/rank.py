@@ -9,6 +9,8 @@ Arrays have elements first; those without are of one element.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.linalg import _umath_linalg
 
@@ -19,6 +21,76 @@ from eurdf.kinematics.tolerances import CERTAIN, FLOOR, MISSED, NOTHING, ZERO
 _ROUNDING_OF_SQUARES = 1e-15
 
 
+# -- numbers, one for each element ------------------------------------------------------------------------------------
+# The control of the steps of many elements takes arrays (B,), that of a single one takes NumPy's scalars: the same
+# expressions take a tenth of the time with these. What follows makes such numbers, and is what differs.
+
+Numbers = Any
+
+
+def square(rows: Matrix) -> Numbers:
+    """The squared Euclidean norm of each of (B, …)."""
+    if len(rows) != 1:
+        return squares(rows)
+    row = rows.reshape(-1)
+    return row.dot(row)
+
+
+def largest(rows: Matrix) -> Numbers:
+    """The largest magnitude in each row (B, n), at least 0; NaN if one is."""
+    return np.maximum.reduce(np.abs(rows), axis=None if len(rows) == 1 else 1, initial=0.0)
+
+
+def total(rows: Matrix) -> Numbers:
+    """The sum of each row (B, n)."""
+    return sum(rows[0].tolist()) if len(rows) == 1 else np.add.reduce(rows, axis=1)
+
+
+def numbers(count: int, value: float) -> Numbers:
+    """The same number for each of so many elements."""
+    return value if count == 1 else np.full(count, value)
+
+
+def every(mask: Numbers) -> bool:
+    """Whether it is so for every element."""
+    return np.count_nonzero(mask) == len(mask) if isinstance(mask, np.ndarray) else bool(mask)
+
+
+def some(mask: Numbers) -> bool:
+    """Whether it is so for an element."""
+    return bool(np.count_nonzero(mask) if isinstance(mask, np.ndarray) else mask)
+
+
+def choose(mask: Numbers, one: Any, other: Any) -> Numbers:
+    """A number where it is so, another where it is not."""
+    if isinstance(mask, np.ndarray):
+        return np.where(mask, one, other)
+    return one if mask else other
+
+
+def alone(values: Vector | Mask) -> Numbers:
+    """An array (B,) as such numbers."""
+    return values[0] if len(values) == 1 else values
+
+
+def column(number: Numbers) -> Numbers:
+    """Numbers that rows (B, n) can be multiplied by."""
+    return number[:, None] if isinstance(number, np.ndarray) else number
+
+
+def at_least(number: Numbers, least: Numbers) -> Numbers:
+    """The larger number for each element."""
+    if isinstance(number, np.ndarray) or isinstance(least, np.ndarray):
+        return np.maximum(number, least)
+    return max(number, least)
+
+
+def times(A: Matrix, x: Matrix) -> Matrix:
+    """A x (B, m), of (B, m, n) and (B, n)."""
+    found: Matrix = A[0].dot(x[0])[None] if len(A) == 1 else (A @ x[:, :, None])[:, :, 0]
+    return found
+
+
 def squares(rows: Matrix) -> Vector:
     """The squared Euclidean norms (B,) of (B, …)."""
     return np.asarray(np.add.reduce(rows * rows, axis=1 if rows.ndim == 2 else (1, 2)))
@@ -26,16 +98,21 @@ def squares(rows: Matrix) -> Vector:
 
 def norms(rows: Matrix) -> Vector:
     """The Euclidean norms (B,) of (B, …)."""
-    return np.asarray(np.sqrt(squares(rows)))
+    found: Vector = np.sqrt(np.array(square(rows), ndmin=1))
+    return found
+
+
+# -- systems of equations ---------------------------------------------------------------------------------------------
 
 
 def solutions(A: Matrix, b: Matrix) -> Matrix:
-    """The x (B, n, k) with A x = b, of (B, n, n) and (B, n, k); NaN where A is singular to the last digit.
+    """The x (B, n) with A x = b, of (B, n, n) and (B, n); NaN where A is singular to the last digit.
 
-    `numpy.linalg.solve` raises if one of many matrices is singular. What it calls does not, and takes a sixth of its
-    time for a small one.
+    `numpy.linalg.solve` raises if one of many matrices is singular. What it calls does not, and takes half of its time
+    for a small one.
     """
-    return np.asarray(_umath_linalg.solve(A, b), dtype=np.float64)
+    x: Matrix = _umath_linalg.solve1(A, b)
+    return x
 
 
 def inverses(A: Matrix) -> Matrix:
@@ -55,7 +132,7 @@ def diagonals(matrices: Matrix) -> Matrix:
     return matrices.reshape(B, n * n)[:, :: n + 1]
 
 
-def numerical_rank(singular_values: Vector, reference: float) -> int:
+def numerical_rank(singular_values: Vector, reference: float | None = None) -> int:
     """Number of singular values before the widest gap.
 
     A fixed threshold would have to separate the rounding of numbers in files (an angle given as 1.5708 turns an axis by
@@ -65,9 +142,20 @@ def numerical_rank(singular_values: Vector, reference: float) -> int:
 
     Args:
         singular_values: In descending order, of a matrix scaled to one unit.
-        reference: The largest singular value of that matrix, or of the one it is a part of.
+        reference: The largest singular value of the matrix that it is a part of; by default that of its own.
     """
-    return int(numerical_ranks(singular_values[None], np.array([reference]))[0])
+    return int(numerical_ranks(singular_values[None], None if reference is None else np.array([reference]))[0])
+
+
+def singular_values(A: Matrix) -> Vector:
+    """The singular values of A, the largest first."""
+    return np.asarray(np.linalg.svd(A, compute_uv=False), dtype=np.float64)
+
+
+def null_space(A: Matrix) -> Matrix:
+    """Orthonormal basis (k, n) of the null space of A (m, n), one vector a row."""
+    _, values, right = np.linalg.svd(A, full_matrices=True)
+    return np.asarray(right[numerical_rank(values) :], dtype=np.float64)
 
 
 def numerical_ranks(values: Matrix, reference: Vector | None = None) -> Indices:
@@ -90,8 +178,9 @@ def certain_inverse(gram: Matrix, norm: Vector) -> tuple[Matrix, Mask]:
         norm: A norm (B,) that the singular values of A are compared with, at least its Frobenius norm.
     """
     inverse = inverses(gram)
-    trace = diagonals(inverse).sum(axis=1)
-    return inverse, (trace > 0.0) & (CERTAIN * CERTAIN * norm * norm * trace < 1.0)
+    trace = total(diagonals(inverse))
+    norm = alone(norm)
+    return inverse, np.array((trace > 0.0) & (CERTAIN * CERTAIN * norm * norm * trace < 1.0), ndmin=1)
 
 
 def least_solution(A: Matrix, b: Matrix, norm: Vector) -> tuple[Matrix, Mask]:
@@ -137,23 +226,29 @@ def damped_step(A: Matrix, e: Matrix, damping: Vector) -> Matrix:
     Args:
         A: (B, m, n).
         e: (B, m).
-        damping: λ (B,).
+        damping: λ of each element.
     """
     m, n = A.shape[1:]
     if not 0 < m <= n:
-        return _damped_by_values(A, e, damping)
-    gram = A @ np.swapaxes(A, 1, 2)
-    finite = are_finite(gram)
-    squares, axes = np.linalg.eigh(gram if finite.all() else np.where(finite[:, None, None], gram, 0.0))
-    largest = squares[:, -1:]
-    counts = squares > CERTAIN * CERTAIN * largest
-    inverse = np.where(counts, 1.0 / (squares + damping[:, None]), 0.0)
-    along = inverse[:, None] * (e[:, None] @ axes)
-    y = -((along @ np.swapaxes(axes, 1, 2)) @ A)[:, 0]
-    doubtful = (~counts & (squares > _ROUNDING_OF_SQUARES * largest)).any(axis=1) | ~counts.any(axis=1)
+        return _damped_by_values(A, e, np.array(damping, ndmin=1))
+    back = A.swapaxes(1, 2)
+    gram = A @ back
+    if not np.isfinite(gram).all():
+        gram = np.where(are_finite(gram)[:, None, None], gram, 0.0)
+    squared, axes = _umath_linalg.eigh_lo(gram)  # as for `solutions`
+    highest = squared[:, -1:]
+    counts = squared > CERTAIN * CERTAIN * highest
+    inverse = 1.0 / (squared + column(damping))
+    sure = counts.all()
+    if not sure:
+        inverse = np.where(counts, inverse, 0.0)
+    y: Matrix = -times(back, times(axes, inverse * times(axes.swapaxes(1, 2), e)))
+    if sure:
+        return y
+    doubtful = (~counts & (squared > _ROUNDING_OF_SQUARES * highest)).any(axis=1) | ~counts.any(axis=1)
     if doubtful.any():
-        y[doubtful] = _damped_by_values(A[doubtful], e[doubtful], damping[doubtful])
-    return np.asarray(y)
+        y[doubtful] = _damped_by_values(A[doubtful], e[doubtful], np.broadcast_to(damping, len(A))[doubtful])
+    return y
 
 
 def _damped_by_values(A: Matrix, e: Matrix, damping: Vector) -> Matrix:

@@ -38,7 +38,7 @@ def residual(robot: Robot, q: Vector) -> Vector:
     """
     q = checked_array("q", q, (robot.tree.nq,))
     with borrowed(robot, _constraints) as constraints:
-        r: Vector = constraints.residual(constraints.at(q[None]))[0]
+        r = np.array(constraints.residual(constraints.at(q[None]))[0])
     finite("the residual", r)
     return r
 
@@ -60,7 +60,7 @@ def residual_and_jacobian(robot: Robot, q: Vector) -> tuple[Vector, Matrix]:
     q = checked_array("q", q, (robot.tree.nq,))
     with borrowed(robot, _constraints) as constraints:
         at = constraints.at(q[None])
-        r, K = constraints.residual(at)[0], constraints.jacobian(at)[0]
+        r, K = np.array(constraints.residual(at)[0]), constraints.jacobian(at)[0]
     finite("the residual and its derivative", r, K)
     return r, K
 
@@ -84,6 +84,18 @@ def acceleration_drift(robot: Robot, q: Vector, v: Vector) -> Vector:
     q, v = checked_array("q", q, (robot.tree.nq,)), checked_array("v", v, (robot.tree.nv,))
     with borrowed(robot, _constraints) as constraints:
         return np.asarray(constraints.drift(q[None], v[None])[0])
+
+
+def drift_of_pairs(robot: Robot, q: Vector, V: Matrix) -> Matrix:
+    """The symmetric D (nc, k, k) with K̇ v = Σ D_ij w_i w_j for the velocities v = V w, with V (nv, k)."""
+    count = V.shape[1]
+    own = [acceleration_drift(robot, q, v) for v in V.T]
+    D = np.zeros((robot.mechanism.nc, count, count))
+    for i in range(count):
+        D[:, i, i] = own[i]
+        for j in range(i):
+            D[:, i, j] = D[:, j, i] = 0.5 * (acceleration_drift(robot, q, V[:, i] + V[:, j]) - own[i] - own[j])
+    return D
 
 
 def closure_openings(robot: Robot, q: Vector) -> tuple[Opening, ...]:

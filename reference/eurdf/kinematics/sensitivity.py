@@ -14,11 +14,10 @@ from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.exceptions import DependentActuators
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.frame_jacobian import checked_reference, frame_jacobian, frames_of, in_reference
-from eurdf.kinematics.metric import metric, orthonormal
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import numerical_rank, numerical_ranks
 from eurdf.kinematics.residual import residual_and_jacobian
-from eurdf.kinematics.tangent_space import TangentSpaces
+from eurdf.kinematics.tangent_space import TangentSpaces, metric, orthonormal
 from eurdf.pinocchio.arguments import checked_array
 
 if TYPE_CHECKING:

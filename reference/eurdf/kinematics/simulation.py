@@ -18,6 +18,7 @@ from eurdf.kinematics.finite import overflow_refused
 from eurdf.kinematics.forward_solver import ForwardSolver
 from eurdf.kinematics.independence import norm
 from eurdf.kinematics.tangent_space import TangentSpaces
+from eurdf.kinematics.tolerances import DIVERGED
 from eurdf.pinocchio.arguments import checked_array
 
 if TYPE_CHECKING:
@@ -26,9 +27,6 @@ if TYPE_CHECKING:
 #: Motor torques (nu,) at a time (s), a configuration (nq,) and a velocity (nv,).
 Control = Callable[[float, Vector, Vector], Vector]
 
-
-# Velocities above this, rad/s or m/s, count as divergence.
-_FASTEST = 1e9
 
 # Energy error, relative to the energy exchanged, above which the step is too long, and that of the step suggested.
 _TOO_LONG, _SHORT_ENOUGH = 1e-2, 1e-3
@@ -123,7 +121,7 @@ def simulate(
         raise NotClosable("the simulation cannot start from an open configuration", assembly.open, assembly.q)
     callers = np.geterr()
     with borrowed(robot, ForwardSolver) as solver, np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        motion = _Motion(robot, solver, _heeding(control, callers), AppliedForce(robot, external, dissipation), step)
+        motion = _Motion(robot, solver, control, callers, AppliedForce(robot, external, dissipation), step)
         initial = checked_array("v", np.zeros(tree.nv) if v is None else v, (tree.nv,))
         qs[0], vs[0] = motion.closed(0.0, assembly.q, initial, 0)
         kinetic[0], potential[0] = motion.energies(qs[0], vs[0])
@@ -140,10 +138,17 @@ class _Motion:
     """The motion of a robot, step by step."""
 
     def __init__(
-        self, robot: Robot, solver: ForwardSolver, control: Control | None, applied: AppliedForce, step: float
+        self,
+        robot: Robot,
+        solver: ForwardSolver,
+        control: Control | None,
+        callers: Mapping[str, Any],
+        applied: AppliedForce,
+        step: float,
     ) -> None:
+        """Take what acts on a robot, and how the caller treats floating-point errors of NumPy."""
         self._robot, self._tree, self._solver = robot, robot.tree, solver
-        self._control, self._applied, self._step = control, applied, step
+        self._control, self._callers, self._applied, self._step = control, callers, applied, step
         self._gains = solver.gains.now()
         self._spaces = derived(robot, TangentSpaces)
 
@@ -165,13 +170,16 @@ class _Motion:
 
     def _rates(self, t: float, begin: Vector, q: Vector, v: Vector, moved: bool) -> tuple[Vector, Vector, float]:
         """Rates of x and v at q = begin ⊕ x, and the power of what is applied; x is 0 unless ``moved``."""
-        if not (norm(v) < _FASTEST and norm(q) < math.inf):
+        if not (norm(v) < DIVERGED and norm(q) < math.inf):
             raise SimulationDiverged(t, self._step)
-        u = None if self._control is None else self._control(t, q, v)
+        u = None
+        if self._control is not None:
+            with np.errstate(**self._callers):
+                u = self._control(t, q, v)
         applied = self._applied.at(q, v, u)
         force = self._applied.with_springs(q, applied)
         # Between the steps, any smooth drift will do that equals K̇ v where the loops are closed.
-        a, _ = self._solver.solve(self._robot, q, v, force, self._gains, nearly_closed=True)
+        a, _ = self._solver.solve(self._robot, q, v, force, self._gains, self._solver.own, nearly_closed=True)
         # The derivative of x = q ⊖ begin is the inverse of that of begin ⊕ x.
         rate = self._tree.difference_derivative(begin, q) @ v if moved else v
         return rate, a, float(applied @ v)
@@ -192,20 +200,8 @@ class _Motion:
 
     def energies(self, q: Vector, v: Vector) -> tuple[float, float]:
         """Kinetic and potential energy, J."""
-        data = self._solver.data
-        return self._tree.kinetic_energy(q, v, data), self._tree.potential_energy(q, data)
-
-
-def _heeding(control: Control | None, errors: Mapping[str, Any]) -> Control | None:
-    """The control, with the caller's treatment of NumPy's floating-point errors."""
-    if control is None:
-        return None
-
-    def heeding(t: float, q: Vector, v: Vector) -> Vector:
-        with np.errstate(**errors):
-            return control(t, q, v)
-
-    return heeding
+        dynamics = self._solver.own
+        return dynamics.kinetic_energy(q, v), dynamics.potential_energy(q)
 
 
 def _warn_of_long_step(simulation: Simulation, step: float) -> None:

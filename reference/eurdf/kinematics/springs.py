@@ -16,7 +16,7 @@ from eurdf.kinematics.assembly import close
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import numerical_rank
-from eurdf.kinematics.residual import acceleration_drift, residual_and_jacobian
+from eurdf.kinematics.residual import drift_of_pairs, residual_and_jacobian
 from eurdf.kinematics.tolerances import LONGEST_MOTION, MOST_CORRECTION
 from eurdf.pinocchio.arguments import checked_array
 
@@ -181,7 +181,7 @@ def spring_equilibrium(robot: Robot, q: Vector, coordinates: Indices, problem: P
 def _motions(Z: Matrix, held: Indices, scale: Vector) -> Matrix:
     """Those of the motions Z (nv, f) that hold the held joints, orthonormal in the units of the velocities."""
     _, values, right = np.linalg.svd(Z[held] / scale[held, None])
-    rank = numerical_rank(values, values.max(initial=0.0))
+    rank = numerical_rank(values)
     return np.asarray(scale[:, None] * np.linalg.qr((Z @ right[rank:].T) / scale[:, None])[0])
 
 
@@ -189,14 +189,4 @@ def _curvature(robot: Robot, q: Vector, K: Matrix, held: Indices, F: Matrix, sca
     """-λᵀ K̇ along pairs of motions: what the bending of the closed configurations adds to the Hessian."""
     rows = np.vstack([K, np.eye(robot.tree.nv)[held]])
     lambdas = np.linalg.lstsq((rows * scale).T, -scale * robot.tree.springs.force(q, robot.tree.nv), rcond=None)[0]
-    lambdas = lambdas[: len(K)]
-
-    def along(v: Vector) -> float:
-        return -float(lambdas @ acceleration_drift(robot, q, v))
-
-    own = np.array([along(v) for v in F.T])
-    found = np.diag(own)
-    for i in range(len(own)):
-        for j in range(i):  # the drift is quadratic in the velocity
-            found[i, j] = found[j, i] = 0.5 * (along(F[:, i] + F[:, j]) - own[i] - own[j])
-    return found
+    return -np.tensordot(lambdas[: len(K)], drift_of_pairs(robot, q, F), axes=1)

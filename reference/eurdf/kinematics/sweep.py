@@ -16,7 +16,6 @@ from eurdf.kinematics.path import Elements, follow
 from eurdf.kinematics.position_limit import PositionLimits, chosen_limits
 from eurdf.kinematics.scale import characteristic_length
 from eurdf.kinematics.tolerances import DEAD, START
-from eurdf.mechanism.joint_types import JointType
 from eurdf.pinocchio.arguments import checked_count
 
 if TYPE_CHECKING:
@@ -149,10 +148,9 @@ def _drive(robot: Robot, actuator: str, q: Vector, limits: PositionLimits | None
         )
     (velocity,) = velocities
     kind = next(joint.type for joint in robot.mechanism.joints if joint.name == actuator)
-    at = 0.0 if kind is JointType.CONTINUOUS else float(q[robot.tree.coordinate(actuator).idx_q])
-    translates = kind is JointType.PRISMATIC
-    farthest = characteristic_length(robot) if translates else math.pi
-    without: End = "characteristic length" if translates else "half turn"
+    at = float(q[robot.tree.coordinate(actuator).idx_q]) if kind.limited else 0.0
+    farthest = characteristic_length(robot) if kind.slides else math.pi
+    without: End = "characteristic length" if kind.slides else "half turn"
     lower, upper = (-math.inf, math.inf) if limits is None else (limits.lower[velocity], limits.upper[velocity])
     return _Drive(
         velocity,

@@ -14,7 +14,7 @@ import numpy as np
 from eurdf.array import Matrix, Vector
 from eurdf.closures import se3
 from eurdf.closures.se3 import transposed, turned
-from eurdf.kinematics.tree_kinematics import MovingJoint, TreeKinematics
+from eurdf.pinocchio.tree import MovingJoint, Tree
 
 IDENTITY = np.eye(4)
 
@@ -55,7 +55,7 @@ class TreeMany:
         own: Of each joint its nodes.
     """
 
-    def __init__(self, tree: TreeKinematics) -> None:
+    def __init__(self, tree: Tree) -> None:
         """Take a tree of joints whose motion subspace does not depend on the configuration, or of screws in series.
 
         Raises:

@@ -3,62 +3,40 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from functools import partial
+from dataclasses import replace
 from typing import Any
 
-from eurdf.diagnostics import Hint, did_you_mean
 from eurdf.format.joint_model import Geared
-from eurdf.format.urdf.data import Urdf
-from eurdf.mechanism.joint import Joint, JointProperties
+from eurdf.linking.joints import Joints
+from eurdf.mechanism.joint import Joint
 from eurdf.reading.reporter import YamlReporter
 from eurdf.reading.yaml_node import Pointer
 from eurdf.reading.yaml_reader import YamlDocument
 
 
-def link_actuators(
-    entries: Iterable[Geared],
-    urdf: Urdf,
-    joints: Mapping[str, Joint],
-    merged: Mapping[str, str],
-    split: Mapping[str, tuple[str, str]],
-    reporter: YamlReporter,
-) -> tuple[str, ...]:
-    """Check every actuator against the joints as the description makes them; returns the names, in file order.
-
-    Args:
-        entries: As written.
-        urdf: The URDF.
-        joints: Joints of the mechanism.
-        merged: For each joint that was merged away, the joint it became part of.
-        split: For each joint that was split, the two that it became.
-        reporter: Gets what is found.
-    """
+def link_actuators(entries: Iterable[Geared], joints: Joints) -> tuple[str, ...]:
+    """Check every actuator against the joints as the description makes them; returns the names, in file order."""
+    reporter = joints.reporter
     listed: dict[str, None] = {}
     named: dict[str, str] = {}  # by name of an actuator, its joint
     for entry in entries:
         name = entry.joint
         pointer = _pointer_of_name(entry, reporter.document)
-        joint = joints.get(name)
-        if name in merged:
+        joint = joints.by_name.get(name)
+        if name in joints.merged:
+            ball = joints.merged[name]
             reporter.report(
                 "actuator-merged",
-                f"joint '{name}' cannot be actuated: it was merged into the spherical joint '{merged[name]}'",
+                f"joint '{name}' cannot be actuated: it was merged into the spherical joint '{ball}'",
                 pointer,
-                f"actuate '{merged[name]}', or do not merge the three joints",
+                f"actuate '{ball}', or do not merge the three joints",
             )
-        elif name in split:
-            first, second = split[name]
-            reporter.report(
-                "unknown-actuator",
-                f"joint '{name}' was split into two joints by version 1",
-                pointer,
-                f"actuate '{first}' or '{second}'",
-            )
+        elif name in joints.split:
+            first, second = joints.split[name]
+            message = f"joint '{name}' was split into two joints by version 1"
+            reporter.report("unknown-actuator", message, pointer, f"actuate '{first}' or '{second}'")
         elif joint is None:
-            movable = (other.name for other in joints.values() if not other.type.is_fixed)
-            hint: Hint = partial(did_you_mean, name, movable)
-            if name in urdf.links:
-                hint = f"'{name}' is a link; name the joint that moves it"
+            hint = joints.meant(name, (other.name for other in joints.by_name.values() if not other.type.is_fixed))
             reporter.report("unknown-actuator", f"actuator '{name}' is not a joint of the robot", pointer, hint)
         elif name in listed:
             reporter.report("actuator-duplicate", f"joint '{name}' is actuated twice", pointer, "remove one")
@@ -113,24 +91,8 @@ def with_motor(joint: Joint, entry: Geared, *, armature_given: bool) -> Joint:
     nv = joint.type.nv
     ratio = 1.0 if entry.gear_ratio is None else entry.gear_ratio
     rotor = 0.0 if entry.rotor_inertia is None else entry.rotor_inertia
-    own = joint.properties
-    motor = JointProperties(
-        own.lower,
-        own.upper,
-        own.velocity,
-        own.effort,
-        own.damping,
-        own.friction,
-        own.armature if armature_given else (ratio * ratio * rotor,) * nv,
-        (ratio,) * nv,
-        (rotor,) * nv,
-        own.stiffness,
-        own.rest,
-        own.acceleration,
-        own.deceleration,
-        own.jerk,
-    )
-    return joint.with_properties(motor)
+    motor = replace(joint.properties, gear_ratio=(ratio,) * nv, rotor_inertia=(rotor,) * nv)
+    return joint.with_properties(motor if armature_given else replace(motor, armature=(ratio * ratio * rotor,) * nv))
 
 
 def _pointer_of_name(entry: Geared, document: YamlDocument) -> Pointer:

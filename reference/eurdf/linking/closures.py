@@ -3,38 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import fields
 
-from eurdf.closures.kind import REGISTRY
-from eurdf.format.closure_model import AnyClosure, Hinge, HingeAboutTwo
+from eurdf.closures import REGISTRY
+from eurdf.format.closure_model import Closure as ClosureEntry
 from eurdf.linking.frame_names import FrameNames
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import RIGID, Closure, Compliance
-from eurdf.mechanism.pose import Pose
+from eurdf.mechanism.pose import Pose, Vector3
 from eurdf.reading.reporter import YamlReporter
-
-#: Fields of all kinds of closure.
-_COMMON = frozenset(each.name for each in fields(Closure))
+from eurdf.reading.yaml_node import Pointer
 
 
 def link_closures(
-    entries: Iterable[AnyClosure],
-    names: FrameNames,
-    rigid: Mapping[str, str],
-    reporter: YamlReporter,
+    entries: Iterable[ClosureEntry], names: FrameNames, rigid: Mapping[str, str], reporter: YamlReporter
 ) -> tuple[Closure, ...]:
     """Look the frames of every closure up and check what two frames can have wrong together.
 
-    A closure of a type that begins with ``x-`` is left out (EU-CLO-012).
-
-    Args:
-        entries: As written.
-        names: Finds frames.
-        rigid: For each body, the body it is rigidly fixed to.
-        reporter: Gets what is found.
+    A closure of a type that begins with ``x-`` is left out (EU-CLO-012). ``rigid`` has the body that each is fixed to.
     """
     closures: list[Closure] = []
-    taken: dict[str, AnyClosure] = {}
+    taken: dict[str, ClosureEntry] = {}
     joined: dict[frozenset[tuple[str, Pose]], str] = {}
     for entry in entries:
         if entry.name in taken:
@@ -69,50 +57,43 @@ def link_closures(
             continue
         if not _fits(kind, entry, reporter) or not _have_directions(entry, reporter):
             continue
-        # What a kind has besides, an entry of this kind has by the same name.
-        own = {each.name: getattr(entry, each.name) for each in fields(kind) if each.name not in _COMMON}
-        closures.append(kind(entry.name, a, b, compliance=_compliance(entry), **own))
+        closures.append(kind(entry.name, a, b, compliance=_compliance(entry), **kind.values_of(entry.stated)))
     return tuple(closures)
 
 
-def _compliance(entry: AnyClosure) -> Compliance:
+def _compliance(entry: ClosureEntry) -> Compliance:
     stated = entry.compliance
     return RIGID if stated is None else Compliance(stated.linear or 0.0, stated.angular or 0.0)
 
 
-def _fits(kind: type[Closure], entry: AnyClosure, reporter: YamlReporter) -> bool:
+def _fits(kind: type[Closure], entry: ClosureEntry, reporter: YamlReporter) -> bool:
     """EU-CLO-020, EU-CLO-021: only a closure that holds an orientation has an angular compliance."""
-    pointer = (*entry.pointer, "compliance", "angular")
     if not _compliance(entry).angular or "rad" in kind.units:
         return True
     reporter.report(
         "closure-compliance",
         f"closure '{entry.name}' of type {kind.type} holds no orientation, and cannot have an angular compliance",
-        pointer,
+        (*entry.pointer, "compliance", "angular"),
         "remove 'angular', or use type 6d or hinge",
     )
     return False
 
 
-def _have_directions(entry: AnyClosure, reporter: YamlReporter) -> bool:
+def _have_directions(entry: ClosureEntry, reporter: YamlReporter) -> bool:
     """EU-CLO-013: no axis of a hinge is zero."""
-    axes = entry.axes if isinstance(entry, Hinge | HingeAboutTwo) else ()
-    zero = next((index for index, axis in enumerate(axes) if not any(axis)), None)
+    stated = entry.stated
+    axes: dict[Pointer, Vector3] = {("axis",): stated["axis"]} if "axis" in stated else {}
+    axes |= {("axes", index): axis for index, axis in enumerate(stated.get("axes", ()))}
+    zero = next((key for key, axis in axes.items() if not any(axis)), None)
     if zero is None:
         return True
-    pointer = (*entry.pointer, "axis") if isinstance(entry, Hinge) else (*entry.pointer, "axes", zero)
+    pointer = (*entry.pointer, *zero)
     hint = "write the direction of the pin in the frame; it may have any length"
     reporter.report("closure-axis-zero", f"an axis of hinge '{entry.name}' is zero", pointer, hint)
     return False
 
 
-def _movable(
-    entry: AnyClosure,
-    a: Anchor,
-    b: Anchor,
-    rigid: Mapping[str, str],
-    reporter: YamlReporter,
-) -> bool:
+def _movable(entry: ClosureEntry, a: Anchor, b: Anchor, rigid: Mapping[str, str], reporter: YamlReporter) -> bool:
     """EU-CLO-002, EU-CLO-003: the two frames are not one, and not fixed to one another."""
     if a.body == b.body and a.pose == b.pose:
         same = not a.frame or not b.frame or a.frame == b.frame

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
 from eurdf.diagnostics import Hint, did_you_mean
 from eurdf.format.yaml_text import Value, flow
+from eurdf.linking.joints import Joints
 from eurdf.mechanism.joint import LIMIT_TOLERANCE, Joint
 from eurdf.reading.reporter import YamlReporter
 
@@ -47,46 +48,33 @@ class BeyondLimit(NamedTuple):
 
 
 def link_configurations(
-    stated: Mapping[str, Mapping[str, tuple[float, ...]]],
-    joints: Mapping[str, Joint],
-    merged: Mapping[str, str],
-    skip: Collection[str],
-    reporter: YamlReporter,
+    stated: Mapping[str, Mapping[str, tuple[float, ...]]], named: Mapping[str, Joint], joints: Joints
 ) -> dict[str, dict[str, tuple[float, ...]]]:
-    """Check every configuration against the joints of the mechanism; EU-CFG-006: quaternions come back of unit length.
+    """Check every configuration against ``named``, the joints of the mechanism and that of a floating root.
 
-    Args:
-        stated: As written, by name.
-        joints: Joints of the mechanism, and that of a floating root.
-        merged: For each joint that was merged away, the joint it became part of.
-        skip: Joints that are not checked, since their own entry is invalid.
-        reporter: Gets what is found.
+    EU-CFG-006: quaternions come back of unit length.
     """
     configurations = {}
     for configuration, written in stated.items():
         checked = {}
         all_known = True
         for name, values in written.items():
-            if name in skip:
+            if name in joints.faulty:
                 continue
-            joint = _joint(name, joints, merged, configuration, reporter)
+            joint = _joint(name, named, joints.merged, configuration, joints.reporter)
             all_known &= joint is not None
-            coordinates = None if joint is None else _coordinates(joint, values, configuration, reporter)
+            coordinates = None if joint is None else _coordinates(joint, values, configuration, joints.reporter)
             if coordinates is not None:
                 checked[name] = coordinates
         if all_known:  # else a joint that seems to be left out may be one whose name is misspelt
-            left_out = [joint for name, joint in joints.items() if name not in written and name not in skip]
-            _check_left_out(left_out, configuration, reporter)
+            left_out = [joint for name, joint in named.items() if name not in written and name not in joints.faulty]
+            _check_left_out(left_out, configuration, joints.reporter)
         configurations[configuration] = checked
     return configurations
 
 
 def _joint(
-    name: str,
-    joints: Mapping[str, Joint],
-    merged: Mapping[str, str],
-    configuration: str,
-    reporter: YamlReporter,
+    name: str, joints: Mapping[str, Joint], merged: Mapping[str, str], configuration: str, reporter: YamlReporter
 ) -> Joint | None:
     """EU-CFG-001: a configuration names joints that have coordinates of their own."""
     joint = joints.get(name)
@@ -104,13 +92,8 @@ def _joint(
         why = f"mimics '{joint.mimic.joint}' and has no coordinate of its own"
     else:
         why = "is fixed and has no coordinate"
-    reporter.report(
-        "configuration-joint",
-        f"'{name}' in configuration '{configuration}' {why}",
-        ("configurations", configuration, name),
-        hint,
-        key=True,
-    )
+    message = f"'{name}' in configuration '{configuration}' {why}"
+    reporter.report("configuration-joint", message, ("configurations", configuration, name), hint, key=True)
     return None
 
 
@@ -166,39 +149,36 @@ def _nearest(joint: Joint) -> float | list[float]:
 
 
 def _coordinates(
-    joint: Joint,
-    values: tuple[float, ...],
-    configuration: str,
-    reporter: YamlReporter,
+    joint: Joint, values: tuple[float, ...], configuration: str, reporter: YamlReporter
 ) -> tuple[float, ...] | None:
+    """EU-CFG-002 to -004, EU-CFG-006: the coordinates of a joint; None, and a diagnostic, where they are invalid."""
     names, start = joint.type.coordinates, joint.type.quaternion
+    hint = None
     if len(values) != len(names):
-        reporter.report(
-            "configuration-length",
+        code = "configuration-length"
+        message = (
             f"{joint.type} joint '{joint.name}' has {len(values)} coordinates in configuration '{configuration}'; "
-            f"it must have {len(names)}: {', '.join(names)}",
-            ("configurations", configuration, joint.name),
+            f"it must have {len(names)}: {', '.join(names)}"
         )
-        return None
-    if start is not None:
-        norm = math.sqrt(sum(value * value for value in values[start : start + 4]))
-        if abs(norm - 1.0) > QUATERNION_TOLERANCE:
-            unit = [round(value / norm, 6) for value in values[start : start + 4]] if norm > 1e-9 else [0, 0, 0, 1]
-            reporter.report(
-                "configuration-quaternion",
-                f"the quaternion of joint '{joint.name}' in configuration '{configuration}' has length {norm:.9g}, "
-                "not 1",
-                ("configurations", configuration, joint.name),
-                f"write a unit quaternion x, y, z, w: {unit}",
-            )
-            return None
-        return (*values[:start], *(value / norm for value in values[start : start + 4]))
-    for found in beyond_limits([joint], {joint.name: values}):
-        reporter.report(
-            "configuration-limits",
+    elif start is not None:
+        quaternion = values[start : start + 4]
+        norm = math.sqrt(sum(value * value for value in quaternion))
+        if abs(norm - 1.0) <= QUATERNION_TOLERANCE:
+            return (*values[:start], *(value / norm for value in quaternion))
+        unit = [round(value / norm, 6) for value in quaternion] if norm > 1e-9 else [0, 0, 0, 1]
+        code = "configuration-quaternion"
+        message = (
+            f"the quaternion of joint '{joint.name}' in configuration '{configuration}' has length {norm:.9g}, not 1"
+        )
+        hint = f"write a unit quaternion x, y, z, w: {unit}"
+    elif beyond := beyond_limits([joint], {joint.name: values}):
+        found = beyond[0]
+        code = "configuration-limits"
+        message = (
             f"{found.coordinate} {found.value:.12g} of joint '{joint.name}' in configuration '{configuration}' is "
-            f"outside its limits {found.lower:.12g} to {found.upper:.12g}",
-            ("configurations", configuration, joint.name),
+            f"outside its limits {found.lower:.12g} to {found.upper:.12g}"
         )
-        return None
-    return values
+    else:
+        return values
+    reporter.report(code, message, ("configurations", configuration, joint.name), hint)
+    return None

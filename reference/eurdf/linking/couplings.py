@@ -2,46 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
-from functools import partial
+from collections.abc import Iterable, Mapping
 
-from eurdf.diagnostics import did_you_mean
+from eurdf.diagnostics import Hint
 from eurdf.format.closure_model import Coupling as CouplingEntry
-from eurdf.format.urdf.data import Urdf
+from eurdf.linking.joints import Joints
 from eurdf.mechanism.constraint import Coupling
-from eurdf.mechanism.joint import Joint, drivers
-from eurdf.reading.reporter import YamlReporter
+from eurdf.mechanism.joint import drivers
 from eurdf.reading.yaml_node import Pointer
 
 #: Coefficients relative to the largest one are equal if they differ by no more.
 _EQUAL = 1e-9
 
 
-def link_couplings(
-    entries: Iterable[CouplingEntry],
-    closures: Collection[str],
-    urdf: Urdf,
-    joints: Mapping[str, Joint],
-    merged: Mapping[str, str],
-    faulty: Collection[str],
-    reporter: YamlReporter,
-) -> tuple[Coupling, ...]:
-    """Look the joints of every coupling up, and check that no coupling states what another one does.
-
-    Args:
-        entries: As written.
-        closures: Names of the closures.
-        urdf: The URDF.
-        joints: Joints of the mechanism.
-        merged: For each joint that was merged away, the joint it became part of.
-        faulty: Joints whose own entry is invalid: an error about them would repeat that error.
-        reporter: Gets what is found.
-    """
+def link_couplings(entries: Iterable[CouplingEntry], closures: Iterable[str], joints: Joints) -> tuple[Coupling, ...]:
+    """Look the joints of every coupling up, and check that no coupling states what another one does."""
+    report = joints.reporter.report
     couplings: list[Coupling] = []
     taken: dict[str, str] = dict.fromkeys(closures, "closure")
     for entry in entries:
         if entry.name in taken:
-            reporter.report(
+            report(
                 "duplicate-coupling-name",
                 f"there is already a {taken[entry.name]} '{entry.name}'",
                 (*entry.pointer, "name"),
@@ -50,14 +31,14 @@ def link_couplings(
             continue
         taken[entry.name] = "coupling"
         checked = [
-            name in faulty or _can_be_coupled(name, pointer, urdf, joints, merged, reporter)
-            for name, pointer in ((name, (*entry.pointer, "joints", name)) for name in entry.joints)
+            name in joints.faulty or _can_be_coupled(name, (*entry.pointer, "joints", name), joints)
+            for name in entry.joints
         ]
         if not all(checked):
             continue
         twin = next((each for each in couplings if _proportional(dict(each.coefficients), entry.joints)), None)
         if twin is not None:
-            reporter.report(
+            report(
                 "coupling-duplicate",
                 f"coupling '{entry.name}' is a multiple of coupling '{twin.name}'",
                 entry.pointer,
@@ -68,33 +49,21 @@ def link_couplings(
     return tuple(couplings)
 
 
-def _can_be_coupled(
-    name: str,
-    pointer: Pointer,
-    urdf: Urdf,
-    joints: Mapping[str, Joint],
-    merged: Mapping[str, str],
-    reporter: YamlReporter,
-) -> bool:
+def _can_be_coupled(name: str, pointer: Pointer, joints: Joints) -> bool:
     """EU-CPL-002, EU-CPL-003: a joint exists, and has one coordinate, which is its own."""
-    joint = joints.get(name)
+    merged, report = joints.merged, joints.reporter.report
+    joint = joints.by_name.get(name)
+    hint: Hint
     if joint is None and name not in merged:
-        hint = f"'{name}' is a link; name the joint that moves it" if name in urdf.links else None
-        candidates = [other.name for other in joints.values() if other.type.nv == 1 and other.mimic is None]
-        reporter.report(
-            "unknown-coupled-joint",
-            f"'{name}' is not a joint of the robot",
-            pointer,
-            hint or partial(did_you_mean, name, candidates),
-            key=True,
-        )
+        others = (other.name for other in joints.by_name.values() if other.type.nv == 1 and other.mimic is None)
+        hint = joints.meant(name, others)
+        report("unknown-coupled-joint", f"'{name}' is not a joint of the robot", pointer, hint, key=True)
         return False
     if joint is None or name in merged:
         why, hint = f"it was merged into the spherical joint '{merged[name]}'", "couple joints that are not merged"
     elif joint.mimic is not None:
-        leader = drivers({each.name: each.mimic for each in joints.values() if each.mimic is not None}).get(
-            name, joint.mimic
-        )
+        mimics = {each.name: each.mimic for each in joints.by_name.values() if each.mimic is not None}
+        leader = drivers(mimics).get(name, joint.mimic)
         why = f"it mimics '{leader.joint}'"
         hint = f"couple '{leader.joint}': '{name}' is {leader.multiplier:g} · '{leader.joint}'"
         hint += f" {'-' if leader.offset < 0.0 else '+'} {abs(leader.offset):g}" if leader.offset else ""
@@ -105,7 +74,7 @@ def _can_be_coupled(
         hint = "couple revolute, continuous, prismatic or helical joints"
     else:
         return True
-    reporter.report("coupling-joint", f"joint '{name}' cannot be coupled: {why}", pointer, hint, key=True)
+    report("coupling-joint", f"joint '{name}' cannot be coupled: {why}", pointer, hint, key=True)
     return False
 
 

@@ -2,37 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Iterable
 from functools import partial
 from itertools import chain
 
 from eurdf.diagnostics import did_you_mean
 from eurdf.format.closure_model import Frame as FrameEntry
 from eurdf.format.closure_model import FrameReference, NamedFrame
-from eurdf.format.urdf.data import Urdf
+from eurdf.linking.joints import Joints
 from eurdf.mechanism.body import Anchor, Frame
-from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.pose import Pose
-from eurdf.reading.reporter import YamlReporter
+from eurdf.reading.yaml_node import Pointer
 
 
 class FrameNames:
     """Looks frames up: links, joints (EU-FRM-005: on the child's side), and the frames that the description adds."""
 
-    def __init__(
-        self,
-        urdf: Urdf,
-        joints: Mapping[str, Joint],
-        faulty: Collection[str],
-        reporter: YamlReporter,
-    ) -> None:
-        self._urdf = urdf
-        self._joints = joints
-        # Joints that an invalid entry refers to: if one of them does not exist, the reason was reported.
-        self._faulty = faulty
+    def __init__(self, joints: Joints) -> None:
+        self._made = joints
+        self._urdf, self._joints = joints.urdf, joints.by_name
         # None for an invalid frame: its uses are not reported again.
         self._frames: dict[str, Anchor | None] = {}
-        self._reporter = reporter
 
     def add(self, entries: Iterable[FrameEntry]) -> tuple[Frame, ...]:
         """EU-FRM-003: add the frames of the description; each name is given once."""
@@ -40,7 +30,7 @@ class FrameNames:
         for entry in entries:
             if entry.name in self._frames or self._known(entry.name):
                 what = "frame" if entry.name in self._frames else "link" if entry.name in self._urdf.links else "joint"
-                self._reporter.report(
+                self._made.reporter.report(
                     "duplicate-frame",
                     f"there is already a {what} '{entry.name}'",
                     (*entry.pointer, "name"),
@@ -68,11 +58,8 @@ class FrameNames:
         return name in self._urdf.links or name in self._urdf.joints or name in self._joints
 
     def _joint_child(self, name: str) -> str | None:
-        if name in self._joints:
-            return self._joints[name].child
-        if name in self._urdf.joints:
-            return self._urdf.joints[name].child
-        return None
+        joint = self._joints.get(name) or self._urdf.joints.get(name)
+        return joint and joint.child
 
     def _by_name(self, name: str, reference: FrameReference) -> Anchor | None:
         """EU-FRM-001, EU-FRM-002: a name is that of exactly one frame.
@@ -84,7 +71,7 @@ class FrameNames:
         child = self._joint_child(name)
         if name in self._urdf.links:
             if child is not None and child != name:
-                self._reporter.report(
+                self._made.reporter.report(
                     "ambiguous-frame",
                     f"'{name}' is both a link and a joint, and the child of the joint is another link, '{child}'",
                     reference.pointer,
@@ -94,34 +81,23 @@ class FrameNames:
             return Anchor(name, frame=name)
         if child is not None:
             return Anchor(child, frame=name)
-        if name in self._faulty:
-            return None
-        candidates = chain(self._frames, self._urdf.links, self._urdf.joints, self._joints)
-        self._reporter.report(
-            "unknown-frame",
-            f"'{name}' is not a link, joint or frame of the robot",
-            reference.pointer,
-            partial(did_you_mean, name, candidates),
-        )
+        if name not in self._made.faulty:
+            known = chain(self._frames, self._urdf.links, self._urdf.joints, self._joints)
+            self._report_unknown(name, "link, joint or frame", reference.pointer, known)
         return None
 
     def _body(self, reference: FrameReference) -> str | None:
-        name = reference.target
+        name, pointer = reference.target, (*reference.pointer, reference.kind)
         if reference.kind == "link":
             if name in self._urdf.links:
                 return name
-            candidates = chain(self._urdf.links)
-        else:
-            child = self._joint_child(name)
-            if child is not None:
-                return child
-            if name in self._faulty:
-                return None
-            candidates = chain(self._urdf.joints, self._joints)
-        self._reporter.report(
-            "unknown-frame",
-            f"'{name}' is not a {reference.kind} of the robot",
-            (*reference.pointer, reference.kind),
-            partial(did_you_mean, name, candidates),
-        )
-        return None
+            self._report_unknown(name, "link", pointer, self._urdf.links)
+            return None
+        child = self._joint_child(name)
+        if child is None and name not in self._made.faulty:
+            self._report_unknown(name, "joint", pointer, chain(self._urdf.joints, self._joints))
+        return child
+
+    def _report_unknown(self, name: str, what: str, pointer: Pointer, known: Iterable[str]) -> None:
+        hint = partial(did_you_mean, name, known)
+        self._made.reporter.report("unknown-frame", f"'{name}' is not a {what} of the robot", pointer, hint)

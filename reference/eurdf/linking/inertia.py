@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Sequence
 from functools import partial
 
 import numpy as np
@@ -12,7 +12,7 @@ from eurdf.format.urdf.data import Urdf, UrdfLink
 from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.mechanism import Mechanism, root_joint
-from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
+from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, cross
 from eurdf.mechanism.spanning_tree import rigid_roots
 
 #: A moment may be negative, and a sum of two below the third, by this part of the largest (rounding in files).
@@ -20,8 +20,6 @@ MOMENT_TOLERANCE = 1e-6
 
 #: A leaf whose smallest inertia about its joint is below this part of its largest has none about that axis.
 SINGULAR = 1e-12
-
-Moments = tuple[float, float, float, float, float, float]
 
 #: The pose of a link in the frame that its joint moves, and its inertia.
 Member = tuple[Pose, Inertia]
@@ -34,41 +32,29 @@ def check_inertias(urdf: Urdf, diagnostics: Diagnostics) -> set[str]:
         Names of the links with an error, of which nothing more can be said.
     """
     faulty: set[str] = set()
-    suspects: list[tuple[UrdfLink, Inertia]] = []
+    valid: list[tuple[UrdfLink, Inertia]] = []
     for link in urdf.links.values():
-        inertia = link.inertia
-        if inertia is None:
+        if link.inertia is None:
             continue
-        if inertia.mass < 0.0:
-            message = f"link '{link.name}' has the negative mass {inertia.mass:g} kg"
+        if link.inertia.mass < 0.0:
+            message = f"link '{link.name}' has the negative mass {link.inertia.mass:g} kg"
             _report(urdf, diagnostics, link, "negative-mass", message, "mass")
             faulty.add(link.name)
-            continue
-        if not _plainly_sound(inertia.moments):
-            suspects.append((link, inertia))
-    for link, inertia in suspects:
-        moments: list[float] = np.linalg.eigvalsh(_matrix(inertia.moments)).tolist()  # which overflow in silence
-        largest = max(map(abs, moments))
-        if moments[0] < -MOMENT_TOLERANCE * largest:
+        else:
+            valid.append((link, link.inertia))
+    principal = np.linalg.eigvalsh(_matrices([inertia for _, inertia in valid]))  # which overflow in silence
+    for (link, _), (least, middle, most) in zip(valid, principal.tolist(), strict=True):
+        tolerance = MOMENT_TOLERANCE * max(abs(least), abs(most))
+        if least < -tolerance:
             faulty.add(link.name)
-            _report(
-                urdf,
-                diagnostics,
-                link,
-                "inertia-not-psd",
-                f"the inertia of link '{link.name}' has a negative principal moment, {moments[0]:.3g} kg·m²",
-                "inertia",
+            message = f"the inertia of link '{link.name}' has a negative principal moment, {least:.3g} kg·m²"
+            _report(urdf, diagnostics, link, "inertia-not-psd", message, "inertia")
+        elif least + middle < most - tolerance:
+            message = (
+                f"the inertia of link '{link.name}' is not physical: its principal moments are {least:.3g}, "
+                f"{middle:.3g}, {most:.3g} kg·m², and the last exceeds the sum of the others"
             )
-        elif moments[0] + moments[1] < moments[2] - MOMENT_TOLERANCE * largest:
-            _report(
-                urdf,
-                diagnostics,
-                link,
-                "inertia-triangle",
-                f"the inertia of link '{link.name}' is not physical: its principal moments are {moments[0]:.3g}, "
-                f"{moments[1]:.3g}, {moments[2]:.3g} kg·m², and the last exceeds the sum of the others",
-                "inertia",
-            )
+            _report(urdf, diagnostics, link, "inertia-triangle", message, "inertia")
     return faulty
 
 
@@ -164,8 +150,7 @@ def _about_axis(axis: Vector3, pose: Pose, inertia: Inertia) -> float:
     x, y, z = at.inverse().rotate(axis)
     xx, xy, xz, yy, yz, zz = inertia.moments
     own = xx * x * x + yy * y * y + zz * z * z + 2.0 * (xy * x * y + xz * x * z + yz * y * z)
-    (cx, cy, cz), (ax, ay, az) = at.xyz, axis
-    u, v, w = ay * cz - az * cy, az * cx - ax * cz, ax * cy - ay * cx
+    u, v, w = cross(axis, at.xyz)
     return own + inertia.mass * (u * u + v * v + w * w)
 
 
@@ -175,68 +160,21 @@ def _trace_about_origin(pose: Pose, inertia: Inertia) -> float:
     return inertia.moments[0] + inertia.moments[3] + inertia.moments[5] + 2.0 * inertia.mass * (x * x + y * y + z * z)
 
 
-def _positive(members: Iterable[Member], bound: float) -> bool:
-    """Whether the rotational inertia about the origin, Σ R I Rᵀ + m (cᵀc 1 - c cᵀ), exceeds the bound about all axes.
-
-    Sylvester's criterion on the matrix less the bound.
-    """
-    xx = xy = xz = yy = yz = zz = 0.0
-    for pose, inertia in members:
+def _positive(members: Sequence[Member], bound: float) -> bool:
+    """Whether the inertia about all axes through the origin, Σ R I Rᵀ + m (cᵀc 1 - c cᵀ), exceeds the bound."""
+    total = np.zeros((3, 3))
+    for (pose, inertia), moments in zip(members, _matrices([inertia for _, inertia in members]), strict=True):
         at = pose * inertia.pose
-        ixx, ixy, ixz, iyy, iyz, izz = turned(inertia.moments, at)
-        (x, y, z), mass = at.xyz, inertia.mass
-        xx += ixx + mass * (y * y + z * z)
-        yy += iyy + mass * (x * x + z * z)
-        zz += izz + mass * (x * x + y * y)
-        xy += ixy - mass * x * y
-        xz += ixz - mass * x * z
-        yz += iyz - mass * y * z
-    xx, yy, zz = xx - bound, yy - bound, zz - bound
-    second = xx * yy - xy * xy
-    third = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)
-    return xx > 0.0 and second > 0.0 and third > 0.0
+        R = np.array([at.rotate(axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))]).T
+        c = np.array(at.xyz)
+        total += R @ moments @ R.T + inertia.mass * (c @ c * np.eye(3) - np.outer(c, c))
+    return bool(np.linalg.eigvalsh(total)[0] > bound)
 
 
-def turned(moments: Moments, pose: Pose) -> Moments:
-    """R I Rᵀ."""
-    if pose.quaternion == IDENTITY.quaternion:
-        return moments
-    a, d, g = pose.rotate((1.0, 0.0, 0.0))
-    b, e, h = pose.rotate((0.0, 1.0, 0.0))
-    c, f, i = pose.rotate((0.0, 0.0, 1.0))
-    xx, xy, xz, yy, yz, zz = moments
-
-    def product(p: float, q: float, r: float, s: float, t: float, u: float) -> float:
-        return p * (xx * s + xy * t + xz * u) + q * (xy * s + yy * t + yz * u) + r * (xz * s + yz * t + zz * u)
-
-    return (
-        product(a, b, c, a, b, c),
-        product(a, b, c, d, e, f),
-        product(a, b, c, g, h, i),
-        product(d, e, f, d, e, f),
-        product(d, e, f, g, h, i),
-        product(g, h, i, g, h, i),
-    )
-
-
-def _matrix(moments: Moments) -> np.ndarray:
-    xx, xy, xz, yy, yz, zz = moments
-    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-
-
-def _plainly_sound(moments: Moments) -> bool:
-    """Whether the triangle inequality surely holds, and with it positive semidefiniteness.
-
-    They hold where J = tr(I)/2 · 1 - I is positive semidefinite. That is seen by Sylvester's criterion on J with the
-    tolerance added to its diagonal; what fails it is looked at again, by its principal moments.
-    """
-    xx, xy, xz, yy, yz, zz = moments
-    half = (xx + yy + zz) * (0.5 + 0.25 * MOMENT_TOLERANCE)
-    a, b, c = half - xx, half - yy, half - zz
-    second = a * b - xy * xy
-    return (
-        a > 0.0 and second > 0.0 and a * (b * c - yz * yz) - xy * (xy * c + yz * xz) - xz * (xy * yz + b * xz) > 0.0
-    ) or not any(moments)
+def _matrices(inertias: Sequence[Inertia]) -> np.ndarray:
+    """The moments as (k, 3, 3)."""
+    moments = np.array([inertia.moments for inertia in inertias]).reshape(-1, 6)
+    return moments[:, [0, 1, 2, 1, 3, 4, 2, 4, 5]].reshape(-1, 3, 3)
 
 
 def _report(
@@ -248,6 +186,3 @@ def _report(
         element = link.inertial if found is None else found
     attribute = "value" if child == "mass" else None
     diagnostics.report(code, message, partial(urdf.document.place, element, attribute))
-
-
-__all__ = ["check_inertias", "check_leaves"]

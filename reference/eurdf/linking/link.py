@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from types import MappingProxyType
 
-from eurdf.diagnostics import Diagnostics
+from eurdf.diagnostics import Diagnostics, FileError
 from eurdf.format.closure_model import FrameReference, NamedFrame
 from eurdf.format.model import Description
+from eurdf.format.read import read_description
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.urdf.read import JOINT_LIMIT
 from eurdf.linking.actuators import link_actuators, with_motor
@@ -16,17 +17,17 @@ from eurdf.linking.closures import link_closures
 from eurdf.linking.configurations import link_configurations
 from eurdf.linking.couplings import link_couplings
 from eurdf.linking.frame_names import FrameNames
-from eurdf.linking.freeing import freed_joints
-from eurdf.linking.mimic_chains import check_chains
-from eurdf.linking.ranges import check_ranges
-from eurdf.linking.replacement import Joints, replace_joints
-from eurdf.linking.urdf_tree import bodies_of, joint_of
+from eurdf.linking.joints import Joints, bodies_of, check_ranges, joint_of
+from eurdf.linking.mimics import check_chains, freed_joints, led_configurations
+from eurdf.linking.replacement import replace_joints
 from eurdf.mechanism.body import Frame
-from eurdf.mechanism.joint import Joint, Mimic, drivers
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, Motor, Root, root_joint
 from eurdf.mechanism.spanning_tree import depth_first, rigid_roots
 from eurdf.reading.reporter import YamlReporter
+from eurdf.reading.source import Source
 from eurdf.reading.yaml_node import json_pointer
+from eurdf.reading.yaml_reader import read_yaml
 
 #: Velocities that the joints of a robot may have. The memory of a model grows with the square of their number.
 VELOCITY_LIMIT = 4_000
@@ -70,7 +71,7 @@ def link(
     else:
         mechanism = _described(urdf, description, reporter, root or description.root)
         if mimics:
-            mechanism = replace(mechanism, configurations=_led(mechanism, drivers(mimics)))
+            mechanism = replace(mechanism, configurations=led_configurations(mechanism, mimics))
         _reserve_names(description, reporter, mechanism.root)
     if mechanism.root == "floating":
         _reserve_root_joint(urdf, diagnostics)
@@ -80,23 +81,40 @@ def link(
     return None if diagnostics.error_count > before else mechanism
 
 
+def reread(text: str, urdf: Urdf, file: str) -> tuple[Mechanism | None, Diagnostics]:
+    """Read and link the text of a description, before it is written to a file.
+
+    Returns:
+        The mechanism, or None where an error was found; and what was found.
+    """
+    diagnostics = Diagnostics()
+    try:
+        document = read_yaml(Source(file, text, text.encode()))
+    except FileError as error:
+        diagnostics.add(error.diagnostic)
+        return None, diagnostics
+    description = read_description(document, diagnostics)
+    mechanism = None if description is None else link(urdf, description, diagnostics)
+    return mechanism, diagnostics
+
+
 def _refuse_too_large(
     mechanism: Mechanism, urdf: Urdf, description: Description | None, diagnostics: Diagnostics
 ) -> None:
     """EU-FIL-002: a robot is not so large that its model takes more memory than a machine has."""
-    joints = len(mechanism.joints)
-    velocities = sum(joint.type.nv for joint in mechanism.joints)
+    joints, velocities = len(mechanism.joints), sum(joint.type.nv for joint in mechanism.joints)
+    place = partial(urdf.document.place, urdf.document.root)
     if joints > JOINT_LIMIT:
         message = f"the robot has {joints:,} joints; the maximum is {JOINT_LIMIT:,}"
-        diagnostics.report("file-too-large", message, urdf.document.place(urdf.document.root))
     elif velocities > VELOCITY_LIMIT:
         message = f"the joints of the robot have {velocities:,} velocities; the maximum is {VELOCITY_LIMIT:,}"
-        diagnostics.report("file-too-large", message, urdf.document.place(urdf.document.root))
     elif mechanism.nc > ROW_LIMIT and description is not None:
         largest = "closures" if mechanism.closures else "couplings"
         message = f"the {largest} of the robot have {mechanism.nc:,} constraint rows; the maximum is {ROW_LIMIT:,}"
-        key = "closed_loop" if mechanism.version == "1" else largest
-        diagnostics.report("file-too-large", message, description.document.place((key,)))
+        place = partial(description.document.place, ("closed_loop" if mechanism.version == "1" else largest,))
+    else:
+        return
+    diagnostics.report("file-too-large", message, place)
 
 
 def _bare(urdf: Urdf, diagnostics: Diagnostics, root: Root) -> Mechanism:
@@ -107,39 +125,29 @@ def _bare(urdf: Urdf, diagnostics: Diagnostics, root: Root) -> Mechanism:
 
 
 def _described(urdf: Urdf, description: Description, reporter: YamlReporter, root: Root) -> Mechanism:
-    joints = Joints({joint.name: joint_of(joint) for joint in urdf.joints.values()})
-    faulty = replace_joints(
-        joints,
-        description.joints,
-        urdf,
-        _closure_links(description, urdf),
-        reporter,
-        version=description.version,
-    )
+    joints = Joints(urdf, reporter, {joint.name: joint_of(joint) for joint in urdf.joints.values()})
+    replace_joints(joints, description.joints, _closure_links(description, urdf), version=description.version)
     check_ranges(urdf, joints.by_name, reporter.diagnostics)
     _own_keys(description, urdf, reporter)
-    names = FrameNames(urdf, joints.by_name, faulty, reporter)
+    names = FrameNames(joints)
     frames = names.add(description.frames)
     order = depth_first(urdf.root, joints.by_name.values())
-    rigid = rigid_roots(urdf.root, order)
-    closures = link_closures(description.closures, names, rigid, reporter)
-    stated = [entry.name for entry in description.closures]
-    couplings = link_couplings(description.couplings, stated, urdf, joints.by_name, joints.merged, faulty, reporter)
+    closures = link_closures(description.closures, names, rigid_roots(urdf.root, order), reporter)
+    couplings = link_couplings(description.couplings, [entry.name for entry in description.closures], joints)
     # Errors about a joint whose own entry is invalid would only repeat that error.
-    entries = [entry for entry in description.actuators if entry.joint not in faulty]
-    actuators = link_actuators(entries, urdf, joints.by_name, joints.merged, joints.split, reporter)
+    entries = [entry for entry in description.actuators if entry.joint not in joints.faulty]
+    actuators = link_actuators(entries, joints)
     named = joints.by_name
     if description.root == "floating":
         named = {**named, ROOT_JOINT: root_joint(urdf.root)}
-    configurations = link_configurations(description.configurations, named, joints.merged, faulty, reporter)
+    configurations = link_configurations(description.configurations, named, joints)
     if root == "fixed":  # whatever the description says
         for coordinates in configurations.values():
             coordinates.pop(ROOT_JOINT, None)
     for entry in entries:
         if entry.joint in actuators:
-            joints.by_name[entry.joint] = with_motor(
-                joints.by_name[entry.joint], entry, armature_given=entry.joint in joints.armature_given
-            )
+            given = entry.joint in joints.armature_given
+            joints.by_name[entry.joint] = with_motor(joints.by_name[entry.joint], entry, armature_given=given)
     ordered = [joints.by_name[joint.name] for joint in order]
     bodies = bodies_of(urdf) | {body.name: body for body in joints.bodies}
     return Mechanism(
@@ -163,25 +171,6 @@ def _described(urdf: Urdf, description: Description, reporter: YamlReporter, roo
             }
         ),
     )
-
-
-def _led(mechanism: Mechanism, mimics: Mapping[str, Mimic]) -> Mapping[str, Mapping[str, tuple[float, ...]]]:
-    """The named configurations, in which each free mimic joint has the value that its leader would give it."""
-    joints = {joint.name: joint for joint in mechanism.joints}
-    led = {
-        name: mimic
-        for name, mimic in mimics.items()
-        if all(other in joints and joints[other].type.is_axial for other in (name, mimic.joint))
-    }
-    if not led:
-        return mechanism.configurations
-    configurations = {}
-    for key, stated in mechanism.configurations.items():
-        followed = {
-            name: (mimic.multiplier * stated.get(mimic.joint, (0.0,))[0] + mimic.offset,) for name, mimic in led.items()
-        }
-        configurations[key] = MappingProxyType({**followed, **stated})
-    return MappingProxyType(configurations)
 
 
 def _own_keys(description: Description, urdf: Urdf, reporter: YamlReporter) -> None:

@@ -8,10 +8,12 @@ from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
+import numpy as np
+
 from eurdf.format.urdf.data import Urdf
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import ROTARY, JointType
-from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, squarable
+from eurdf.mechanism.pose import IDENTITY, ORIGIN, Pose, Vector3, cross, direction, squarable
 
 #: A link lighter than this, in kg, counts as being without inertia (EU-JNT-012).
 MASSLESS = 1e-5
@@ -68,32 +70,25 @@ def check_chain(
     """
     for joint in chain:
         if joint.type not in rotary:
-            raise NotMergeable(
-                "merge-not-chain", f"joint '{joint.name}' is {joint.type}; it must be revolute or continuous"
-            )
-    between = []
+            message = f"joint '{joint.name}' is {joint.type}; it must be revolute or continuous"
+            raise NotMergeable("merge-not-chain", message)
     for upper, lower in itertools.pairwise(chain):
         if lower.parent != upper.child:
-            raise NotMergeable(
-                "merge-not-chain", f"joint '{lower.name}' is not attached to the child link of '{upper.name}'"
-            )
+            message = f"joint '{lower.name}' is not attached to the child link of '{upper.name}'"
+            raise NotMergeable("merge-not-chain", message)
         siblings = urdf.children.get(upper.child, ())
         if len(siblings) != 1:
             other = next(joint.name for joint in siblings if joint.name != lower.name)
-            raise NotMergeable(
-                "merge-not-chain", f"link '{upper.child}' between them is also the parent of joint '{other}'"
-            )
-        between.append(urdf.links[upper.child])
-    for link in between:
+            message = f"link '{upper.child}' between them is also the parent of joint '{other}'"
+            raise NotMergeable("merge-not-chain", message)
+    for link in (urdf.links[joint.child] for joint in chain[:2]):
         if link.inertia is not None and link.inertia.mass >= MASSLESS:
-            raise NotMergeable(
-                "merge-inertia",
-                f"link '{link.name}' between them has mass {link.inertia.mass:g} kg; it must be below {MASSLESS:g} kg",
-            )
+            message = f"link '{link.name}' between them has mass {link.inertia.mass:g} kg"
+            raise NotMergeable("merge-inertia", f"{message}; it must be below {MASSLESS:g} kg")
         if link.name in closure_links:
             raise NotMergeable("merge-closure-frame", f"link '{link.name}' between them has a frame of a closure")
     zero, lines = _lines(chain)
-    return Chain(chain, zero, tuple(direction for _, direction in lines), _meeting_point(lines))
+    return Chain(chain, zero, tuple(along for _, along in lines), _meeting_point(lines))
 
 
 def merge(chain: Chain, name: str) -> tuple[Joint, Joint, Joint]:
@@ -127,14 +122,7 @@ def merge(chain: Chain, name: str) -> tuple[Joint, Joint, Joint]:
 def find_chains(
     urdf: Urdf, joints: Mapping[str, Joint], excluded: Collection[str], closure_links: Collection[str]
 ) -> list[Chain]:
-    """EU-ONE-007: the chains that version 1 merges by itself, greedily from the root outwards.
-
-    Args:
-        urdf: The URDF.
-        joints: Its joints by name.
-        excluded: Joints that the description replaces.
-        closure_links: Links that carry a frame of a closure.
-    """
+    """EU-ONE-007: the chains that version 1 merges by itself, greedily from the root outwards."""
     revolute = (JointType.REVOLUTE,)
     taken: set[str] = set()
     chains = []
@@ -148,9 +136,8 @@ def find_chains(
         if len(names) < 3 or any(name in taken or name in excluded for name in names):
             continue
         try:
-            chain = check_chain(
-                (joints[names[0]], joints[names[1]], joints[names[2]]), urdf, closure_links, rotary=revolute
-            )
+            three = joints[names[0]], joints[names[1]], joints[names[2]]
+            chain = check_chain(three, urdf, closure_links, rotary=revolute)
         except NotMergeable:
             continue
         taken.update(names)
@@ -164,9 +151,7 @@ def _lines(chain: tuple[Joint, Joint, Joint]) -> tuple[Pose, list[tuple[Vector3,
     lines = []
     for joint in chain:
         pose = pose * joint.placement
-        x, y, z = pose.rotate(squarable(joint.axes[0]))
-        norm = math.sqrt(x * x + y * y + z * z)
-        lines.append((pose.xyz, (x / norm, y / norm, z / norm)))
+        lines.append((pose.xyz, direction(pose.rotate(squarable(joint.axes[0])))))
     return pose, lines
 
 
@@ -179,56 +164,29 @@ def _meeting_point(lines: list[tuple[Vector3, Vector3]]) -> Vector3:
         NotMergeable: Where two axes are parallel, or one passes the point by more than `MEETING`.
     """
     for (_, u), (_, v) in itertools.combinations(lines, 2):
-        if _norm(_cross(u, v)) < PARALLEL:
+        if math.hypot(*cross(u, v)) < PARALLEL:
             raise NotMergeable("joint-axes-parallel", "two of their axes are parallel")
     if lines[0][0] == lines[1][0] == lines[2][0]:
         return lines[0][0]  # the usual form of a ball: three joints at one origin
-    matrix = [[0.0] * 3 for _ in range(3)]
-    vector = [0.0] * 3
-    for origin, direction in lines:
-        for i in range(3):
-            for j in range(3):
-                entry = (1.0 if i == j else 0.0) - direction[i] * direction[j]
-                matrix[i][j] += entry
-                vector[i] += entry * origin[j]
-    columns = [tuple(row[j] for row in matrix) for j in range(3)]
-    right: Vector3 = (vector[0], vector[1], vector[2])
-    determinant = _dot(columns[0], _cross(columns[1], columns[2]))
-    point: Vector3 = (
-        _dot(right, _cross(columns[1], columns[2])) / determinant,
-        _dot(columns[0], _cross(right, columns[2])) / determinant,
-        _dot(columns[0], _cross(columns[1], right)) / determinant,
-    )
-    for origin, direction in lines:
-        apart = (point[0] - origin[0], point[1] - origin[1], point[2] - origin[2])
-        distance = _norm(_cross(apart, direction))
+    origins, directions = np.array(lines).transpose(1, 0, 2)
+    across = np.eye(3) - directions[:, :, None] * directions[:, None, :]
+    point = np.linalg.solve(across.sum(axis=0), np.einsum("kij,kj->i", across, origins))
+    for distance in np.linalg.norm(np.cross(point - origins, directions), axis=1):
         if distance > MEETING:
             raise NotMergeable(
                 "merge-axes",
                 f"their axes do not pass through one point: one is {distance * 1e3:.3g} mm away from it; "
                 f"the tolerance is {MEETING * 1e3:g} mm",
             )
-    return point
+    x, y, z = point.tolist()
+    return x, y, z
 
 
 def _nearest_axes(chain: Chain) -> tuple[Joint, ...]:
     """For x, y, z of the last joint's frame at zero, the joint whose axis is nearest; each joint once."""
-    back = replace(chain.zero, xyz=(0.0, 0.0, 0.0)).inverse()
-    first, second, third = (tuple(map(abs, back.rotate(direction))) for direction in chain.directions)
-    near = (first, second, third)
+    back = replace(chain.zero, xyz=ORIGIN).inverse()
+    near = [tuple(map(abs, back.rotate(axis))) for axis in chain.directions]
     sums = [near[x][0] + near[y][1] + near[z][2] for x, y, z in _ORDERS]
     least = max(sums) - _AS_LARGE
     x, y, z = next(order for order, found in zip(_ORDERS, sums, strict=True) if found >= least)
     return chain.joints[x], chain.joints[y], chain.joints[z]
-
-
-def _cross(a: tuple[float, ...], b: tuple[float, ...]) -> Vector3:
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
-
-
-def _dot(a: tuple[float, ...], b: tuple[float, ...]) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def _norm(a: tuple[float, ...]) -> float:
-    return math.sqrt(_dot(a, a))

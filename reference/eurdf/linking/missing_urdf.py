@@ -13,17 +13,17 @@ from eurdf.format.yaml_text import scalar
 from eurdf.reading.xacro import is_xacro
 
 
-def report_missing_urdf(path: Path, extension: Description, diagnostics: Diagnostics) -> None:
+def report_missing_urdf(path: Path, description: Description, diagnostics: Diagnostics) -> None:
     """EU-FIL-004: the URDF that the description names exists."""
-    document = extension.document
+    document = description.document
     home = document.source.folder
-    message = f"the URDF '{extension.urdf}' does not exist"
-    if extension.version != "1" and "urdf" not in document.data:
+    message = f"the URDF '{description.urdf}' does not exist"
+    if description.version != "1" and "urdf" not in document.data:
         message += "; it is the default if there is no key 'urdf'"
-    diagnostics.report("urdf-not-found", message, document.place(("urdf",)), _urdf_hint(path, home, extension))
+    diagnostics.report("urdf-not-found", message, document.place(("urdf",)), _urdf_hint(path, home, description))
 
 
-def _urdf_hint(path: Path, home: Path, extension: Description) -> str:
+def _urdf_hint(path: Path, home: Path, description: Description) -> str:
     """A hint with the paths of nearby URDFs from the description."""
     near = _files_near(path, home, ".urdf") or _files_near(path, home, ".xacro")
     likely = near[0] if len(near) == 1 else None
@@ -32,9 +32,9 @@ def _urdf_hint(path: Path, home: Path, extension: Description) -> str:
         likely = next((other for other in near if alike and Path(other).stem == alike[0]), None)
     meant = likely or (near[0] if near else None)
     option = f"the option --urdf {'FILE' if meant is None else shlex.quote(os.path.normpath(home / meant))}"
-    if extension.version == "1" and meant is not None and is_xacro(meant):
+    if description.version == "1" and meant is not None and is_xacro(meant):
         fix = f"use {option}"
-    elif extension.version == "1":
+    elif description.version == "1":
         fix = f"version 1 cannot name the URDF; save it as robot.urdf beside this file, or use {option}"
     elif meant is None:
         fix = f"write its path from this file under the key 'urdf', or use {option}"

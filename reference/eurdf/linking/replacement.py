@@ -3,131 +3,90 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field, replace
-from functools import partial
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import replace
+from typing import NamedTuple
 
-from eurdf.diagnostics import Hint, did_you_mean
+from eurdf.diagnostics import Hint
 from eurdf.format.conventions import HINT, is_too_small, too_small
 from eurdf.format.joint_model import Joint as JointEntry
-from eurdf.format.urdf.data import Urdf
+from eurdf.linking.joints import Joints
 from eurdf.linking.merging import PARALLEL, NotMergeable, check_chain, find_chains, merge
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.pose import Vector3, direction
-from eurdf.reading.reporter import YamlReporter
-from eurdf.reading.yaml_node import Pointer
+from eurdf.mechanism.pose import Vector3, cross, direction
 
 _LETTERS: dict[str, Vector3] = {"X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
 
-
-@dataclass(slots=True)
-class Joints:
-    """The joints of the mechanism in the making.
-
-    Attributes:
-        by_name: The current joints.
-        bodies: Virtual bodies that splits made.
-        merged: For each joint that was merged away, the joint it became part of.
-        split: For each joint that was split, the two that it became.
-        armature_given: Joints whose armature the description states.
-    """
-
-    by_name: dict[str, Joint]
-    bodies: list[Body] = field(default_factory=list)
-    merged: dict[str, str] = field(default_factory=dict)
-    split: dict[str, tuple[str, str]] = field(default_factory=dict)
-    armature_given: set[str] = field(default_factory=set)
+_RATES = ("velocity", "acceleration", "deceleration", "jerk")
+_FORCES = ("effort", "friction")
+#: Properties of which a joint has one for each velocity, in the URDF or by default.
+_BY_VELOCITY = (*_RATES, *_FORCES, "damping", "armature", "gear_ratio", "rotor_inertia")
 
 
 def replace_joints(
-    joints: Joints,
-    entries: tuple[JointEntry, ...],
-    urdf: Urdf,
-    closure_links: Collection[str],
-    reporter: YamlReporter,
-    *,
-    version: str,
-) -> set[str]:
+    joints: Joints, entries: Iterable[JointEntry], closure_links: Collection[str], *, version: str
+) -> None:
     """Apply every entry of the description, then the three-revolute rule of version 1.
 
     Args:
         joints: The URDF's joints; changed in place.
         entries: As written.
-        urdf: The URDF.
         closure_links: Links that carry a frame of a closure.
-        reporter: Gets what is found.
         version: Version of the description: version 1 merges revolutes by itself; since version 2.1, a description
             may state springs and losses of mimic joints.
-
-    Returns:
-        Names of the joints that an invalid entry refers to, or would have made.
     """
-    faulty: set[str] = set()
+    urdf, diagnostics = joints.urdf, joints.reporter.diagnostics
     mimicking = {joint.name: joint.mimic.joint for joint in urdf.joints.values() if joint.mimic}
     mimicked = {target: name for name, target in mimicking.items()}
     merged = {name: entry.name for entry in entries for name in entry.merges if name != entry.name}
     seen: set[str] = set()
     for entry in entries:
+        replacement = _Replacement(entry, joints, mimicking, mimicked, closure_links, version)
         if entry.name in merged and entry.name in urdf.joints:
-            reporter.report(
-                "duplicate-replacement",
-                f"joint '{entry.name}' is both changed and merged into '{merged[entry.name]}'",
-                entry.pointer,
-                f"change '{merged[entry.name]}' instead, or remove '{entry.name}' from its 'merges'",
-            )
+            message = f"joint '{entry.name}' is both changed and merged into '{merged[entry.name]}'"
+            hint = f"change '{merged[entry.name]}' instead, or remove '{entry.name}' from its 'merges'"
+            replacement.report("duplicate-replacement", message, hint=hint)
             continue
         if entry.name in seen:
-            reporter.report(
-                "duplicate-replacement",
-                f"joint '{entry.name}' is listed twice",
-                entry.pointer,
-                "keep one of the two",
-            )
+            message = f"joint '{entry.name}' is listed twice"
+            replacement.report("duplicate-replacement", message, hint="keep one of the two")
             continue
         seen.add(entry.name)
-        before = len(reporter.diagnostics)
-        _Replacement(entry, joints, urdf, mimicking, mimicked, closure_links, reporter, version).apply()
-        if len(reporter.diagnostics) > before:
-            faulty.update({entry.name, *entry.merges, *(f"{entry.name}_{letter}" for letter in entry.split)})
+        before = len(diagnostics)
+        replacement.apply()
+        if len(diagnostics) > before:
+            joints.faulty.update({entry.name, *entry.merges, *(f"{entry.name}_{letter}" for letter in entry.split)})
     if version == "1":
         for chain in find_chains(urdf, joints.by_name, seen, closure_links):
             first, second, ball = merge(chain, chain.joints[2].name)
             for joint in (first, second, ball):
                 joints.by_name[joint.name] = joint
             joints.merged.update({first.name: ball.name, second.name: ball.name})
-    return faulty
 
 
-@dataclass(slots=True)
-class _Replacement:
+class _Replacement(NamedTuple):
     """One entry at work."""
 
     entry: JointEntry
     joints: Joints
-    urdf: Urdf
     mimicking: Mapping[str, str]
     mimicked: Mapping[str, str]
     closure_links: Collection[str]
-    reporter: YamlReporter
     version: str
 
-    def report(self, code: str, message: str, *keys: str | int, hint: str | None = None) -> None:
-        self.reporter.report(
-            code,
-            message,
-            (*self.entry.pointer, *keys),
-            hint,
-        )
+    def report(self, code: str, message: str, *keys: str | int, hint: Hint = None, key: bool = False) -> None:
+        """Report at the entry, or at what it has under the keys."""
+        self.joints.reporter.report(code, message, (*self.entry.pointer, *keys), hint, key=key)
 
     def apply(self) -> None:
         entry = self.entry
         if entry.merges:
             joint = self.merge()
         else:
-            joint = self.target(entry.name, entry.pointer)
-            if joint is None or self.mimics(joint, entry.pointer):
+            joint = self.target(entry.name)
+            if joint is None or self.mimics(joint):
                 return
             if entry.type is not None:
                 joint = self.retype(joint, entry.type)
@@ -136,104 +95,75 @@ class _Replacement:
         # The type is valid even if an override is not, and what else names the joint means the new one.
         self.joints.by_name[joint.name] = self.override(joint) or joint
 
-    def target(self, name: str, pointer: Pointer) -> Joint | None:
+    def target(self, name: str, *keys: str | int) -> Joint | None:
         """EU-JNT-001: a joint that the description names is in the URDF."""
-        joint = self.joints.by_name.get(name) if name in self.urdf.joints else None
+        joint = self.joints.by_name.get(name) if name in self.joints.urdf.joints else None
         if joint is None:
-            key = bool(pointer) and pointer[-1] == name
-            hint: Hint = partial(did_you_mean, name, self.urdf.joints)
-            if name in self.urdf.links:
-                hint = f"'{name}' is a link; name the joint that moves it"
-            self.reporter.report(
-                "unknown-joint",
-                f"'{name}' is not a joint of the robot",
-                pointer,
-                hint,
-                key=key,
-            )
+            message, hint = f"'{name}' is not a joint of the robot", self.joints.meant(name, self.joints.urdf.joints)
+            key = not keys and self.entry.pointer[-1:] == (name,)
+            self.report("unknown-joint", message, *keys, hint=hint, key=key)
         return joint
 
-    def mimics(self, joint: Joint, pointer: Pointer) -> bool:
+    def mimics(self, joint: Joint, *keys: str | int) -> bool:
         """EU-JNT-004: joints that mimic or are mimicked stay as the URDF has them.
 
         EU-JNT-030: since version 2.1, a mimic joint may have losses, an armature and springs of its own.
         """
         stays = self.entry.type is None and not self.entry.merges
-        if joint.name in self.mimicking and stays and self.version == "2.1":
+        leader = self.mimicking.get(joint.name)
+        if leader is not None and stays and self.version == "2.1":
             if self.entry.limits is None:
                 return False
-            leader = self.mimicking[joint.name]
-            self.reporter.report(
-                "joint-mimics",
-                f"the limits of joint '{joint.name}' cannot be changed: it mimics '{leader}'",
-                (*pointer, "limits"),
-                f"change the limits of '{leader}', or free the joint with mimic: false",
-            )
+            message = f"the limits of joint '{joint.name}' cannot be changed: it mimics '{leader}'"
+            hint = f"change the limits of '{leader}', or free the joint with mimic: false"
+            self.report("joint-mimics", message, *keys, "limits", hint=hint)
             return True
-        if joint.name in self.mimicking:
-            why = f"it mimics '{self.mimicking[joint.name]}'"
+        if leader is not None:
+            why = f"it mimics '{leader}'"
         elif joint.name in self.mimicked and self.entry.type is not None:
             why = f"'{self.mimicked[joint.name]}' mimics it"
         else:
             return False
-        self.reporter.report(
-            "joint-mimics",
-            f"joint '{joint.name}' cannot be changed: {why}",
-            pointer,
-            "free the mimic joint with mimic: false, or do not change the joint"
-            if self.version == "2.1"
-            else "remove <mimic> from the URDF, or do not change the joint",
-        )
+        way = "free the mimic joint with mimic: false" if self.version == "2.1" else "remove <mimic> from the URDF"
+        hint = f"{way}, or do not change the joint"
+        self.report("joint-mimics", f"joint '{joint.name}' cannot be changed: {why}", *keys, hint=hint)
         return True
 
     # -- merging --------------------------------------------------------------------------------------------------
 
     def merge(self) -> Joint | None:
-        entry = self.entry
+        entry, joints = self.entry, self.joints
         chain = []
         for index, name in enumerate(entry.merges):
-            pointer = (*entry.pointer, "merges", index)
+            at = ("merges", index)
             if name in entry.merges[:index]:
-                self.reporter.report(
-                    "duplicate-replacement",
-                    f"joint '{name}' occurs twice among the joints to merge",
-                    pointer,
-                    "name three different joints",
-                )
+                message = f"joint '{name}' occurs twice among the joints to merge"
+                self.report("duplicate-replacement", message, *at, hint="name three different joints")
                 return None
-            if name in self.joints.merged:
-                self.reporter.report(
-                    "duplicate-replacement",
-                    f"joint '{name}' is already merged into '{self.joints.merged[name]}'",
-                    pointer,
-                )
+            if name in joints.merged:
+                message = f"joint '{name}' is already merged into '{joints.merged[name]}'"
+                self.report("duplicate-replacement", message, *at)
                 return None
-            joint = self.target(name, pointer)
-            if joint is None or self.mimics(joint, pointer):
+            joint = self.target(name, *at)
+            if joint is None or self.mimics(joint, *at):
                 return None
             chain.append(joint)
-        taken = entry.name in self.urdf.joints and entry.name != entry.merges[2]
-        if taken or (entry.name in self.joints.by_name and entry.name not in self.urdf.joints):
-            self.reporter.report(
-                "duplicate-joint-name",
-                f"there is already a joint '{entry.name}'",
-                entry.pointer,
-                f"give the merged joint a new name, or the name of the last of the three joints, '{entry.merges[2]}'",
-                key=True,
-            )
+        first, second, third = chain
+        # A name of the URDF is free if it is that of the last joint, another if no joint has got it.
+        if entry.name != third.name if entry.name in joints.urdf.joints else entry.name in joints.by_name:
+            message = f"there is already a joint '{entry.name}'"
+            hint = f"give the merged joint a new name, or the name of the last of the three joints, '{third.name}'"
+            self.report("duplicate-joint-name", message, hint=hint, key=True)
             return None
         try:
-            first, second, ball = merge(
-                check_chain((chain[0], chain[1], chain[2]), self.urdf, self.closure_links), entry.name
-            )
+            *inner, ball = merge(check_chain((first, second, third), joints.urdf, self.closure_links), entry.name)
         except NotMergeable as why:
             names = ", ".join(f"'{name}'" for name in entry.merges)
             self.report(why.code, f"{names} cannot be merged: {why.message}", "merges")
             return None
-        self.joints.by_name[first.name] = first
-        self.joints.by_name[second.name] = second
-        del self.joints.by_name[chain[2].name]
-        self.joints.merged.update({joint.name: entry.name for joint in chain if joint.name != entry.name})
+        joints.by_name.update({joint.name: joint for joint in inner})
+        del joints.by_name[third.name]
+        joints.merged.update({joint.name: entry.name for joint in chain if joint.name != entry.name})
         return ball
 
     # -- new types ------------------------------------------------------------------------------------------------
@@ -243,22 +173,19 @@ class _Replacement:
         replaces = JointType(new).replaces
         if joint.type.is_fixed if new == "fixed" else joint.type not in replaces:
             wanted = sorted(replaces) or ["moving"]
-            self.reporter.report(
-                "joint-kind",
-                f"joint '{joint.name}' is {joint.type} in the URDF and cannot become {new}",
-                (*self.entry.pointer, "type"),
-                f"only a {' or '.join(wanted)} joint can become {new}",
-            )
+            message = f"joint '{joint.name}' is {joint.type} in the URDF and cannot become {new}"
+            hint = f"only a {' or '.join(wanted)} joint can become {new}"
+            self.report("joint-kind", message, "type", hint=hint)
             return None
         if new == "fixed":
             return joint.fixed()
-        if new == "spherical":
-            return self._spread(joint, JointType.SPHERICAL, ())
         if new == "universal":
             return self.universal(joint)
         if new == "cylindrical":
             return self.cylindrical(joint)
-        return self.helical(joint)
+        if new == "helical":
+            return self.helical(joint)
+        return self._spread(joint, JointType(new), ())
 
     def _spread(
         self,
@@ -267,32 +194,12 @@ class _Replacement:
         axes: tuple[Vector3, ...],
         limits: tuple[tuple[float, ...], tuple[float, ...]] | None = None,
     ) -> Joint:
-        """EU-JNT-020, -021: the joint with another type; its rates and dynamics are those of each of its velocities.
-
-        Args:
-            joint: The joint of the URDF.
-            kind: The new type.
-            axes: The new axes.
-            limits: Lower and upper position limits; None if there are none.
-        """
+        """EU-JNT-020, -021: the joint with another type; its rates and dynamics are those of each of its velocities."""
         own, properties = joint.properties, JointProperties.unlimited(kind)
         if own is not JointProperties.unlimited(joint.type):
-            nv = kind.nv
             lower, upper = limits or (properties.lower, properties.upper)
-            properties = JointProperties(
-                lower,
-                upper,
-                own.velocity * nv,
-                own.effort * nv,
-                own.damping * nv,
-                own.friction * nv,
-                own.armature * nv,
-                own.gear_ratio * nv,
-                own.rotor_inertia * nv,
-                acceleration=own.acceleration * nv,
-                deceleration=own.deceleration * nv,
-                jerk=own.jerk * nv,
-            )
+            by_velocity = {name: getattr(own, name) * kind.nv for name in _BY_VELOCITY}
+            properties = JointProperties(lower, upper, **by_velocity)
         return Joint(joint.name, kind, joint.parent, joint.child, joint.placement, axes=axes, properties=properties)
 
     def universal(self, joint: Joint) -> Joint | None:
@@ -306,12 +213,7 @@ class _Replacement:
                 self.report("joint-axis-zero", message, "axes", index)
                 return None
         first, second = map(direction, axes)
-        cross = (
-            first[1] * second[2] - first[2] * second[1],
-            first[2] * second[0] - first[0] * second[2],
-            first[0] * second[1] - first[1] * second[0],
-        )
-        if math.hypot(*cross) < PARALLEL:
+        if math.hypot(*cross(first, second)) < PARALLEL:
             self.report("joint-axes-parallel", f"the two axes of universal joint '{joint.name}' are parallel", "axes")
             return None
         lower, upper = joint.properties.lower, joint.properties.upper
@@ -321,31 +223,21 @@ class _Replacement:
         """EU-ONE-006: version 1's universal joint is two revolutes, ``j_A`` and then ``j_B``, each with j's limits."""
         names = tuple(f"{joint.name}_{letter}" for letter in self.entry.split)
         for name in names:
-            if name in self.urdf.joints:
-                self.reporter.report(
-                    "duplicate-joint-name",
-                    f"universal joint '{joint.name}' creates a joint '{name}', which already exists",
-                    self.entry.pointer,
-                    "rename the other joint in the URDF",
-                )
+            if name in self.joints.urdf.joints:
+                message = f"universal joint '{joint.name}' creates a joint '{name}', which already exists"
+                self.report("duplicate-joint-name", message, hint="rename the other joint in the URDF")
                 return None
         first, second = names
         between = Body(first, virtual=True)
-        while between.name in self.urdf.links:
+        while between.name in self.joints.urdf.links:
             between = Body(between.name + "'", virtual=True)
         self.joints.bodies.append(between)
         letters = self.entry.split
         del self.joints.by_name[joint.name]
         self.joints.by_name[first] = replace(joint, name=first, child=between.name, axes=(_LETTERS[letters[0]],))
         self.joints.split[joint.name] = (first, second)
-        return Joint(
-            second,
-            joint.type,
-            between.name,
-            joint.child,
-            axes=(_LETTERS[letters[1]],),
-            properties=joint.properties,
-        )
+        axes = (_LETTERS[letters[1]],)
+        return Joint(second, joint.type, between.name, joint.child, axes=axes, properties=joint.properties)
 
     def cylindrical(self, joint: Joint) -> Joint:
         """EU-JNT-027: limits of the URDF's joint stay with the coordinate of its kind; the other has none."""
@@ -371,18 +263,12 @@ class _Replacement:
             lead = pitch / (2.0 * math.pi)
             # No negative zero, where the pitch is negative.
             lower, upper = sorted((properties.lower[0] / lead + 0.0, properties.upper[0] / lead + 0.0))
-            properties = replace(
-                properties,
-                lower=(lower,),
-                upper=(upper,),
-                velocity=(properties.velocity[0] / abs(lead),),
-                effort=(properties.effort[0] * abs(lead),),
-                damping=(properties.damping[0] * lead * lead,),
-                friction=(properties.friction[0] * abs(lead),),
-                acceleration=tuple(limit / abs(lead) for limit in properties.acceleration),
-                deceleration=tuple(limit / abs(lead) for limit in properties.deceleration),
-                jerk=tuple(limit / abs(lead) for limit in properties.jerk),
-            )
+            by_angle = {
+                name: tuple(value * factor for value in getattr(properties, name))
+                for names, factor in ((_RATES, 1.0 / abs(lead)), (_FORCES, abs(lead)), (("damping",), lead * lead))
+                for name in names
+            }
+            properties = replace(properties, lower=(lower,), upper=(upper,), **by_angle)
         return replace(joint, type=JointType.HELICAL, pitch=pitch, properties=properties)
 
     # -- overrides ------------------------------------------------------------------------------------------------

@@ -76,8 +76,10 @@ class ReadRobot:
 
     def place_of_constraint(self, name: str) -> Place:
         """Where a closure or a coupling is stated."""
-        stated = (*self.description.closures, *self.description.couplings)
-        return self.description.document.place(next(entry.pointer for entry in stated if entry.name == name))
+        file = self.description
+        pointers = {each.name: each.pointer for each in file.closures}
+        pointers |= {each.name: each.pointer for each in file.couplings}
+        return file.document.place(pointers[name])
 
     def place_of_configuration(self, name: str) -> Place:
         """Where a configuration is stated."""
@@ -144,45 +146,46 @@ def read_robot(
         return ReadRobot(name, diagnostics)
     if files.description is None:
         assert given is not None
-        read, extension = partial(_own_source, given, confined), None
+        read, description = partial(_own_source, given, confined), None
         mimic_errors: _MimicErrors = "refused" if mimic else "kept"
     else:
         document = _read_description(files.description, diagnostics, confined)
-        extension = None if document is None else read_description(document, diagnostics)
+        description = None if document is None else read_description(document, diagnostics)
         if given is not None:
             read = partial(_own_source, given)
         else:
-            folder = _folder(files.description)
-            named = _named_urdf(folder, extension, document)
+            own = files.description
+            folder = own.folder if isinstance(own, Source) else own.parent
+            named = _named_urdf(folder, description, document)
             is_inside = _is_inside(named, folder)
-            if not _may_read(named, is_inside, files.description, extension, diagnostics, confined):
+            if not _may_read(named, is_inside, own, description, diagnostics, confined):
                 return ReadRobot(name, diagnostics)
             # Another file that the description names may be anyone's: no line of it is shown.
             read = partial(read_source, named, is_quoted=is_inside)
             if is_xacro(named):
-                if extension is None:
+                if description is None:
                     return ReadRobot(name, diagnostics)
                 real = Path(os.path.realpath(named)).parent
                 finder = FileFinder(named.parent, package_dirs, real_folder=real, allow_outside=allow_outside)
                 folders = None if confined else finder.folders
-                read = partial(_named_xacro, named, extension, diagnostics, package_dirs, xacro_args, folders)
-            elif extension is not None and xacro_args:
+                read = partial(_named_xacro, named, description, diagnostics, package_dirs, xacro_args, folders)
+            elif description is not None and xacro_args:
                 raise CannotExpand(name, _NO_XACRO)
         # Without a version, whether a mimic has an effect is not known.
-        version = extension.version if extension is not None else document and version_of(document)
+        version = description.version if description is not None else document and version_of(document)
         mimic_errors = "ignored" if version in (None, "1") else "refused" if mimic else "kept"
     tree = _read_urdf(read, diagnostics, geometry, mimic_errors)
     if tree is None:
         return ReadRobot(name, diagnostics)
     mechanism = None
-    if extension is not None or files.description is None:
-        mechanism = link(tree, extension, diagnostics, root, mimic=mimic)
+    if description is not None or files.description is None:
+        mechanism = link(tree, description, diagnostics, root, mimic=mimic)
     if mechanism is None:
         check_inertias(tree, diagnostics)
         return ReadRobot(name, diagnostics, tree)
     if inertias:
         _check_inertias_and_leaves(tree, mechanism, diagnostics)
-    return ReadRobot(name, diagnostics, tree, mechanism, extension)
+    return ReadRobot(name, diagnostics, tree, mechanism, description)
 
 
 def inertia_diagnostics(read: ReadRobot) -> Diagnostics:
@@ -248,7 +251,7 @@ def _expanded(
 
 def _named_xacro(
     urdf: Path,
-    extension: Description,
+    description: Description,
     diagnostics: Diagnostics,
     package_dirs: Sequence[str | os.PathLike[str]],
     xacro_args: Mapping[str, str] | None,
@@ -258,7 +261,7 @@ def _named_xacro(
 
     Args:
         urdf: The xacro.
-        extension: The description.
+        description: The description.
         diagnostics: Gets the warnings of xacro.
         package_dirs: Folders to look for packages in.
         xacro_args: Values of its arguments.
@@ -270,7 +273,7 @@ def _named_xacro(
             ``file-too-large``.
         MissingExtra: The extra ``xacro`` is not installed.
     """
-    place = extension.document.place(("urdf",))
+    place = description.document.place(("urdf",))
     if folders is None:
         message = f"the URDF '{urdf}' is a xacro, which is a program, and files are confined to their folder"
         raise FileError("file-unreadable", message, place, "expand it, and name the result")
@@ -282,7 +285,7 @@ def _named_xacro(
             raise
         raise FileError("file-unreadable", str(error), place) from None
     _add_warnings(urdf, warnings, diagnostics)
-    return replace(source, is_quoted=_is_inside(urdf, extension.document.source.folder))
+    return replace(source, is_quoted=_is_inside(urdf, description.document.source.folder))
 
 
 def _add_warnings(xacro: Path, warnings: str, diagnostics: Diagnostics) -> None:
@@ -306,20 +309,16 @@ def _read_urdf(
     return urdf
 
 
-def _named_urdf(folder: Path, extension: Description | None, document: YamlDocument | None) -> Path:
+def _named_urdf(folder: Path, description: Description | None, document: YamlDocument | None) -> Path:
     name = "robot.urdf"
-    if extension is not None:
-        name = extension.urdf
+    if description is not None:
+        name = description.urdf
     elif document is not None and isinstance(document.data, dict) and isinstance(document.data.get("urdf"), str):
         name = document.data["urdf"]
     try:
         return folder / name
     except ValueError:
         return folder / "robot.urdf"
-
-
-def _folder(description: Path | Source) -> Path:
-    return description.folder if isinstance(description, Source) else description.parent
 
 
 def _read_description(path: Path | Source, diagnostics: Diagnostics, confined: bool) -> YamlDocument | None:
@@ -358,8 +357,8 @@ def _is_inside(path: Path, folder: Path) -> bool:
 def _may_read(
     path: Path,
     is_inside: bool,
-    description: Path | Source,
-    extension: Description | None,
+    file: Path | Source,
+    description: Description | None,
     diagnostics: Diagnostics,
     confined: bool,
 ) -> bool:
@@ -368,25 +367,21 @@ def _may_read(
     If the description could not be read, its URDF is a guess, so a second error would be wrong.
     """
     if confined and not is_inside:
-        if extension is not None:
+        if description is not None:
             message = f"the URDF '{path}' is outside the folder of the description, and files are confined to it"
             hint = "move the URDF into the folder, or give it with --urdf (urdf= in Python)"
-            diagnostics.report("file-unreadable", message, extension.document.place(("urdf",)), hint)
+            diagnostics.report("file-unreadable", message, description.document.place(("urdf",)), hint)
         return False
     if not os.path.lexists(path):
-        if extension is not None:
-            report_missing_urdf(path, extension, diagnostics)
+        if description is not None:
+            report_missing_urdf(path, description, diagnostics)
         return False
     # Some installers fill a folder with links into one other folder.
-    if not (is_inside or extension is None or (isinstance(description, Path) and _is_beside(path, description))):
+    if not (is_inside or description is None or (isinstance(file, Path) and _is_inside(path, file.resolve().parent))):
         diagnostics.report(
             "x-urdf-outside-folder",
             f"the URDF '{path}' is outside the folder of the description",
-            extension.document.place(("urdf",)),
+            description.document.place(("urdf",)),
             "keep the URDF in this folder, or below it; --confined refuses others",
         )
     return True
-
-
-def _is_beside(path: Path, description: Path) -> bool:
-    return _is_inside(path, description.resolve().parent)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
 from eurdf.mechanism.body import Anchor
 
@@ -49,9 +49,45 @@ class Constraint:
         return self
 
 
-def key(**options: Any) -> Any:
-    """A field of a kind of closure that a file states in a key of the same name; ``options`` as `dataclasses.field`."""
-    return field(metadata={"key": True}, **options)
+class Key(NamedTuple):
+    """What a file states of a closure in one of its keys, beside the frames.
+
+    Attributes:
+        title: Its name for readers.
+        text: What it is, with its unit.
+        example: A value as files have it.
+        type: Its type: ``float``, ``Vector3`` or ``tuple[Vector3, Vector3]``.
+        least: The least value, or None.
+        default: What it means if it is left out; None if it must not be.
+    """
+
+    title: str
+    text: str
+    example: Any
+    type: str = ""
+    least: float | None = None
+    default: Any = None
+
+
+class Form(NamedTuple):
+    """A mapping in which a file states a closure of a kind.
+
+    Attributes:
+        name: Of its definition in the schema.
+        title: What editors call it.
+        text: What it is.
+        keys: What it has beside name, type, frames and compliance, by key.
+    """
+
+    name: str
+    title: str
+    text: str
+    keys: Mapping[str, Key]
+
+
+def key(title: str, text: str, *, example: Any, least: float | None = None, **options: Any) -> Any:
+    """A field of a kind that a file states in a key; ``options`` are those of `dataclasses.field`."""
+    return field(metadata={"key": Key(title, text, example, least=least)}, **options)
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,13 +127,12 @@ class Closure(Constraint):
 
     @property
     def own(self) -> dict[str, Any]:
-        """What the closures of its kind state beside name, frames and compliance, by key."""
+        """What the closures of its kind have beside name, frames and compliance, by field."""
         return {each.name: getattr(self, each.name) for each in fields(self) if "key" in each.metadata}
 
     def stated(self) -> dict[str, Any]:
-        """The same as a file states it: what is not stated is the default."""
-        default = {each.name: each.default for each in fields(self)}
-        return {name: value for name, value in self.own.items() if value != default[name]}
+        """The same, by the keys in which a file states it."""
+        return self.own
 
     def with_orientation_free(self) -> Closure:
         """The closure that constrains positions alone as this one does; itself if it leaves orientations free."""

@@ -9,13 +9,12 @@ from functools import cache
 from typing import NamedTuple
 
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.pose import IDENTITY, Pose, Quaternion, Vector3, direction
+from eurdf.mechanism.pose import IDENTITY, ORIGIN, Pose, Quaternion, Vector3, direction
 
 #: A coordinate may be beyond its limit by this much, rad or m (EU-CFG-004).
 LIMIT_TOLERANCE = 1e-9
 
 _NO_RANGE = (-math.inf, math.inf)
-_ORIGIN = (0.0, 0.0, 0.0)
 
 
 class Motion(NamedTuple):
@@ -168,7 +167,7 @@ class Joint:
         Its child body is at ``placement * transform(c) * offset`` in its parent.
 
         Args:
-            coordinates: As files have them (`JointType.coordinates`): rad, m, quaternions x, y, z, w, brought to unit
+            coordinates: As files have them: rad, m, quaternions x, y, z, w, brought to unit
                 length.
 
         Raises:
@@ -182,17 +181,17 @@ class Joint:
             )
         if c == self.type.neutral:
             return IDENTITY
-        shift, turns = _ORIGIN, []
+        shift, turns = ORIGIN, []
         for (axis, turns_about, advance), value in zip(self.motions, c, strict=False):  # slides come before turns
             if axis is None:
-                turns.append(Pose(_ORIGIN, self._unit_quaternion(c[-4:])))
+                turns.append(Pose(ORIGIN, self._unit_quaternion(c[-4:])))
                 continue
             if advance:
                 length = advance * value
                 shift = shift[0] + length * axis[0], shift[1] + length * axis[1], shift[2] + length * axis[2]
             if turns_about:
                 s, cosine = math.sin(value / 2.0), math.cos(value / 2.0)
-                turns.append(Pose(_ORIGIN, (s * axis[0], s * axis[1], s * axis[2], cosine)))
+                turns.append(Pose(ORIGIN, (s * axis[0], s * axis[1], s * axis[2], cosine)))
         turned = turns[0] if turns else IDENTITY
         for turn in turns[1:]:
             turned = turned * turn

@@ -15,7 +15,7 @@ from typing import Any, Literal
 
 from eurdf.mechanism.body import Body, Frame
 from eurdf.mechanism.constraint import Closure, Constraint, Coupling
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import Joint, Mimic, drivers
 from eurdf.mechanism.joint_types import JointType
 
 Root = Literal["fixed", "floating"]
@@ -93,6 +93,11 @@ class Mechanism:
     def constraints(self) -> tuple[Constraint, ...]:
         """Every closure, then every coupling: the order of their rows."""
         return *self.closures, *self.couplings
+
+    @property
+    def leaders(self) -> dict[str, Mimic]:
+        """For each mimic joint, the joint at the end of its chain of leaders, and the relation between the two."""
+        return drivers({joint.name: joint.mimic for joint in self.joints if joint.mimic is not None})
 
     @property
     def nc(self) -> int:

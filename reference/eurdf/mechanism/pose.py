@@ -98,6 +98,8 @@ class Pose:
 
 IDENTITY = Pose()
 
+ORIGIN: Vector3 = (0.0, 0.0, 0.0)
+
 
 def squarable(axis: Vector3) -> Vector3:
     """The axis, rescaled if the square of its length is out of range."""
@@ -113,6 +115,11 @@ def direction(axis: Vector3) -> Vector3:
     x, y, z = squarable(axis)
     norm = math.hypot(x, y, z)
     return x / norm, y / norm, z / norm
+
+
+def cross(a: Vector3, b: Vector3) -> Vector3:
+    """The vector product."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 def turn_from_x(axis: Vector3) -> Quaternion:

@@ -11,6 +11,19 @@ from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import IDENTITY, Pose
 
 
+class _Placed(Protocol):
+    """What a joint of a mechanism and one of a URDF have in common."""
+
+    @property
+    def parent(self) -> str: ...
+    @property
+    def child(self) -> str: ...
+    @property
+    def type(self) -> JointType: ...
+    @property
+    def placement(self) -> Pose: ...
+
+
 def depth_first(root: str, joints: Iterable[Joint]) -> list[Joint]:
     """EU-URD-031: the joints depth first from the root body; those of one body in the byte order of their names."""
     children: dict[str, list[Joint]] = {}
@@ -28,25 +41,12 @@ def depth_first(root: str, joints: Iterable[Joint]) -> list[Joint]:
     return ordered
 
 
-def rigid_roots(root: str, ordered: Iterable[Joint]) -> Mapping[str, str]:
+def rigid_roots(root: str, ordered: Iterable[_Placed]) -> Mapping[str, str]:
     """For each body the one it is rigidly fixed to that is nearest to the root; itself where a joint moves it."""
     of = {root: root}
     for joint in ordered:
         of[joint.child] = of[joint.parent] if joint.type.is_fixed else joint.child
     return of
-
-
-class _Placed(Protocol):
-    """What a joint of a mechanism and one of a URDF have in common."""
-
-    @property
-    def parent(self) -> str: ...
-    @property
-    def child(self) -> str: ...
-    @property
-    def type(self) -> JointType: ...
-    @property
-    def placement(self) -> Pose: ...
 
 
 def rigid_poses(root: str, ordered: Iterable[_Placed]) -> Mapping[str, tuple[str, Pose]]:

@@ -19,12 +19,7 @@ class Folders:
     """
 
     def __init__(self, folders: Iterable[str | os.PathLike[str]] = (), *, allow_outside: bool = False) -> None:
-        """Allow some folders, and all that is below them.
-
-        Args:
-            folders: The folders.
-            allow_outside: Whether other files are read too.
-        """
+        """Allow some folders, and all that is below them."""
         self._real: dict[str, None] = {}
         self.allow_outside = allow_outside
         self.let_through: dict[str, None] = {}
@@ -65,9 +60,6 @@ def folders_of_robot(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
     """The folder of a file, and those above it up to the robot's folder, which is the last one.
 
     That is the nearest folder that is a ROS package; without one, the folder of the file.
-
-    Args:
-        folder: Folder of a URDF, or of another file of the robot.
     """
     start = Path(os.path.abspath(folder))
     found = (start, *start.parents)

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
+from eurdf.array import Indices, Matrix
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.pinocchio.configuration import Slot, slots
+from eurdf.pinocchio.configuration import Slot
 
 _UNLIMITED = (-math.inf, math.inf)
 
@@ -35,14 +35,14 @@ class Actuation:
     """
 
     joints: tuple[str, ...]
-    idx_q: npt.NDArray[np.intp]
-    idx_v: npt.NDArray[np.intp]
+    idx_q: Indices
+    idx_v: Indices
     nv: int
     names: tuple[str, ...]
-    control: npt.NDArray[np.float64]
+    control: Matrix
 
     @cached_property
-    def selection(self) -> npt.NDArray[np.float64]:
+    def selection(self) -> Matrix:
         """S, of shape (nv, nu): motor torques u act on the mechanism as S u.
 
         Column k is the unit vector of ``idx_v[k]``. The matrix is dense; it is computed on first use.
@@ -57,17 +57,10 @@ class Actuation:
             array.flags.writeable = False
 
 
-def build_actuation(mechanism: Mechanism, model: pin.Model, at: Mapping[str, Slot] | None = None) -> Actuation:
-    """The actuation of a mechanism.
-
-    Args:
-        mechanism: The mechanism.
-        model: The result of `build_model`.
-        at: The `slots` of the mechanism, if the caller has them.
-    """
+def build_actuation(mechanism: Mechanism, model: pin.Model, at: Mapping[str, Slot]) -> Actuation:
+    """The actuation of a mechanism, whose `build_model` and `slots` are given."""
     if not mechanism.actuators:
         return Actuation((), np.empty(0, np.intp), np.empty(0, np.intp), model.nv, (), np.empty((0, 2)))
-    at = slots(mechanism) if at is None else at
     actuated = [at[name] for name in mechanism.actuators]
     idx_q = np.array([slot.idx_q + k for slot in actuated for k in range(slot.nq)], np.intp)
     idx_v = np.array([slot.idx_v + k for slot in actuated for k in range(slot.nv)], np.intp)

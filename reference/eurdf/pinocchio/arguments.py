@@ -12,13 +12,14 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
+
+from eurdf.array import Matrix
 
 _FLOATS = np.dtype(np.float64)
 
 
-def checked_array(name: str, given: Any, *shapes: tuple[int, ...]) -> npt.NDArray[np.float64]:
+def checked_array(name: str, given: Any, *shapes: tuple[int, ...]) -> Matrix:
     """The given numbers as an array of one of the shapes.
 
     Args:
@@ -48,7 +49,7 @@ def checked_array(name: str, given: Any, *shapes: tuple[int, ...]) -> npt.NDArra
     return values
 
 
-def _all_finite(values: npt.NDArray[np.float64]) -> bool:
+def _all_finite(values: Matrix) -> bool:
     # Sooner than by isfinite; unlike dot, vdot does not warn. If the squares overflow, slower steps follow.
     return math.isfinite(np.vdot(values, values))
 
@@ -74,6 +75,8 @@ def checked_tolerance(given: Any, name: str = "tolerance") -> float:
     Raises:
         ValueError: It is no finite number, or is negative.
     """
+    if type(given) is float and 0.0 <= given < math.inf:
+        return given  # sooner than by the steps below
     value = float(checked_array(name, given, ()))
     if value < 0.0:
         raise ValueError(f"{name} is {value}; expected a number of at least 0")

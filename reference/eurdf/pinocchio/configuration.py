@@ -6,18 +6,15 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
+from eurdf.array import Vector
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, root_joint
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.pinocchio.joint_model import is_circular
 from eurdf.pinocchio.mimic import following
-
-Vector = npt.NDArray[np.float64]
 
 
 class Slot(NamedTuple):
@@ -70,9 +67,9 @@ def configuration_vector(
     Args:
         mechanism: The mechanism.
         model: The result of `build_model`.
-        coordinates: For each joint its coordinates as files have them (`JointType.coordinates`), for a
-            floating root those of a floating joint under ``root_joint``. Other joints are
-            neutral. Quaternions are normalized. Coordinates of mimic joints are ignored.
+        coordinates: For each joint its coordinates as files have them, for a floating root those of a floating joint
+            under ``root_joint``. Other joints are neutral. Quaternions are normalized. Coordinates of mimic joints are
+            ignored.
         at: The `slots` of the mechanism, if the caller has them.
 
     Returns:
@@ -102,8 +99,8 @@ def configuration_vector(
     return q
 
 
-def own_coordinates(mechanism: Mechanism, model: pin.Model, q: Vector) -> dict[str, tuple[float, ...]]:
-    """The coordinates, as files have them, of every joint that has coordinates of its own, by its name.
+def joint_coordinates(mechanism: Mechanism, model: pin.Model, q: Vector) -> dict[str, tuple[float, ...]]:
+    """The coordinates, as files have them, of every joint that is not fixed, by its name.
 
     It is the inverse of `configuration_vector`.
 
@@ -114,37 +111,19 @@ def own_coordinates(mechanism: Mechanism, model: pin.Model, q: Vector) -> dict[s
 
     Returns:
         In the order of the mechanism's joints, ``root_joint`` first where the root floats. An angle that Pinocchio has
-        as (cos, sin) is from -pi to pi.
+        as (cos, sin) is from -pi to pi. The coordinate of a joint that mimics another follows from that one's.
 
     Raises:
         ValueError: q does not have the shape (nq,), or is not finite.
     """
     numbers = checked_array("q", q, (model.nq,)).tolist()
-    found: dict[str, tuple[float, ...]] = {}
-    if mechanism.root == "floating":
-        found[ROOT_JOINT] = tuple(numbers[:7])
+    own: dict[str, tuple[float, ...]] = {}
     for name, slot in slots(mechanism).items():
-        own = numbers[slot.idx_q : slot.idx_q + slot.nq]
+        values = numbers[slot.idx_q : slot.idx_q + slot.nq]
         if slot.nq > len(slot.joint.type.coordinates):
-            own[-2:] = [math.atan2(own[-1], own[-2])]
-        found[name] = tuple(own)
-    return found
-
-
-def joint_coordinates(mechanism: Mechanism, model: pin.Model, q: Vector) -> dict[str, tuple[float, ...]]:
-    """The coordinates, as files have them, of every joint that is not fixed, by its name.
-
-    Args:
-        mechanism: The mechanism.
-        model: The result of `build_model`.
-        q: Configuration, of shape (nq,).
-
-    Returns:
-        Those of `own_coordinates`, and for each joint that mimics another the coordinate that follows from that one's;
-        in the order of the mechanism's joints, ``root_joint`` first where the root floats.
-    """
-    own = own_coordinates(mechanism, model, q)
-    found = {ROOT_JOINT: own[ROOT_JOINT]} if mechanism.root == "floating" else {}
+            values[-2:] = [math.atan2(values[-1], values[-2])]
+        own[name] = tuple(values)
+    found = {ROOT_JOINT: tuple(numbers[:7])} if mechanism.root == "floating" else {}
     mimics = following(mechanism).mimics
     for joint in mechanism.joints:
         if joint.name in own:

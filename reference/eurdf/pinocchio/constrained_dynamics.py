@@ -10,17 +10,15 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
+from eurdf.array import Matrix, Vector
 from eurdf.pinocchio.constraint import number_of_models
-from eurdf.pinocchio.tree import MOST_VELOCITIES_WITH_DATA
+from eurdf.pinocchio.tree_dynamics import MOST_VELOCITIES_WITH_DATA
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
-Vector = npt.NDArray[np.float64]
-Matrix = npt.NDArray[np.float64]
 
 #: Baumgarte gains kp, 1/s², and kd, 1/s.
 Gains = tuple[float, float]
@@ -31,7 +29,18 @@ _ACCURACY = 1e-14
 
 
 class ConstrainedMotion(NamedTuple):
-    """See `eurdf.kinematics.tree_kinematics.ConstrainedMotion`; it is valid until the solver is used again."""
+    """A solution of M a + h = τ + Jᵀ f and J a = target, with its terms; it is valid until the solver is used again.
+
+    The equations are those of the robot if the constraints hold and J v = 0.
+
+    Attributes:
+        a: Acceleration (nv,).
+        on_a: The f (nc,): forces on the bodies A, which are -λ.
+        J: Minus the derivative of the residual (nc, nv).
+        target: What J a has to be (nc,).
+        data: Memory with h in it.
+        open_by: How far each constraint is open.
+    """
 
     a: Vector
     on_a: Vector
@@ -51,10 +60,10 @@ class ConstrainedMotion(NamedTuple):
 
 
 class ConstrainedDynamics:
-    """The solver with its memory; see `eurdf.kinematics.tree_kinematics.ConstrainedDynamics`.
+    """The solver with its memory.
 
     It treats redundant rows that differ by rounding as independent rows, and needs inertia at every joint, even at one
-    that the closures do not let move.
+    that the closures do not let move. Where this is not so, it can be wrong: judge its solution.
     """
 
     def __init__(self, model: pin.Model, constraint_models: Sequence[pin.RigidConstraintModel]) -> None:
@@ -77,7 +86,16 @@ class ConstrainedDynamics:
     def solve(
         self, q: Vector, v: Vector, force: Vector, gains: list[Gains], data: pin.Data, is_own: bool
     ) -> ConstrainedMotion:
-        """See `eurdf.kinematics.tree_kinematics.ConstrainedDynamics`."""
+        """The solution at q (nq,) and v (nv,), which may be not finite.
+
+        Args:
+            q: Configuration (nq,).
+            v: Velocity (nv,).
+            force: Generalized force τ (nv,).
+            gains: Baumgarte gains of each constraint.
+            data: Memory of the whole tree.
+            is_own: Whether no other solver of constrained dynamics uses this memory.
+        """
         model, models, datas = self._model, self._models, self._datas
         if gains != self._gains:
             self._gains = gains
@@ -96,7 +114,7 @@ class ConstrainedDynamics:
         return ConstrainedMotion(a, data.lambda_c, J, data.primal_rhs_contact, data, self._open_by)
 
     def closures(self, q: Vector, data: pin.Data) -> tuple[Vector, Matrix]:
-        """See `eurdf.kinematics.tree_kinematics.ConstrainedDynamics`."""
+        """The residual (nc,) at q (nq,), and K (nc, nv), which is its derivative where the closures are closed."""
         model = self._model
         pin.computeJointJacobians(model, data, q)
         parts = []

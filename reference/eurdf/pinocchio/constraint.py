@@ -13,7 +13,7 @@ from eurdf.closures.point import PointClosure
 from eurdf.exceptions import EurdfError
 from eurdf.mechanism.constraint import Constraint
 from eurdf.mechanism.pose import Vector3, direction
-from eurdf.pinocchio.tree import PinocchioTree
+from eurdf.pinocchio.tree import Tree
 from eurdf.pinocchio.tree_few import Site
 
 #: Number of constraint models of each kind of constraint.
@@ -46,7 +46,7 @@ def number_of_models(constraint: Constraint) -> int:
     return _NUMBER.get(type(constraint), 0)
 
 
-def build_constraint_models(constraints: Iterable[Constraint], tree: PinocchioTree) -> list[pin.RigidConstraintModel]:
+def build_constraint_models(constraints: Iterable[Constraint], tree: Tree) -> list[pin.RigidConstraintModel]:
     """The constraint models of the constraints, in their order and under their names.
 
     Each joins the joints that move the bodies of its frames A and B; its placements are those of the frames in the
@@ -74,7 +74,7 @@ def _along(frame: Site, axis: Vector3) -> Site:
     return Site(frame.joint, frame.placement * pin.SE3(np.eye(3), _ON_AXIS * np.array(direction(axis))))
 
 
-def _model(name: str, contact: pin.ContactType, tree: PinocchioTree, ends: Iterable[Site]) -> pin.RigidConstraintModel:
+def _model(name: str, contact: pin.ContactType, tree: Tree, ends: Iterable[Site]) -> pin.RigidConstraintModel:
     joints_and_placements = (each for end in ends for each in end)
     constraint_model = pin.RigidConstraintModel(contact, tree.model, *joints_and_placements, pin.ReferenceFrame.LOCAL)
     constraint_model.name = name

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import difflib
 from typing import Any
 
 import pinocchio as pin
 
+from eurdf.diagnostics.wording import meant
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.joint_model import number_of_models
@@ -43,8 +43,7 @@ def frame_index(model: Any, name: str) -> int:
     """
     found = [(index, frame) for index, frame in enumerate(model.frames) if frame.name == name]
     if not found:
-        near = difflib.get_close_matches(name, [frame.name for frame in model.frames], n=1)
-        raise ValueError(f"the model has no frame '{name}'" + (f"; did you mean '{near[0]}'?" if near else ""))
+        raise ValueError(f"the model has no frame '{name}'{meant(name, (frame.name for frame in model.frames))}")
     index, first = found[0]
     for _, other in found[1:]:
         if other.parentJoint != first.parentJoint or not other.placement.isApprox(first.placement, 1e-12):

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator, Mapping
 
 import coal
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
+from eurdf.array import Vector
 from eurdf.exceptions import EurdfError
 from eurdf.mechanism.body import Shape
 from eurdf.mechanism.mechanism import Mechanism
@@ -98,7 +98,7 @@ def build_geometry(
 
 def _geometry(
     shape: Shape, resolve: Resolve, meshes: Mapping[str, Mesh], cache: MeshCache
-) -> tuple[coal.CollisionGeometry, str, npt.NDArray[np.float64]]:
+) -> tuple[coal.CollisionGeometry, str, Vector]:
     """The geometry; the path of its mesh, or in its place the name Pinocchio gives to the kind; the scale."""
     size = shape.size
     match shape.kind:
@@ -161,7 +161,7 @@ def _mesh_geometry(mesh: Mesh, scale: tuple[float, ...]) -> coal.BVHModelOBBRSS:
     return geometry
 
 
-def _color(shape: Shape) -> npt.NDArray[np.float64]:
+def _color(shape: Shape) -> Vector:
     """In single precision, as urdfdom keeps colors; black where a material has a texture only."""
     if shape.color is None:
         return _BLACK

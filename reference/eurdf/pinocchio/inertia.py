@@ -5,17 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
+from eurdf.array import Matrix, Vector
 from eurdf.mechanism.body import Inertia
-from eurdf.mechanism.pose import Quaternion
+from eurdf.mechanism.pose import IDENTITY, Quaternion
 
-_UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 _Row = tuple[float, float, float]
 _Matrix3 = tuple[_Row, _Row, _Row]
-Vector = npt.NDArray[np.float64]
-Matrix = npt.NDArray[np.float64]
 
 
 _MASSLESS = pin.Inertia.Zero()
@@ -49,7 +46,7 @@ def _inertia(inertia: Inertia, lever: Vector, moments: Matrix) -> pin.Inertia:
 def _turned(inertia: Inertia) -> tuple[float, ...]:
     """The nine entries of the rotational inertia, in the body's axes."""
     ixx, ixy, ixz, iyy, iyz, izz = inertia.moments
-    if inertia.pose.quaternion != _UPRIGHT:
+    if inertia.pose.quaternion != IDENTITY.quaternion:
         R = _rotation(inertia.pose.quaternion)
         # I is symmetric, so (R I)ᵢⱼ is row i of R by row j of I.
         RI = _rows_by_rows(R, ((ixx, ixy, ixz), (ixy, iyy, iyz), (ixz, iyz, izz)))

@@ -59,7 +59,7 @@ def number_of_models(kind: JointType) -> int:
 
 def is_circular(kind: JointType, *, unwrapped: bool) -> bool:
     """Whether Pinocchio has the last coordinate, an angle, as (cos, sin): one number more in q."""
-    return kind is JointType.PLANAR or (kind is JointType.CONTINUOUS and not unwrapped)
+    return kind.coordinates[-1:] == ("angle",) and not kind.limited and (kind.moving_frame or not unwrapped)
 
 
 def unit(axis: Vector3) -> Vector3:

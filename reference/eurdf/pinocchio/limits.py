@@ -6,9 +6,9 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
+from eurdf.array import Vector
 from eurdf.mechanism.joint import Joint
 
 # Pinocchio bounds a cosine, a sine and each component of a unit quaternion by this: never reached, and finite.
@@ -25,8 +25,6 @@ _OF_VELOCITIES = (
     ("rotor_inertia", 0.0),
     ("gear_ratio", 1.0),
 )
-
-Vector = npt.NDArray[np.float64]
 
 
 def set_limits(model: pin.Model, joints: Sequence[tuple[Joint, int]], root_nq: int, root_nv: int) -> None:

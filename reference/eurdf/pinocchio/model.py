@@ -25,7 +25,7 @@ from eurdf.pinocchio.mimic import following, with_followers
 _Indices = tuple[int, int, int, int]  # of a joint: its own, and where its q, its v and its v with mimic joints start
 
 _UNIVERSE = 0
-_HERE = pin.SE3.Identity()
+_IDENTITY = pin.SE3.Identity()
 _FREE_FLYER = pin.JointModel(pin.JointModelFreeFlyer())
 _BODY, _JOINT, _FIXED_JOINT, _OP_FRAME = (
     pin.FrameType.BODY,
@@ -71,19 +71,19 @@ def build_model(mechanism: Mechanism) -> pin.Model:
         (moving,) = joint_models(joint, unwrapped=joint.name in led.unwrapped)
         free.append((joint, moving.nq))
         # It hangs from a floating root, whose coordinates stay the first.
-        coordinate = model.addJoint(joint_id, moving, _HERE, _coordinate_name(joint.name, names))
+        coordinate = model.addJoint(joint_id, moving, _IDENTITY, _coordinate_name(joint.name, names))
         sources[joint.name] = _indices(model, coordinate)
 
     add_joint, add_frame, append_body = model.addJoint, model.addFrame, model.appendBodyToJoint
     add_joint_frame, add_body_frame = model.addJointFrame, model.addBodyFrame
     mimics, unwrapped = led.mimics, led.unwrapped
     # For each body: the joint that moves it, its placement in that joint, and its frame.
-    sites = {root.name: (joint_id, _HERE, body_frame)}
+    sites = {root.name: (joint_id, _IDENTITY, body_frame)}
     for joint, body, inertia in zip(mechanism.joints, bodies, inertias, strict=True):
         name = joint.name
         parent_joint, parent_placement, parent_frame = sites[joint.parent]
         placement = placement_of(joint.placement)
-        if parent_placement is not _HERE:
+        if parent_placement is not _IDENTITY:
             placement = parent_placement * placement
         if joint.type.is_fixed:
             if joint.offset is not IDENTITY:
@@ -97,14 +97,14 @@ def build_model(mechanism: Mechanism) -> pin.Model:
                 free.append((joint, moving.nq + len(before)))
                 for part in before:
                     parent_joint = add_joint(parent_joint, part, placement, _part_name(name, names))
-                    parent_frame, placement = add_joint_frame(parent_joint, parent_frame), _HERE
+                    parent_frame, placement = add_joint_frame(parent_joint, parent_frame), _IDENTITY
                 joint_id = add_joint(parent_joint, moving, placement, name)
                 if mimics:
                     sources[name] = _indices(model, joint_id)
             else:
                 joint_id = add_joint(parent_joint, _follower(moving, mimic, sources), placement, name)
             if joint.offset is IDENTITY:
-                placement = _HERE
+                placement = _IDENTITY
                 joint_frame = add_joint_frame(joint_id, parent_frame)
             else:
                 placement = placement_of(joint.offset)
@@ -134,12 +134,12 @@ def _add_root(model: pin.Model, mechanism: Mechanism, inertia: pin.Inertia) -> t
     """EU-VER-004: add the root body, fixed or floating; returns the joint that moves it, and its frame."""
     root = mechanism.bodies[0]
     if mechanism.root == "fixed":
-        return _UNIVERSE, model.addFrame(pin.Frame(root.name, _UNIVERSE, 0, _HERE, _BODY, inertia))
-    joint_id = model.addJoint(_UNIVERSE, _FREE_FLYER, _HERE, ROOT_JOINT)
+        return _UNIVERSE, model.addFrame(pin.Frame(root.name, _UNIVERSE, 0, _IDENTITY, _BODY, inertia))
+    joint_id = model.addJoint(_UNIVERSE, _FREE_FLYER, _IDENTITY, ROOT_JOINT)
     joint_frame = model.addJointFrame(joint_id, 0)
     if root.inertia is not None and not is_zero(root.inertia):
-        model.appendBodyToJoint(joint_id, inertia, _HERE)
-    return joint_id, model.addBodyFrame(root.name, joint_id, _HERE, joint_frame)
+        model.appendBodyToJoint(joint_id, inertia, _IDENTITY)
+    return joint_id, model.addBodyFrame(root.name, joint_id, _IDENTITY, joint_frame)
 
 
 def _indices(model: pin.Model, joint_id: int) -> _Indices:

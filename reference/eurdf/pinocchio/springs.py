@@ -6,15 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from eurdf.array import Indices, Vector
 from eurdf.mechanism.joint import Mimic
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.configuration import Slot
 from eurdf.pinocchio.mimic import following
-
-Vector = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.intp]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

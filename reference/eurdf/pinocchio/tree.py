@@ -1,42 +1,40 @@
-"""The spanning tree as a Pinocchio model: what kinematics needs of it (`eurdf.kinematics.tree_kinematics`)."""
+"""The spanning tree by a Pinocchio model, as kinematics asks for it: its joints, configurations and places."""
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
-from eurdf.array import Matrix, Vector
+from eurdf.array import Mask, Matrix, Vector
+from eurdf.closures.coupling import Coordinate
+from eurdf.diagnostics.wording import meant
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.pinocchio.arguments import checked_data
-from eurdf.pinocchio.configuration import Slot, slots
+from eurdf.pinocchio.configuration import Slot
 from eurdf.pinocchio.frames import body_frame_ids, frame_index, placement_of
 from eurdf.pinocchio.springs import NO_SPRINGS, Springs, build_springs
+from eurdf.pinocchio.tree_dynamics import MOST_VELOCITIES_WITH_DATA, TreeDynamics, TreeRecursion
 from eurdf.pinocchio.tree_few import Site
-from eurdf.pinocchio.tree_recursion import TreeRecursion
-
-#: The dynamics of trees with more velocities do without a `pin.Data`, which would take more than 140 MB.
-MOST_VELOCITIES_WITH_DATA = 130
-
-
-class Coordinate(NamedTuple):
-    """See `eurdf.kinematics.tree_kinematics.Coordinate`."""
-
-    joint: int
-    idx_q: int
-    idx_v: int
-    translates: bool
 
 
 class MovingJoint(NamedTuple):
-    """How a joint moves; see `eurdf.kinematics.tree_kinematics.MovingJoint`."""
+    """How a joint moves: where its coordinates are neutral, and by its velocities from there.
+
+    Attributes:
+        name: Its name.
+        parent: Index of its parent.
+        placement: Pose (4, 4) of its moving frame in its parent's, where its coordinates are neutral.
+        subspace: Motion subspace (6, n) there: rows linear, then angular, in its moving frame.
+        nq: Number of its own coordinates: none of one that mimics another.
+        idx_q: Index in q of the first coordinate; its leader's if it mimics.
+        idx_v: Indices (n,) in v of the velocities that move it.
+    """
 
     name: str
     parent: int
@@ -47,8 +45,10 @@ class MovingJoint(NamedTuple):
     idx_v: tuple[int, ...]
 
 
-class PinocchioTree:
-    """A `eurdf.kinematics.tree_kinematics.TreeKinematics` by Pinocchio; its joints are those of the model.
+class Tree:
+    """A spanning tree.
+
+    Its joints are those of the model, numbered from the root, number 0, to the leaves: a parent has a lower number.
 
     Attributes:
         model: The model.
@@ -63,7 +63,7 @@ class PinocchioTree:
         self,
         model: pin.Model,
         sites: Mapping[str, Site],
-        first: Mapping[str, tuple[int, int, int, int]],
+        at: Mapping[str, Slot],
         springs: Springs = NO_SPRINGS,
     ) -> None:
         """Take a model.
@@ -71,15 +71,14 @@ class PinocchioTree:
         Args:
             model: The model.
             sites: For each body, by name, where its frame is.
-            first: For each joint that has coordinates of its own, the index of the first in q, their number, the index
-                of the first of its velocities in v, and their number.
+            at: For each joint that has coordinates of its own, where they are.
             springs: The springs of its joints.
         """
         self.model = model
         self.springs = springs
         self._sites = sites
         self.derived: dict[Any, Any] = {}
-        self._first = first
+        self._slots = at
 
     @cached_property
     def nq(self) -> int:
@@ -98,7 +97,7 @@ class PinocchioTree:
 
     @cached_property
     def own_velocities(self) -> list[range]:
-        """Of each joint the indices in v of its own velocities."""
+        """Of each joint the indices in v of its own velocities: none of one that mimics another."""
         return _ranges(self.model.idx_vs, self.model.nvs)
 
     @cached_property
@@ -108,7 +107,7 @@ class PinocchioTree:
 
     @cached_property
     def moving_velocities(self) -> list[range]:
-        """Of each joint the indices in v of the velocities that move it."""
+        """Of each joint the indices in v of the velocities that move it: its leader's if it mimics."""
         return _ranges(self.model.idx_vs, self.model.nvExtendeds)
 
     @cached_property
@@ -116,46 +115,46 @@ class PinocchioTree:
         """Of each joint the distance of its origin from that of its parent at zero, m."""
         return [math.hypot(*placement.translation) for placement in self.model.jointPlacements]
 
-    def translates(self, joint: int) -> npt.NDArray[np.bool_]:
-        """Which of the velocities of a joint only translate."""
-        return np.asarray(~self._subspace(joint)[3:].any(axis=0))
+    def translates(self, joint: int) -> Mask:
+        """Which of the velocities of a joint only translate, m/s; the others turn, rad/s."""
+        return np.asarray(~self.moving_joints[joint - 1].subspace[3:].any(axis=0))
 
     @cached_property
     def velocity_names(self) -> list[str]:
         """For each velocity (nv) the name of its joint."""
         names = [ROOT_JOINT] * self.nv
-        for name, (_, _, first, count) in self._first.items():
-            names[first : first + count] = [name] * count
+        for name, slot in self._slots.items():
+            names[slot.idx_v : slot.idx_v + slot.nv] = [name] * slot.nv
         return names
 
     @cached_property
     def in_series(self) -> dict[int, int]:
         """The first of each two joints that are one joint of the mechanism, with the second, which has its name."""
-        own = [self.model.getJointId(name) for name, (_, _, _, count) in self._first.items() if count > 1]
+        own = [self.model.getJointId(name) for name, slot in self._slots.items() if slot.nv > 1]
         return {self.parents[joint]: joint for joint in own if len(self.own_velocities[joint]) == 1}
 
     @property
     def position_limits(self) -> tuple[Vector, Vector]:
-        """The lower and the upper position limits (nq,)."""
+        """The lower and the upper position limits (nq,) as in the files, both zero where there is no range."""
         return np.array(self.model.lowerPositionLimit), np.array(self.model.upperPositionLimit)
 
     @property
     def damping(self) -> Vector:
-        """The viscous damping (nv,) of the joints."""
+        """The viscous damping (nv,) of the joints, N·m·s/rad and N·s/m."""
         return np.array(self.model.damping)
 
     @property
     def dry_friction(self) -> Vector:
-        """The dry friction (nv,) of the joints."""
+        """The dry friction (nv,) of the joints, N·m and N."""
         return np.array(self.model.upperDryFrictionLimit)
 
     @cached_property
-    def whole_turns(self) -> npt.NDArray[np.bool_]:
+    def whole_turns(self) -> Mask:
         """Which velocities (nv,) drive an angle whose whole turns change nothing, since it is not unwrapped."""
-        turns: npt.NDArray[np.bool_] = np.zeros(self.nv, dtype=bool)
+        turns: Mask = np.zeros(self.nv, dtype=bool)
         for joint, (q, v) in enumerate(zip(self.own_coordinates, self.own_velocities, strict=True)):
             if len(v) and len(q) == len(v):
-                turns[v.start : v.stop] = ~self._subspace(joint)[:3].any(axis=0)
+                turns[v.start : v.stop] = ~self.moving_joints[joint - 1].subspace[:3].any(axis=0)
         for joint in self.model.mimicking_joints:  # a multiplier of 0.5 makes whole turns matter
             turns[self.model.idx_vs[joint]] = False
         return turns
@@ -166,47 +165,28 @@ class PinocchioTree:
         Raises:
             ValueError: The tree has no such joint.
         """
-        model = self.model
-        _, _, first, count = self._first.get(joint, (0, 0, 0, 0))
-        if count:
-            return range(first, first + count)
-        if not model.existJointName(joint):
-            near = difflib.get_close_matches(joint, list(model.names), n=1)
-            raise ValueError(f"the model has no joint '{joint}'" + (f"; did you mean '{near[0]}'?" if near else ""))
-        index: int = model.getJointId(joint)
+        slot = self._slots.get(joint)
+        if slot is not None and slot.nv:
+            return range(slot.idx_v, slot.idx_v + slot.nv)
+        if not self.model.existJointName(joint):
+            raise ValueError(f"the model has no joint '{joint}'{meant(joint, self.model.names)}")
+        index: int = self.model.getJointId(joint)
         return self.moving_velocities[index]
 
-    def _subspace(self, joint: int) -> Matrix:
-        """Motion subspace (6, n) of a joint at zero: rows linear, then angular."""
-        moving = self.model.joints[joint]
-        data = moving.createData()
-        moving.calc(data, self._neutral)
-        return np.array(data.S.reshape(6, -1))
-
-    @property
+    @cached_property
     def moving_joints(self) -> list[MovingJoint]:
         """Its joints but the universe; a mimic joint has the first coordinate and the velocity of its leader."""
-        model, found = self.model, []
+        model, found, neutral = self.model, [], pin.neutral(self.model)
         for index in range(1, model.njoints):
             moving = model.joints[index]
             data = moving.createData()
-            moving.calc(data, self._neutral)
+            moving.calc(data, neutral)
             placement = (model.jointPlacements[index] * data.M).homogeneous
             S, first = np.array(data.S.reshape(6, -1)), moving.idx_v
             idx_v = tuple(range(first, first + moving.nvExtended))
-            found.append(
-                MovingJoint(model.names[index], self.parents[index], placement, S, moving.nq, moving.idx_q, idx_v)
-            )
+            name, parent = model.names[index], self.parents[index]
+            found.append(MovingJoint(name, parent, placement, S, moving.nq, moving.idx_q, idx_v))
         return found
-
-    @cached_property
-    def _upper(self) -> npt.NDArray[np.bool_]:
-        """Which entries of a matrix (nv, nv) are on or above the diagonal."""
-        return np.triu(np.ones((self.nv, self.nv), dtype=bool))
-
-    @cached_property
-    def _neutral(self) -> Vector:
-        return np.asarray(pin.neutral(self.model))
 
     def joint_of(self, anchor: Anchor) -> int:
         """The joint that carries an anchor; 0 if nothing moves it."""
@@ -227,22 +207,22 @@ class PinocchioTree:
         Raises:
             ValueError: The joint has none, or several.
         """
-        idx_q, nq, idx_v, nv = self._first.get(joint, (0, 0, 0, 0))
-        if (nq, nv) != (1, 1):
+        slot = self._slots.get(joint)
+        if slot is None or (slot.nq, slot.nv) != (1, 1):
             raise ValueError(f"joint '{joint}' does not have one coordinate of its own")
-        owner = next(index for index, own in enumerate(self.own_velocities) if idx_v in own)
-        return Coordinate(owner, idx_q, idx_v, bool(self.translates(owner)[0]))
+        owner = next(index for index, own in enumerate(self.own_velocities) if slot.idx_v in own)
+        return Coordinate(owner, slot.idx_q, slot.idx_v, bool(self.translates(owner)[0]))
 
     def neutral(self) -> Vector:
         """The neutral configuration (nq,)."""
         return np.array(pin.neutral(self.model))
 
     def integrate(self, q: Vector, v: Vector) -> Vector:
-        """The configuration (nq,) that v (nv,) leads to from q in unit time."""
+        """The configuration (nq,) that v (nv,) leads to from q in unit time, q ⊕ v."""
         return np.asarray(pin.integrate(self.model, q, v))
 
     def integrate_derivative(self, q: Vector, v: Vector) -> Matrix:
-        """Derivative (nv, nv) of `integrate` by v."""
+        """Derivative (nv, nv) of q ⊕ v by v."""
         return np.asarray(pin.dIntegrate(self.model, q, v, pin.ARG1))
 
     def difference(self, q: Vector, other: Vector) -> Vector:
@@ -261,57 +241,15 @@ class PinocchioTree:
         """Whether they are of unit length, to the tolerance."""
         return bool(pin.isNormalized(self.model, q, tolerance))
 
-    def inverse_dynamics(self, q: Vector, v: Vector, a: Vector, data: pin.Data | TreeRecursion) -> Vector:
-        """The generalized force (nv,) M a + h that the acceleration a (nv,) takes; with a = 0 the bias h."""
-        if isinstance(data, TreeRecursion):
-            return data.inverse_dynamics(q, v, a)
-        return np.array(pin.rnea(self.model, data, q, v, a))
-
-    def mass_times(self, q: Vector, motions: Matrix, data: pin.Data | TreeRecursion) -> Matrix:
-        """The mass matrix at q (nq,), the armature included, times the columns (nv, n) of accelerations.
-
-        Up to Pinocchio 4.1, `pin.crba` has wrong entries if a mimic joint carries several branches.
-        """
-        if isinstance(data, TreeRecursion):
-            return data.mass_matrix(q) @ motions
-        if not len(self.model.mimicking_joints):
-            M = pin.crba(self.model, data, q)  # its upper triangle is valid
-            return np.asarray(np.where(self._upper, M, M.T) @ motions)
-        still = np.zeros(self.nv)
-        gravity = self.inverse_dynamics(q, still, still, data)
-        columns = [self.inverse_dynamics(q, still, a, data) - gravity for a in motions.T]
-        return np.array(columns).reshape(motions.T.shape).T
-
-    def inverse_mass_diagonal(self, q: Vector, data: pin.Data) -> Vector:
-        """The diagonal (nv,) of the inverse of the mass matrix at q (nq,), of a tree without mimic joints."""
-        return np.array(pin.computeMinverse(self.model, data, q).diagonal())
-
-    def kinetic_energy(self, q: Vector, v: Vector, data: pin.Data | TreeRecursion) -> float:
-        """The kinetic energy at q (nq,) and v (nv,), J, that of the armature included.
-
-        `pin.computeKineticEnergy` leaves out the armature of some joints, up to Pinocchio 4.1.
-        """
-        still = np.zeros(self.nv)
-        momentum = self.inverse_dynamics(q, still, v, data) - self.inverse_dynamics(q, still, still, data)
-        return 0.5 * float(v @ momentum)
-
-    def potential_energy(self, q: Vector, data: pin.Data | TreeRecursion) -> float:
-        """The potential energy of gravity and springs at q (nq,), J."""
-        if isinstance(data, TreeRecursion):
-            return data.potential_energy(q) + self.springs.energy(q)
-        if len(self.model.mimicking_joints):  # not supported by Pinocchio 4.1
-            return TreeRecursion(self.model).potential_energy(q) + self.springs.energy(q)
-        return float(pin.computePotentialEnergy(self.model, data, q)) + self.springs.energy(q)
-
-    def memory(self, given: pin.Data | None = None) -> pin.Data | TreeRecursion:
-        """The given `pin.Data`; or a new one, or memory of a large tree.
+    def dynamics(self, data: pin.Data | None = None) -> TreeDynamics:
+        """Its dynamics in the given `pin.Data`; by default in a new one, or joint by joint if the tree is large.
 
         Raises:
             ValueError: It is no `pin.Data`, or one of another model.
         """
-        if given is None and self.nv > MOST_VELOCITIES_WITH_DATA:
-            return TreeRecursion(self.model)
-        return checked_data(self.model, given)
+        if data is None and self.nv > MOST_VELOCITIES_WITH_DATA:
+            return TreeRecursion(self.model, self.springs)
+        return TreeDynamics(self.model, self.springs, checked_data(self.model, data))
 
     def frame_sites(self, names: Sequence[str]) -> list[Site]:
         """Where frames are. A frame is named by a link, a joint (its frame on the child side), or in the description.
@@ -344,26 +282,14 @@ class PinocchioTree:
         return J
 
 
-def build_tree(
-    mechanism: Mechanism,
-    model: pin.Model,
-    at: Mapping[str, Slot] | None = None,
-) -> PinocchioTree:
-    """The tree of a mechanism.
-
-    Args:
-        mechanism: The mechanism.
-        model: The result of `build_model`.
-        at: The `slots` of the mechanism, if the caller has them.
-    """
+def build_tree(mechanism: Mechanism, model: pin.Model, at: Mapping[str, Slot]) -> Tree:
+    """The tree of a mechanism, whose `build_model` and `slots` are given."""
     frames = model.frames
     sites = {
         name: Site(frames[index].parentJoint, pin.SE3(frames[index].placement))
         for name, index in body_frame_ids(mechanism).items()
     }
-    at = slots(mechanism) if at is None else at
-    first = {name: (slot.idx_q, slot.nq, slot.idx_v, slot.nv) for name, slot in at.items()}
-    return PinocchioTree(model, sites, first, build_springs(mechanism, at))
+    return Tree(model, sites, at, build_springs(mechanism, at))
 
 
 def _ranges(first: Sequence[int], count: Sequence[int]) -> list[range]:

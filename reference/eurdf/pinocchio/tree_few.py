@@ -46,6 +46,7 @@ class FewPoses(RelativePoses):
     def __init__(self, pairs: FewPairs, q: Matrix, which: slice) -> None:
         self.q = q
         self._pairs, self._which = pairs, which
+        self._shape = len(q), which.stop - which.start
 
     def of(self, which: slice) -> FewPoses:
         """Those of some of the pairs."""
@@ -55,33 +56,35 @@ class FewPoses(RelativePoses):
     def rotation(self) -> Matrix:  # type: ignore[override]
         """ᴬR_B (B, k, 3, 3)."""
         if self._rotation is None:
-            found = np.array([aMb.rotation for aMb in self._each()])
-            self._rotation = found.reshape(*self._shape, 3, 3)
+            self._rotation = np.array([aMb.rotation for aMb in self._each()]).reshape(*self._shape, 3, 3)
         return self._rotation
 
     @property
     def position(self) -> Matrix:  # type: ignore[override]
         """Origin p of B in A (B, k, 3), m."""
         if self._position is None:
-            found = np.array([aMb.translation for aMb in self._each()])
-            self._position = found.reshape(*self._shape, 3)
+            self._position = np.array([aMb.translation for aMb in self._each()]).reshape(*self._shape, 3)
         return self._position
 
     def logarithm(self) -> Matrix:
         """log6(ᴬM_B) (B, k, 6)."""
         if self._logarithm is None:
-            found = np.array([pin.log6(aMb).vector for aMb in self._each()])
-            self._logarithm = found.reshape(*self._shape, 6)
+            self._logarithm = np.array([pin.log6(aMb).vector for aMb in self._each()]).reshape(*self._shape, 6)
         return self._logarithm
 
     def logarithm_by_twist(self) -> Matrix:
         """Jlog6(ᴮM_A) (B, k, 6, 6)."""
-        found = np.array([pin.Jlog6(aMb.inverse()) for aMb in self._each()])
-        return found.reshape(*self._shape, 6, 6)
+        return np.array([pin.Jlog6(aMb.inverse()) for aMb in self._each()]).reshape(*self._shape, 6, 6)
 
-    @property
-    def _shape(self) -> tuple[int, int]:
-        return len(self.q), self._which.stop - self._which.start
+    def turn_from(self, rotation: Matrix) -> Matrix:
+        """See `RelativePoses.turn_from`."""
+        turns = rotation.swapaxes(2, 3) @ self.rotation
+        return np.array([pin.log3(R) for R in turns.reshape(-1, 3, 3)]).reshape(*self._shape, 3)
+
+    def turn_by_omega(self, turn: Matrix) -> Matrix:
+        """See `RelativePoses.turn_by_omega`."""
+        found = np.array([pin.Jlog3(pin.exp3(each)) for each in turn.reshape(-1, 3)])
+        return found.reshape(*self._shape, 3, 3) @ self.rotation.swapaxes(2, 3)
 
     def _each(self) -> Sequence[Any]:
         pairs, q = self._pairs, self.q

@@ -33,10 +33,6 @@ class _Level(NamedTuple):
 def indentation_hint(text: Lines, line: int) -> str | None:
     """How to indent a line that does not continue what is before it.
 
-    Args:
-        text: The file.
-        line: Number of the line, from 1.
-
     Returns:
         The hint; None if the line does not begin with a key or ``-``, its indentation is not wrong, or more than
         `LOOKED_AT` lines would have to be looked at.

@@ -57,11 +57,7 @@ class FileFinder:
         self._packages: dict[str, list[Path]] = {}
 
     def find(self, uri: str) -> str | None:
-        """The path of a file, or None where there is no such file; `folders` says whether it may be read.
-
-        Args:
-            uri: As the URDF writes it.
-        """
+        """The path of a file, or None where there is no such file; `folders` says whether it may be read."""
         scheme, separator, rest = uri.partition("://")
         if not separator:
             return _file(self._folder, uri)
@@ -104,10 +100,6 @@ def package_homes(folder: Path, package_dirs: Sequence[str | os.PathLike[str]] =
 
     First those given, then those of ``ROS_PACKAGE_PATH``, then ``share`` below each of ``AMENT_PREFIX_PATH``, then the
     folder of the xacro and the folders that hold it.
-
-    Args:
-        folder: Folder of the xacro.
-        package_dirs: Folders that hold packages.
     """
     absolute = folder.absolute()
     return [*_given_homes(package_dirs), *_installed_homes(), absolute, *absolute.parents]

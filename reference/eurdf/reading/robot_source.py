@@ -59,10 +59,6 @@ def source_of(given: RobotSource, limit: int = FILE_LIMIT) -> Source | None:
 
     Relative paths in it start from the working directory.
 
-    Args:
-        given: What the caller gave.
-        limit: Largest size accepted, in bytes.
-
     Raises:
         FileError: ``file-unreadable``, ``file-too-large`` or ``file-not-utf8``.
     """

@@ -61,9 +61,6 @@ class Source:
         r"""Line and column, both from 1, of a character (EU-DIA-011, EU-DIA-012).
 
         A line ends at ``\n``, ``\r\n`` or ``\r``, as in YAML 1.2, XML and most editors; other Unicode breaks are text.
-
-        Args:
-            index: Index in ``text``; its length means the end of the file.
         """
         return self.lines.position(index)
 

@@ -63,11 +63,7 @@ class _Watch:
     """
 
     def __init__(self, folders: Sequence[str] | None) -> None:
-        """Watch from now on.
-
-        Args:
-            folders: Where files must be; None if it is not confined.
-        """
+        """Watch from now on."""
         for name in _LATE:
             import_module(name)
         self._folders = None if folders is None else Folders(folders)

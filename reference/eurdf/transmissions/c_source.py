@@ -9,9 +9,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
+from string import Template
 from typing import TYPE_CHECKING
 
-from eurdf.closures.kind import MODULES
+from eurdf.closures import MODULES
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import SPREADS
 from eurdf.kinematics.derived import derived
@@ -75,7 +76,10 @@ def c_source(
     robot: Robot, by_joints: Drive, by_motors: Drive | None, q: Vector, prefix: str | None, steps: int, substeps: int
 ) -> CSource:
     """The source; see `eurdf.transmissions.prepared.PreparedTransmission.c_source`."""
-    name = _identifier(f"{robot.mechanism.name}_transmission") if prefix is None else prefix
+    name = prefix
+    if name is None:
+        made = re.sub(r"[^A-Za-z0-9_]", "_", f"{robot.mechanism.name}_transmission")
+        name = made.lstrip("_0123456789").lower() or "transmission"
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name):
         raise ValueError(f"prefix is {name!r}; it must be an identifier of C: letters, digits and _")
     for argument, count in (("steps", steps), ("substeps", substeps)):
@@ -88,38 +92,11 @@ def c_source(
     return CSource({f"{name}.h": header.encode(), f"{name}.c": source.encode()})
 
 
-@dataclass(frozen=True, slots=True)
-class _Screw:
-    """A joint with one coordinate, or a ball joint, which has four.
-
-    Attributes:
-        parent: Number of its parent; 0 is what carries the loops.
-        placement: Pose of its frame at rest in its parent's moving frame.
-        axis: Unit vector that it turns about; None for a ball.
-        turns: Whether it turns by its coordinate.
-        advance: Translation for each unit of its coordinate, m.
-        coordinate: Index of its first coordinate.
-        velocity: Index of its first velocity.
-        multiplier: Of the leader's coordinate; 1 for a joint with its own.
-        offset: Added to it.
-    """
-
-    parent: int
-    placement: Pose
-    axis: Vector3 | None
-    turns: bool
-    advance: Vector3
-    coordinate: int
-    velocity: int
-    multiplier: float = 1.0
-    offset: float = 0.0
-
-
 class _Tables:
     """The joints and constraints of some drives as numbers.
 
     Attributes:
-        joints: Joint number 0, which is at rest, and the others, parents first.
+        joints: Entry of each joint but number 0, which is at rest, parents first.
         start: Coordinates at the pose.
         units: Unit of each velocity.
         coordinates: For each velocity its coordinate; -1 for the first of a ball, -2 for the others.
@@ -136,7 +113,7 @@ class _Tables:
         self._above = {joint.child: joint for joint in mechanism.joints}
         relevant = {body for constraint in chosen for body in self._between(constraint)}
         alone = {name for constraint in chosen for name in constraint.joints}
-        alone |= {name for drive in drives for name in (*drive.given.of.joints, *drive.asked.of.joints)}
+        alone |= {name for drive in drives for name in (*drive.given.joints, *drive.asked.joints)}
         mimics = following(mechanism).mimics
         self.velocity: dict[int, int] = {}
         self.start: list[float] = []
@@ -160,7 +137,7 @@ class _Tables:
                 self.coordinates.append((-1 if k == quaternion else -2) if of_ball else len(self.start) + k)
                 self.balls.append(len(self.start) + (quaternion or 0) if of_ball else -1)
             self.start += values[name]
-        self.joints: list[_Screw] = []
+        self.joints: list[str] = []
         self.places: dict[str, tuple[int, Pose]] = {}
         self.of_body: dict[str, range] = {}
         self.of_joint: dict[str, int] = {}
@@ -199,11 +176,8 @@ class _Tables:
 
     def anchors(self, constraint: Constraint) -> list[tuple[int, Pose]]:
         """The joints that carry the anchors of a constraint, and their poses there."""
-        found = []
-        for anchor in constraint.anchors:
-            joint, pose = self.places.get(anchor.body, (0, IDENTITY))
-            found.append((joint, pose * anchor.pose))
-        return found
+        places = [self.places.get(anchor.body, (0, IDENTITY)) for anchor in constraint.anchors]
+        return [(joint, pose * at.pose) for (joint, pose), at in zip(places, constraint.anchors, strict=True)]
 
     def path(self, constraint: Constraint) -> list[tuple[int, float]]:
         """The joints that move a constraint, with +1 for those that move B and -1 for A, or with coefficients."""
@@ -219,87 +193,53 @@ class _Tables:
 
 def _screws(
     joint: Joint, parent: int, pose: Pose, coordinate: int, velocity: int, mimic: Mimic | None, number: int
-) -> list[_Screw]:
-    """A joint as joints of one coordinate and balls in a row; ``number`` is that of the first of them."""
+) -> list[str]:
+    """The entries of a joint as joints of one coordinate and balls in a row; ``number`` is that of the first."""
     factor, offset = (1.0, 0.0) if mimic is None else (mimic.multiplier, mimic.offset)
-    return [
-        _Screw(
-            parent if k == 0 else number + k - 1,
-            pose if k == 0 else IDENTITY,
-            axis,
-            turns,
-            (advance * axis[0], advance * axis[1], advance * axis[2]) if axis and advance else _HERE,
-            coordinate + k,
-            velocity + k,
-            factor,
-            offset,
-        )
-        for k, (axis, turns, advance) in enumerate(joint.motions)
-    ]
+    found = []
+    for k, (axis, turns, advance) in enumerate(joint.motions):
+        numbers = parent, int(axis is None), int(turns), coordinate + k, velocity + k
+        along = [advance * each for each in axis] if axis and advance else _HERE
+        frame = f"{_rotation(pose)}, {_vector(pose.xyz)}, {_vector(axis or _Z)}, {_vector(along)}"
+        found.append(f"{{{', '.join(map(str, numbers))}, {_number(factor)}, {_number(offset)}, {frame}}}")
+        parent, pose = number + k, IDENTITY
+    return found
 
 
 def _header(tables: _Tables, name: str, by_joints: Drive, both: bool, steps: int, substeps: int) -> str:
     joints, motors = by_joints.given, by_joints.asked
-    guard = f"{name.upper()}_H"
+    nj, nm = len(joints), len(motors)
     listed = "".join(
         f" *   {role}[{index}]: {_comment(label)}, {unit}\n"
         for role, side in (("joints", joints), ("motors", motors))
-        for index, (label, unit) in enumerate(zip(side.of.names, side.units, strict=True))
+        for index, (label, unit) in enumerate(zip(side.names, side.units, strict=True))
     )
-    nj, nm, big = len(joints), len(motors), name.upper()
-    start_inverse = f"int {name}_start_at_motors({name}_pose *pose, const double motors[{nm}]);\n"
-    inverse = f"""
+    start_at_motors = f"int {name}_start_at_motors({name}_pose *pose, const double motors[{nm}]);\n"
+    at_motors = f"""
 /* The joints at positions of the motors, and B (row by row): the velocities are v_J = B v_m. */
 int {name}_at_motors({name}_pose *pose, const double motors[{nm}], double joints[{nj}], double B[{nj * nm}]);
 """
-    return f"""/* The transmission of '{_comment(tables.robot.mechanism.name)}', generated by eurdf:
- * C99, which needs libm alone.
- *
-{listed} *
- * Call a function `start` once to set a pose, then a function `at_joints` or `at_motors` at each cycle: it starts from
- * the last pose and stays on its branch of closed loops. Unless a function returns
- * {big}_OK, it changes neither the pose nor its results. Threads may use
- * poses of their own. Position limits are not checked.
- *
- * Nothing is allocated, and the work is bounded. The positions move on a straight path: a short one in one substep,
- * which solves linear equations {1 + steps} times, others in at most {substeps} substeps. A start at positions takes
- * at most {MOST_SUBSTEPS} substeps; if they do not lead there, at most {1 + RESTARTS} descents of {MOST_STEPS} steps
- * look for any closed pose at the positions. So call it before the control loop, not in it.
- */
-#ifndef {guard}
-#define {guard}
+    return Template(_file("interface.h")).substitute(
+        robot=_comment(tables.robot.mechanism.name),
+        listed=listed,
+        name=name,
+        NAME=name.upper(),
+        nj=nj,
+        nm=nm,
+        size=nm * nj,
+        coordinates=len(tables.start),
+        solutions=1 + steps,
+        substeps=substeps,
+        most_substeps=MOST_SUBSTEPS,
+        descents=1 + RESTARTS,
+        descent_steps=MOST_STEPS,
+        start_at_motors=start_at_motors if both else "",
+        at_motors=at_motors if both else "",
+    )
 
-#ifdef __cplusplus
-extern "C" {{
-#endif
 
-enum {{
-    {big}_OK = 0,
-    {big}_NOT_CLOSED = 1,  /* only of a start: no closed pose was found at these positions */
-    {big}_TOO_FAR = 2,     /* a straight path does not lead there: give positions in between */
-    {big}_SINGULAR = 3,    /* the given positions do not determine the others */
-    {big}_NOT_FINITE = 4   /* a position is not a finite number */
-}};
-
-typedef struct {{
-    double x[{len(tables.start)}];
-}} {name}_pose;
-
-/* The pose that the files were generated at. */
-void {name}_start({name}_pose *pose);
-
-/* A pose at given positions, such as measured ones, on the branch of that pose: it is reached on a straight path. */
-int {name}_start_at_joints({name}_pose *pose, const double joints[{nj}]);
-{start_inverse if both else ""}
-/* The motors at positions of the joints, and G (row by row): v_m = G v_J, and the torques are tau_J = G' tau_m. */
-int {name}_at_joints({name}_pose *pose, const double joints[{nj}], double motors[{nm}], double G[{nm * nj}]);
-{inverse if both else ""}
-#ifdef __cplusplus
-}}
-#endif
-
-#endif
-"""
+def _file(name: str) -> str:
+    return (files("eurdf.transmissions") / name).read_text(encoding="utf-8")
 
 
 def _source(tables: _Tables, name: str, drives: Sequence[Drive], steps: int, substeps: int) -> str:
@@ -317,17 +257,11 @@ def _source(tables: _Tables, name: str, drives: Sequence[Drive], steps: int, sub
         first = len(path)
         path += [f"{{{joint}, {_number(factor)}}}" for joint, factor in tables.path(constraint)]
         constraints.append(_constraint(constraint, tables, first, len(path), scale[of_rows]))
-    joints = [
-        f"{{{j.parent}, {int(j.axis is None)}, {int(j.turns)}, {j.coordinate}, {j.velocity}, {_number(j.multiplier)}, "
-        f"{_number(j.offset)}, {_rotation(j.placement)}, {_vector(j.placement.xyz)}, {_vector(j.axis or _Z)}, "
-        f"{_vector(j.advance)}}}"
-        for j in tables.joints
-    ]
     place = {index: number for number, index in enumerate(tables.constraints)}
     calls = [_calls(name, drive, number) for number, drive in enumerate(drives)]
     most_rows = max(_rows_of(rows, drive) for drive in drives)
     limits = {
-        "JOINTS": len(joints) + 1,
+        "JOINTS": len(tables.joints) + 1,
         "COORDINATES": len(tables.start),
         "VELOCITIES": len(tables.units),
         "ROWS": max(1, most_rows),
@@ -361,50 +295,22 @@ def _source(tables: _Tables, name: str, drives: Sequence[Drive], steps: int, sub
         "#define BALL (-1)",
         f"#define CLOSED_POSE {big}_OK\n#define NOT_CLOSED {big}_NOT_CLOSED\n#define TOO_FAR {big}_TOO_FAR\n"
         f"#define AT_SINGULARITY {big}_SINGULAR\n#define NOT_FINITE {big}_NOT_FINITE",
-        _TYPES,
-        "static const double start[] = {" + ", ".join(map(_number, tables.start)) + "};",
-        "static const double units[] = {" + ", ".join(map(_number, tables.units)) + "};",
-        "static const double spreads[] = {" + ", ".join(map(_number, SPREADS)) + "};",
-        "static const int coordinates[] = {" + ", ".join(map(str, tables.coordinates)) + "};",
-        "static const int ball_coordinates[] = {" + ", ".join(map(str, tables.balls)) + "};",
-        _table("joint", "joints", ["{0, 0, 0, 0, 0, 0, 0, {0}, {0}, {0}, {0}}", *joints]),
+        _file("tables.h").rstrip(),
+        _array("double", "start", map(_number, tables.start)),
+        _array("double", "units", map(_number, tables.units)),
+        _array("double", "spreads", map(_number, SPREADS)),
+        _array("int", "coordinates", map(str, tables.coordinates)),
+        _array("int", "ball_coordinates", map(str, tables.balls)),
+        _table("joint", "joints", ["{0, 0, 0, 0, 0, 0, 0, {0}, {0}, {0}, {0}}", *tables.joints]),
         _table("step", "path", path or ["{0, 0}"]),
         _table("constraint", "constraints", constraints or ["{0}"]),
         *(_drive(number, drive, tables, place, rows) for number, drive in enumerate(drives)),
-        (files("eurdf.transmissions") / "kernel.c").read_text(encoding="utf-8").rstrip(),
+        _file("kernel.c").rstrip(),
         f"void {name}_start({name}_pose *pose) {{\n"
         "    for (int k = 0; k < COORDINATES; ++k) pose->x[k] = start[k];\n}",
         *calls,
     ]
     return "\n\n".join(parts) + "\n"
-
-
-_TYPES = """\
-enum { POINT, FRAME, HINGE, DISTANCE, COUPLING };
-
-/* A joint with one coordinate, or a ball with a quaternion x, y, z, w; R and p are those of its frame at rest. */
-typedef struct {
-    int parent, ball, turns, coordinate, velocity;
-    double multiplier, offset, R[9], p[3], axis[3], advance[3];
-} joint;
-
-/* A joint that moves a constraint: +1 if it moves B, -1 if it moves A; the coefficient of a coupling. */
-typedef struct {
-    int joint;
-    double factor;
-} step;
-
-/* Frames A and B in the joints that carry them, and the part of the path from first to last. */
-typedef struct {
-    int kind, rows, first, last, joint_a, joint_b;
-    double R_a[9], p_a[3], R_b[9], p_b[3], length, axis_a[3], axis_b[3], across[2][3], scale[6];
-} constraint;
-
-typedef struct {
-    int given, asked, own, rows, rank, constraints;
-    const int *given_velocity, *given_circular, *asked_velocity, *asked_circular, *asked_own,
-        *own_velocity, *constraint;
-} drive;"""
 
 
 def _constraint(constraint: Constraint, tables: _Tables, first: int, last: int, scale: Vector) -> str:
@@ -433,10 +339,10 @@ def _cross(u: Vector3, v: Vector3) -> Vector3:
 
 def _drive(number: int, drive: Drive, tables: _Tables, place: Mapping[int, int], rows: Mapping[int, slice]) -> str:
     own = [tables.velocity[v] for v in drive.own.tolist()]
-    asked = [tables.velocity[v] for v in drive.asked.of.velocities.tolist()]
+    asked = [tables.velocity[v] for v in drive.asked.velocities.tolist()]
     position = {velocity: index for index, velocity in enumerate(own)}
     lists = {
-        "given_velocity": [tables.velocity[v] for v in drive.given.of.velocities.tolist()],
+        "given_velocity": [tables.velocity[v] for v in drive.given.velocities.tolist()],
         "given_circular": [int(circular) for circular in drive.given.circular],
         "asked_velocity": asked,
         "asked_circular": [int(circular) for circular in drive.asked.circular],
@@ -444,9 +350,7 @@ def _drive(number: int, drive: Drive, tables: _Tables, place: Mapping[int, int],
         "own_velocity": own or [0],
         "constraint": [place[index] for index in drive.closures] or [0],
     }
-    arrays = "\n".join(
-        f"static const int {key}_{number}[] = {{{', '.join(map(str, values))}}};" for key, values in lists.items()
-    )
+    arrays = "\n".join(_array("int", f"{key}_{number}", map(str, values)) for key, values in lists.items())
     counts = (len(drive.given), len(drive.asked), len(own), _rows_of(rows, drive), drive.rank, len(drive.closures))
     names = ", ".join(f"{key}_{number}" for key in lists)
     return f"{arrays}\nstatic const drive drive_{number} = {{{', '.join(map(str, counts))}, {names}}};"
@@ -469,14 +373,13 @@ def _rows_of(rows: Mapping[int, slice], drive: Drive) -> int:
     return sum(rows[index].stop - rows[index].start for index in drive.closures)
 
 
+def _array(type_: str, name: str, values: Iterable[str]) -> str:
+    return f"static const {type_} {name}[] = {{{', '.join(values)}}};"
+
+
 def _table(type_: str, name: str, entries: Sequence[str]) -> str:
     lines = ",\n".join(f"    {entry}" for entry in entries)
     return f"static const {type_} {name}[] = {{\n{lines},\n}};"
-
-
-def _identifier(name: str) -> str:
-    made = re.sub(r"[^A-Za-z0-9_]", "_", name).lstrip("_0123456789").lower()
-    return made or "transmission"
 
 
 def _comment(text: str) -> str:

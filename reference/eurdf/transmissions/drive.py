@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
+from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import assemble, closed_start, start
 from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.evaluate import evaluator
@@ -27,8 +27,8 @@ from eurdf.kinematics.tolerances import (
     MOVES,
 )
 from eurdf.pinocchio.arguments import checked_array
-from eurdf.transmissions.exceptions import NoTransmission
-from eurdf.transmissions.joint_coordinates import JointCoordinates
+from eurdf.transmissions.exceptions import NoTransmission, shown
+from eurdf.transmissions.selection import Selection, listed
 from eurdf.transmissions.transmission import Transmission, at_one
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ class Drive:
         rank: Rank of K_x, the columns of these joints, at the first pose.
     """
 
-    def __init__(self, at: Transmission, given: JointCoordinates, asked: JointCoordinates) -> None:
+    def __init__(self, at: Transmission, given: Selection, asked: Selection) -> None:
         """Prepare the loops between given joints and those asked for.
 
         Args:
@@ -68,7 +68,7 @@ class Drive:
         Raises:
             NoTransmission: The given joints do not determine the others at that pose, or depend on each other.
         """
-        self.given, self.asked, self._by_joints = given, asked, given.of.names == at.joints
+        self.given, self.asked, self._by_joints = given, asked, given.names == at.joints
         robot = self._robot = at.robot
         self._tree = robot.tree
         self._held = tuple(dict.fromkeys(at.held))
@@ -76,7 +76,7 @@ class Drive:
         self.closures: tuple[int, ...] = ()
         self.own: Indices = np.zeros(0, np.intp)
         self._evaluator: Any = None
-        driven = given.of.velocities.tolist()
+        driven = given.velocities.tolist()
         groups = [
             group
             for group in independent_groups(robot, {*driven, *at.held_index.tolist()})
@@ -85,18 +85,18 @@ class Drive:
         if groups:
             group = merged(groups)
             self.closures, self.own = group.closures, group.velocities
-            columns = np.concatenate((group.velocities, given.of.velocities))
+            columns = np.concatenate((group.velocities, given.velocities))
             self._evaluator = evaluator(robot, group.closures, columns, few=True)
             self._rows = spaces.row_scale[group.rows]
             self._factors = self._rows[:, None] * spaces.scale[columns]
-        self._unit, self._given_unit = spaces.scale[self.own], spaces.scale[given.of.velocities]
-        every = np.concatenate((self.own, given.of.velocities)).tolist()
+        self._unit, self._given_unit = spaces.scale[self.own], spaces.scale[given.velocities]
+        every = np.concatenate((self.own, given.velocities)).tolist()
         place = {velocity: index for index, velocity in enumerate(every)}
-        if not set(asked.of.velocities.tolist()) <= set(place):
+        if not set(asked.velocities.tolist()) <= set(place):
             raise self._refusal(at.q)
         #: Of each velocity asked for its place among those that follow and those given.
-        self._asked = np.array([place[velocity] for velocity in asked.of.velocities.tolist()], np.intp)
-        self._asked_unit = spaces.scale[asked.of.velocities]
+        self._asked = np.array([place[velocity] for velocity in asked.velocities.tolist()], np.intp)
+        self._asked_unit = spaces.scale[asked.velocities]
         self.rank = 0
         self.rank = self._decomposed(at.q)[1]
 
@@ -214,13 +214,12 @@ class Drive:
         """Why the given joints do not get from q (nq,) to the positions."""
         there = np.array(q)
         self.given.write(positions, there)
-        anywhere = assemble(self._robot, there, (*self.given.of.joints, *self._held))
-        values = zip(self.given.of.names, positions.tolist(), strict=True)
-        shown = ", ".join(f"{name} {value + 0.0:.6g}" for name, value in values)
+        anywhere = assemble(self._robot, there, (*self.given.joints, *self._held))
+        at = shown(zip(self.given.names, positions.tolist(), strict=True))
         if not anywhere.closes:
-            return NotClosable(f"the loops cannot be closed at {shown}", anywhere.open, anywhere.q)
+            return NotClosable(f"the loops cannot be closed at {at}", anywhere.open, anywhere.q)
         reason = (
-            f"the loops can be closed at {shown}, but a straight path does not lead there on this branch; "
+            f"the loops can be closed at {at}, but a straight path does not lead there on this branch; "
             "give positions in between"
         )
         return TooFar(reason, all_openings(self._robot, there), there)
@@ -244,13 +243,13 @@ class Drive:
 
     def _refusal(self, q: Vector) -> NoTransmission:
         """Why the given joints do not determine the others at a pose."""
-        given, asked = self.given.of, self.asked.of
+        given, asked = self.given, self.asked
         if self._by_joints:
             reason = at_one(self._robot, given, q, asked).reason
         else:
             reason = at_one(self._robot, asked, q, given).inverse_reason
-        named = ", ".join(f"'{name}'" for name in given.joints)
-        return NoTransmission("G" if self._by_joints else "B_J", reason or f"{named} cannot move independently")
+        reason = reason or f"{listed(given.joints)} cannot move independently"
+        return NoTransmission("G" if self._by_joints else "B_J", reason)
 
 
 def closed_pose(robot: Robot, q: Vector | None) -> Vector:

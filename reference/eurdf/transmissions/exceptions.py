@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
 from eurdf.exceptions import EurdfError
 from eurdf.kinematics.exceptions import NotClosable
 
 if TYPE_CHECKING:
-    from eurdf.kinematics.array import Vector
+    from eurdf.array import Vector
     from eurdf.kinematics.opening import Opening
+
+
+def shown(values: Iterable[tuple[str, float]]) -> str:
+    """Names of joints with their values, for a message."""
+    return ", ".join(f"{name} {value + 0.0:.6g}" for name, value in values)
 
 
 class NoTransmission(EurdfError, ValueError):  # noqa: N818 - part of the public interface
@@ -40,8 +45,8 @@ class DependentVelocities(EurdfError, ValueError):  # noqa: N818 - part of the p
         self.names = names
         self.given = given
         self.nearest = nearest
-        numbers = ", ".join(f"{name} {value + 0.0:.6g}" for name, value in zip(names, nearest.tolist(), strict=True))
-        super().__init__(f"the loops do not allow these velocities together; the nearest that they allow: {numbers}")
+        allowed = shown(zip(names, nearest.tolist(), strict=True))
+        super().__init__(f"the loops do not allow these velocities together; the nearest that they allow: {allowed}")
 
 
 class OutOfReach(NotClosable):
@@ -66,11 +71,9 @@ class OutOfReach(NotClosable):
         self.wanted = dict(wanted)
         self.reached = dict(reached)
         self.part = part
-        asked, farthest = (
-            ", ".join(f"{name} {value + 0.0:.6g}" for name, value in each.items()) for each in (wanted, reached)
-        )
         reason = (
-            f"{asked}: not reachable along a straight path from the start; the last reachable point is {farthest} "
-            f"({100.0 * part:.1f} %); give values nearer to the start, or values in between one after the other"
+            f"{shown(wanted.items())}: not reachable along a straight path from the start; the last reachable point is "
+            f"{shown(reached.items())} ({100.0 * part:.1f} %); give values nearer to the start, or values in between "
+            "one after the other"
         )
         super().__init__(reason, openings, q)

@@ -10,13 +10,11 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from eurdf.kinematics.array import Matrix, Vector
+from eurdf.array import Matrix, Vector
 from eurdf.kinematics.assembly import start
 from eurdf.pinocchio.arguments import checked_array
-from eurdf.transmissions.exceptions import NoTransmission
-from eurdf.transmissions.motors import motors_of
-from eurdf.transmissions.selection import selection
-from eurdf.transmissions.transmission import at_one
+from eurdf.transmissions.motors import sides
+from eurdf.transmissions.transmission import at_one, require
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -98,16 +96,12 @@ def impedance_map(
     """
     if side not in ("joints", "motors"):
         raise ValueError(f"side is {side!r}; use 'joints' or 'motors'")
-    chosen = selection(robot, joints)
-    by = motors_of(robot, chosen) if motors is None else selection(robot, motors, "motors")
+    chosen, by = sides(robot, joints, motors)
     at = at_one(robot, chosen, start(robot, q, "q"), by)
     n = len(at.joints if side == "joints" else at.motors)
     K, C = _symmetric("stiffness", stiffness, n), _symmetric("damping", np.zeros(n) if damping is None else damping, n)
     torque = np.zeros(n) if tau is None else checked_array("tau", tau, (n,))
-    if at.G is None or at.B_J is None:
-        which, reason = ("G", at.reason) if at.G is None else ("B_J", at.inverse_reason)
-        raise NoTransmission(which, reason or "")
-    G, B = at.G, at.B_J
+    G, B = require(at, "G", "B_J")
     tau_m = at.motor_torque(torque) if side == "joints" else torque
     geometric = -np.tensordot(tau_m, at.hessian, axes=1)
     if side == "joints":

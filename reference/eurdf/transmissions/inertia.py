@@ -4,25 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eurdf.kinematics.array import Matrix, Vector
-from eurdf.kinematics.assembly import start
-from eurdf.kinematics.blocks import checked_configurations, shape_of
-from eurdf.kinematics.derived import borrowed, derived
-from eurdf.kinematics.equation_of_motion import MASSLESS
+from eurdf.array import Matrix, Vector
+from eurdf.kinematics.derived import derived
+from eurdf.kinematics.dynamics import mass_matrix
 from eurdf.kinematics.finite import finite, overflow_refused
-from eurdf.kinematics.tolerances import FLOOR
+from eurdf.kinematics.tolerances import FLOOR, MASSLESS
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.pinocchio.robot import build_robot
 from eurdf.transmissions.exceptions import NoTransmission
-from eurdf.transmissions.linkage_bodies import linkage_bodies
-from eurdf.transmissions.motors import motors_of
-from eurdf.transmissions.selection import Selection, selection
-from eurdf.transmissions.transmission import Transmission, at_one
+from eurdf.transmissions.motors import linkage_bodies, sides
+from eurdf.transmissions.selection import Selection, listed
+from eurdf.transmissions.transmission import Transmission, at_one, configurations, require
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -100,41 +97,28 @@ def reflected_inertia(
         NotClosable: The loops are open at q.
         ValueError: An argument is wrong, as in `transmission`, or an inertia is negative.
     """
-    chosen = selection(robot, joints)
-    by = motors_of(robot, chosen) if motors is None else selection(robot, motors, "motors")
+    chosen, by = sides(robot, joints, motors)
     rotors = _rotors(robot, by, armature)
-    bodies, linkage = _linkage(robot, chosen, by)
-    several = shape_of(q)[1:] == (robot.tree.nq,)
-    configurations = checked_configurations(robot, "q", q) if several else start(robot, q, "q")[None]
-    rows = [_terms(robot, linkage, at_one(robot, chosen, each, by), rotors) for each in configurations]
+    bodies, linkage = derived(robot, _linkage, chosen.joints, by.joints)
+    each, single = configurations(robot, q)
+    rows = [_terms(robot, linkage, at_one(robot, chosen, own, by), rotors) for own in each]
     terms = np.array(rows).reshape(-1, 4, len(chosen), len(chosen))
     finite("the inertia", terms)
-    each = terms.swapaxes(0, 1) if several else terms[0]
-    return ReflectedInertia(chosen.names, by.names, bodies, *each)
+    return ReflectedInertia(chosen.names, by.names, bodies, *(terms[0] if single else terms.swapaxes(0, 1)))
 
 
 def _terms(robot: Robot, linkage: Robot, at: Transmission, rotors: Vector) -> tuple[Matrix, ...]:
     """Rotors, linkage, serial and other armature (nJ, nJ)."""
-    if at.G is None:
-        raise NoTransmission("G", at.reason or "")
+    (G,) = require(at, "G")
     if at.rank_joints < len(at.joints):
         raise NoTransmission("the inertia of the joints", "they depend on each other; leave out some of them")
-    M, M_linkage = _mass_matrix(robot, at.q), _mass_matrix(linkage, at.q)
+    M, M_linkage = mass_matrix(robot, at.q), mass_matrix(linkage, at.q)
     armature = np.array(robot.model.armature)
     N = _embedding(robot, at, M)
     serial = M - M_linkage - np.diag(armature)
     armature[at.motor_index] = 0.0
     terms = (N.T @ M_linkage @ N, N.T @ serial @ N, (N.T * armature) @ N)
-    return tuple(0.5 * (term + term.T) for term in ((at.G.T * rotors) @ at.G, *terms))
-
-
-def _mass_matrix(robot: Robot, q: Vector) -> Matrix:
-    with borrowed(robot, _memory) as memory:
-        return robot.tree.mass_times(q, np.eye(robot.tree.nv), memory)
-
-
-def _memory(robot: Robot) -> Any:
-    return robot.tree.memory()
+    return tuple(0.5 * (term + term.T) for term in ((G.T * rotors) @ G, *terms))
 
 
 def _embedding(robot: Robot, at: Transmission, M: Matrix) -> Matrix:
@@ -151,7 +135,7 @@ def _embedding(robot: Robot, at: Transmission, M: Matrix) -> Matrix:
     N = Z @ (right[:rank].T / values[:rank]) @ (left[:, :rank].T @ wanted)
     missed = np.abs(N[at.joint_index] - np.eye(n)).max()
     if missed > np.sqrt(FLOOR):
-        held = ", ".join(f"'{name}'" for name in robot.actuation.joints if robot.slots[name].idx_v in others)
+        held = listed(name for name in robot.actuation.joints if robot.slots[name].idx_v in others)
         raise NoTransmission("the inertia of the joints", f"they cannot move while {held} are at rest")
     free = Z @ right[rank:].T
     inertia, axes = np.linalg.eigh(free.T @ M @ free)
@@ -172,25 +156,12 @@ def _rotors(robot: Robot, motors: Selection, armature: Mapping[str, float] | Non
     return np.array(list(found.values()))
 
 
-def _linkage(robot: Robot, joints: Selection, motors: Selection) -> tuple[tuple[str, ...], Robot]:
+def _linkage(robot: Robot, joints: tuple[str, ...], motors: tuple[str, ...]) -> tuple[tuple[str, ...], Robot]:
     """The bodies of the linkage, and the robot with these alone, without armature; the others have no mass."""
-    made: dict[tuple[tuple[str, ...], ...], tuple[tuple[str, ...], Robot]] = derived(robot, _made)
-    key = joints.joints, motors.joints
-    if key not in made:
-        bodies = linkage_bodies(robot, *key)
-        mechanism = replace(
-            robot.mechanism,
-            bodies=tuple(
-                body if body.name in bodies else replace(body, inertia=None) for body in robot.mechanism.bodies
-            ),
-            joints=tuple(
-                replace(joint, properties=replace(joint.properties, armature=())) for joint in robot.mechanism.joints
-            ),
-        )
-        made[key] = bodies, build_robot(mechanism, geometry=False)
-    return made[key]
-
-
-def _made(robot: Robot) -> dict[tuple[tuple[str, ...], ...], tuple[tuple[str, ...], Robot]]:
-    """The linkages of `_linkage`, as far as they were made."""
-    return {}
+    bodies, mechanism = linkage_bodies(robot, *sides(robot, joints, motors)), robot.mechanism
+    alone = replace(
+        mechanism,
+        bodies=tuple(body if body.name in bodies else replace(body, inertia=None) for body in mechanism.bodies),
+        joints=tuple(joint.with_properties(replace(joint.properties, armature=())) for joint in mechanism.joints),
+    )
+    return bodies, build_robot(alone, geometry=False)

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from eurdf.kinematics.array import Indices, Matrix, Vector
-from eurdf.pinocchio.arguments import as_names, checked_array
-from eurdf.transmissions.box import box_along, largest_box
+from eurdf.array import Indices, Matrix, Vector
+from eurdf.pinocchio.arguments import checked_array
 from eurdf.transmissions.exceptions import NoTransmission
-from eurdf.transmissions.polytope import Polytope, image_of_box, preimage_of_box
+from eurdf.transmissions.motors import finite_ranges, sides
+from eurdf.transmissions.polytope import Polytope, box_along, image_of_box, largest_box, preimage_of_box
 from eurdf.transmissions.selection import Selection, selection
-from eurdf.transmissions.transmission import Transmission, Transmissions, transmission
+from eurdf.transmissions.transmission import Transmission, Transmissions, at_many, at_one, configurations, require
 from eurdf.transmissions.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -143,14 +143,19 @@ def serial_limits(
         ValueError: A motor has no limit, or cannot be without torque; or an argument is wrong, as in `transmission`.
     """
     if isinstance(q, Workspace):
-        return _everywhere(q, robot, as_names(joints), torque_ratio, velocity_ratio)
-    at = transmission(robot, joints, q, motors)
-    task = _task(robot, at, torque_ratio, velocity_ratio)
-    if isinstance(at, Transmission):
-        return task.limits(_complete(at, None))
-    if not len(at):
+        if q.robot is not robot or selection(robot, joints).names != q.joints:
+            raise ValueError(f"the workspace is that of another robot, or of other joints: {', '.join(q.joints)}")
+        return _everywhere(q, torque_ratio, velocity_ratio)
+    chosen, by = sides(robot, joints, motors)
+    each, single = configurations(robot, q)
+    if single:
+        one = at_one(robot, chosen, each[0], by)
+        return _task(robot, one, by, torque_ratio, velocity_ratio).limits(_complete(one, "q"))
+    many = at_many(robot, chosen, each, by)
+    task = _task(robot, many, by, torque_ratio, velocity_ratio)
+    if not len(many):
         raise ValueError("q has no rows; give at least one configuration")
-    return _common(task, at)
+    return _common(task, many)
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,19 +187,19 @@ class _Task:
 def _task(
     robot: Robot,
     at: Transmission | Transmissions,
+    motors: Selection,
     torque_ratio: ArrayLike | None,
     velocity_ratio: ArrayLike | None,
 ) -> _Task:
     n = len(at.joints)
     ratios = _checked_ratio("torque_ratio", torque_ratio, n), _checked_ratio("velocity_ratio", velocity_ratio, n)
-    for index in range(len(at)) if isinstance(at, Transmissions) else (None,):
-        _complete(at, index)
-    return _Task(at.joints, at.motors, *_finite_ranges(robot, at.motors), *ratios)
+    _complete(at, "q") if isinstance(at, Transmission) else _all_complete(at)
+    return _Task(at.joints, at.motors, *finite_ranges(robot, motors.names, motors.velocities), *ratios)
 
 
 def _common(task: _Task, at: Transmissions, margins: tuple[float | None, float | None] = (None, None)) -> CommonLimits:
     """The limits at several configurations; boxes are made smaller by the margins."""
-    found = [task.limits(_complete(at, index)) for index in range(len(at))]
+    found = [task.limits(G) for G in _all_complete(at)]
     torque, torque_bounded = _common_box([each.torque for each in found], task.torque_ratio)
     velocity, velocity_bounded = _common_box([each.velocity for each in found], task.velocity_ratio)
     return CommonLimits(
@@ -223,21 +228,13 @@ def _used(polytope: Polytope, box: Vector) -> float:
     return float((np.abs(polytope.A) @ box / polytope.b).max())
 
 
-def _everywhere(
-    space: Workspace,
-    robot: Robot,
-    joints: tuple[str, ...],
-    torque_ratio: ArrayLike | None,
-    velocity_ratio: ArrayLike | None,
-) -> CommonLimits:
+def _everywhere(space: Workspace, torque_ratio: ArrayLike | None, velocity_ratio: ArrayLike | None) -> CommonLimits:
     """The limits in a workspace."""
-    if space.robot is not robot or selection(robot, joints).names != space.joints:
-        raise ValueError(f"the workspace is that of another robot, or of other joints: {', '.join(space.joints)}")
     edge = [point for point in space.boundary if point.stop.kind in ("range", "joint", "motor", "passive")]
     positions = np.vstack([space.positions, *(point.position[None] for point in edge)])
     q = np.vstack([space.q, *(point.q[None] for point in edge)])
     at = space.transmissions_at(q)
-    task = _task(robot, at, torque_ratio, velocity_ratio)
+    task = _task(space.robot, at, space.selections[1], torque_ratio, velocity_ratio)
     margins = []
     for polytope, ratio in ((task.torque, task.torque_ratio), (task.velocity, task.velocity_ratio)):
         positions, q, margin = _refined(space, polytope, ratio, positions, q)
@@ -275,86 +272,20 @@ def _box(A: Matrix, b: Vector, ratio: Vector | None) -> Vector:
     return largest_box(A, b) if ratio is None else box_along(A, b, ratio)
 
 
-def _complete(at: Transmission | Transmissions, index: int | None) -> Matrix:
-    """G (nm, nJ) of a configuration, of rank nJ."""
-    if isinstance(at, Transmissions):
-        assert index is not None
-        G, complete = at.G[index], bool(at.rank_joints[index] == at.rank_motors[index] == len(at.joints))
-        if complete and np.isfinite(G).all():
-            return np.asarray(G)
-        one, place = at[index], f"q[{index}]"
-    else:
-        one, place = at, "q"
-    if one.G is None or one.B_J is None:
-        which, reason = ("G", one.reason) if one.G is None else ("B_J", one.inverse_reason)
-        raise NoTransmission(f"{which} at {place}", reason or "")
-    if one.rank_joints < len(one.joints):
+def _all_complete(at: Transmissions) -> Matrix:
+    """G (B, nm, nJ), each of rank nJ."""
+    complete = (at.rank_joints == at.rank_motors) & (at.rank_joints == len(at.joints))
+    for index in np.flatnonzero(~(complete & np.isfinite(at.G).all(axis=(1, 2)))).tolist():
+        _complete(at[index], f"q[{index}]")
+    return at.G
+
+
+def _complete(at: Transmission, place: str) -> Matrix:
+    """G (nm, nJ), of rank nJ."""
+    G, _ = require(at, "G", "B_J", place=f" at {place}")
+    if at.rank_joints < len(at.joints):
         raise NoTransmission(f"a set of limits at {place}", "the joints depend on each other; leave out some of them")
-    return one.G
-
-
-def motor_ranges(robot: Robot, motors: tuple[str, ...]) -> tuple[Vector, Vector, Vector]:
-    """Smallest and largest torque, and largest velocity, of each motor velocity; infinite if there is no limit.
-
-    Raises:
-        ValueError: The effort or velocity limit of a motor is not positive, or its control range is not from below to
-            above zero.
-    """
-    control = dict(zip(robot.actuation.idx_v.tolist(), robot.actuation.control.tolist(), strict=True))
-    of: dict[str, tuple[float, float, float]] = {}
-    for name, slot in robot.slots.items():
-        for k in range(slot.nv):
-            properties = slot.joint.properties
-            label = name if slot.nv == 1 else f"{name}[{k}]"
-            if label not in motors:
-                continue
-            effort = properties.effort[k] if properties.effort else np.inf
-            velocity = properties.velocity[k] if properties.velocity else np.inf
-            lower, upper = control.get(slot.idx_v + k, (-np.inf, np.inf))
-            for word, limit in (("effort", effort), ("velocity", velocity)):
-                if not limit > 0.0:
-                    raise ValueError(
-                        f"motor '{label}' has the {word} limit {limit + 0.0:g}; state a positive one: {word} in the "
-                        f"<limit> of joint '{name}', or in its limits in the description"
-                    )
-            if not lower < 0.0 < upper:
-                raise ValueError(
-                    f"motor '{label}' has the control range {lower + 0.0:g} to {upper + 0.0:g}; state one from below "
-                    "to above zero, so that it drives both ways: control of the actuator in the description"
-                )
-            of[label] = max(lower, -effort), min(upper, effort), velocity
-    lowers, uppers, fastest = np.array([of[motor] for motor in motors]).T
-    return lowers, uppers, fastest
-
-
-def _finite_ranges(robot: Robot, motors: tuple[str, ...]) -> tuple[Vector, Vector, Vector]:
-    """The ranges of motors that all have limits."""
-    lowers, uppers, fastest = motor_ranges(robot, motors)
-    for values, word in ((np.maximum(uppers, -lowers), "effort"), (fastest, "velocity")):
-        if not np.isfinite(values).all():
-            motor = motors[int(np.argmin(np.isfinite(values)))]
-            joint = motor.partition("[")[0]
-            raise ValueError(
-                f"motor '{motor}' has no {word} limit; state one: {word} in the <limit> of joint '{joint}', or in its "
-                "limits in the description"
-            )
-    return lowers, uppers, fastest
-
-
-def unlimited_motors(robot: Robot, motors: Selection) -> list[str]:
-    """The motors without an effort limit or control range, or without a velocity limit."""
-    actuation = robot.actuation
-    ranged = np.isfinite(actuation.control).all(axis=1)
-    controlled = set(actuation.idx_v[ranged].tolist())
-    found = []
-    for name in motors.joints:
-        slot = robot.slots[name]
-        properties = slot.joint.properties
-        fastest, strongest = properties.velocity or (np.inf,), properties.effort or (np.inf,)
-        stated = np.isfinite(strongest).all() or controlled.issuperset(range(slot.idx_v, slot.idx_v + slot.nv))
-        if not (stated and np.isfinite(fastest).all()):
-            found.append(name)
-    return found
+    return G
 
 
 def _checked_ratio(name: str, ratio: ArrayLike | None, n: int) -> Vector | None:

@@ -16,17 +16,21 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
+from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import numerical_ranks
-from eurdf.kinematics.residual import all_openings, residual_and_jacobian
+from eurdf.kinematics.residual import all_openings, drift_of_pairs, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.kinematics.tolerances import CLOSED, MOVES
+from eurdf.transmissions.selection import Selection, listed, selectable
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
+
+# A singular value below this fraction of the largest one belongs to a redundant row.
+_REDUNDANT = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,23 +78,15 @@ class Maps(NamedTuple):
 
 def maps(task: Task, q: Matrix) -> Maps:
     """The maps at closed configurations (b, nq)."""
-    model, b = task.problem, len(q)
-    closed = (np.abs(model.residual(q)) <= CLOSED).all(axis=1)
-    nm, nJ = len(task.motors), len(task.joints)
-    nowhere = np.full(b, -1)
-    found = Maps(
-        G=np.full((b, nm, nJ), np.nan),
-        B_J=np.full((b, nJ, nm), np.nan),
-        rank=nowhere.copy(),
-        rank_motors=nowhere.copy(),
-        rank_joints=nowhere.copy(),
-        condition=np.full(b, np.nan),
-        held=np.zeros((b, len(task.springs)), dtype=bool),
-        blocked=np.zeros(b, dtype=bool),
-    )
+    problem, b, nm, nJ = task.problem, len(q), len(task.motors), len(task.joints)
+    closed = (np.abs(problem.residual(q)) <= CLOSED).all(axis=1)
+    nowhere, shut = np.full((3, b), -1), np.zeros((b, len(task.springs)), dtype=bool)
+    G, B_J = np.full((b, nm, nJ), np.nan), np.full((b, nJ, nm), np.nan)
+    ranks = nowhere[0], nowhere[1], nowhere[2]
+    found = Maps(G, B_J, *ranks, np.full(b, np.nan), shut, np.zeros(b, dtype=bool))
     which = np.flatnonzero(closed)
-    for space in model.spaces.each(model.jacobian(q[which])):
-        own, Z = which[space.which], space.free / model.spaces.scale[:, None]
+    for space in problem.spaces.each(problem.jacobian(q[which])):
+        own, Z = which[space.which], space.free / problem.spaces.scale[:, None]
         # Springs can hold another number of motions at each configuration.
         for elements, motions in [(own, Z)] if not len(task.springs) else zip(own[:, None], Z[:, None], strict=True):
             for whole, part in zip(found, _maps(task, motions)[0], strict=True):
@@ -157,3 +153,131 @@ def _null_space(rows: Matrix) -> Matrix:
     """Basis (m, m - rank) of the null space of rows (n, m) of orthonormal motions."""
     _, values, right = np.linalg.svd(rows)
     return np.asarray(right[int(numerical_ranks(values[None], np.ones(1))[0]) :].T)
+
+
+class Reasons(NamedTuple):
+    """Why maps do not exist at a configuration.
+
+    Attributes:
+        forward: Why G does not exist; None if it does.
+        inverse: Why B_J does not exist; None if it does.
+        undetermined: Names of the joint velocities that the motors do not determine.
+        missing: Joints to add so that G exists, where the joints do not determine the motors.
+    """
+
+    forward: str | None = None
+    inverse: str | None = None
+    undetermined: tuple[str, ...] = ()
+    missing: tuple[str, ...] = ()
+
+
+def reasons(robot: Robot, motors: Selection, joints: Selection, Q: Matrix, ranks: tuple[int, int, int]) -> Reasons:
+    """Why maps do not exist, if one does not.
+
+    Args:
+        robot: The robot.
+        motors: The motors.
+        joints: The joints.
+        Q: Orthonormal motions (nv, m), dimensionless.
+        ranks: Of the motions of motors and joints together, of the motors, and of the joints.
+    """
+    rank, rank_motors, rank_joints = ranks
+    if rank == rank_motors == rank_joints:
+        return Reasons()
+    A, B = Q[motors.velocities], Q[joints.velocities]
+    (A_inverse, _), (B_inverse, _) = pseudoinverse(A[None]), pseudoinverse(B[None])
+    forward = inverse = None
+    undetermined: tuple[str, ...] = ()
+    missing: tuple[str, ...] = ()
+    if rank > rank_motors:
+        without = B - B @ A_inverse[0] @ A
+        moved = np.linalg.norm(without, axis=1) > MOVES
+        undetermined = tuple(name for name, moves in zip(joints.names, moved.tolist(), strict=True) if moves)
+        if rank_motors < min(len(motors), rank_joints):
+            inverse = (
+                f"the motors are at a dead point: only {rank_motors} of {len(motors)} motor velocities are "
+                f"independent, and {listed(undetermined)} can move while the motors are still"
+            )
+        else:
+            inverse = (
+                f"{listed(undetermined)} can move while the motors are still; leave out such joints, or add motors"
+            )
+    if rank > rank_joints:
+        without = A - A @ B_inverse[0] @ B
+        moved = np.linalg.norm(without, axis=1) > MOVES
+        moving = listed([name for name, moves in zip(motors.names, moved.tolist(), strict=True) if moves])
+        if rank > len(joints):
+            missing = _missing(robot, motors, joints, Q)
+            add = f"; add {listed(missing)} to the joints, or give the motors" if missing else "; give the motors"
+            forward = f"these joints do not determine the motors: {moving} can move while the joints are still{add}"
+        else:
+            forward = (
+                f"the pose is singular: only {rank_joints} of {len(joints)} joint velocities are independent, "
+                f"and {moving} can move while the joints are still"
+            )
+    return Reasons(forward, inverse, undetermined, missing)
+
+
+def _missing(robot: Robot, motors: Selection, joints: Selection, Q: Matrix) -> tuple[str, ...]:
+    """Joints that the motors determine and that, with the given ones, determine the motors; () if there are none."""
+    A = Q[motors.velocities]
+    (inverse,), (rank,) = pseudoinverse(A[None])
+    controlled = inverse @ A  # projects on the motions that the motors decide
+    rows, added = Q[joints.velocities], []
+    for name, velocities in _candidates(robot, motors, joints):
+        if np.abs(Q[velocities] - Q[velocities] @ controlled).max() > MOVES:
+            continue
+        _, before = pseudoinverse((rows @ controlled)[None])
+        _, after = pseudoinverse((np.vstack((rows, Q[velocities])) @ controlled)[None])
+        if after[0] == before[0] + len(velocities):
+            rows = np.vstack((rows, Q[velocities]))
+            added.append(name)
+        if after[0] == rank:
+            return tuple(added)
+    return ()
+
+
+def _candidates(robot: Robot, motors: Selection, joints: Selection) -> list[tuple[str, list[int]]]:
+    """Other joints that are not motors, with their velocities: first those between the given ones and the root."""
+    tree = robot.tree
+    owner = {velocity: joint for joint, own in enumerate(tree.own_velocities) for velocity in own}
+    above: dict[int, int] = {}
+    for velocity in joints.velocities.tolist():
+        joint, distance = owner[velocity], 0
+        while joint:
+            above[joint] = min(distance, above.get(joint, distance))
+            joint, distance = tree.parents[joint], distance + 1
+    found = []
+    for name, slot in selectable(robot):
+        own = list(range(slot.idx_v, slot.idx_v + slot.nv))
+        if not set(own) & {*joints.velocities.tolist(), *motors.velocities.tolist()}:
+            unlimited = not np.isfinite([lower for lower, _ in slot.joint.ranges]).all()
+            found.append((above.get(owner[own[0]], tree.nv), unlimited, name, own))
+    return [(name, own) for _, _, name, own in sorted(found, key=lambda each: each[:2])]
+
+
+def second_derivative(robot: Robot, q: Vector, Z: Matrix, joints: Indices, motors: Indices, held: Indices) -> Matrix:
+    """∂²q_m/∂q_J² at a closed configuration.
+
+    While the joints move at constant velocity w, the motors have the acceleration wᵀ H_i w. It is a_m of the a with
+    K a + K̇ v = 0, in which the joints and the held ones do not accelerate, for the velocity v that w leads to.
+
+    Args:
+        robot: The robot.
+        q: The configuration (nq,).
+        Z: Basis (nv, m) of the motions that keep the loops closed and the held joints still.
+        joints: Indices (nJ,) in v of independent joints.
+        motors: Indices (nm,) in v of motors that they determine.
+        held: Indices in v of held joints.
+
+    Returns:
+        H (nm, nJ, nJ), symmetric in the last two.
+    """
+    N = Z @ np.linalg.pinv(Z[joints])
+    _, K = residual_and_jacobian(robot, q)
+    space = derived(robot, TangentSpaces).at(K)
+    still = np.concatenate((joints, held))
+    back = space.free @ np.linalg.pinv(space.free[still], rcond=_REDUNDANT)
+
+    a = np.tensordot(-space.inverse, drift_of_pairs(robot, q, N), axes=1)
+    return np.asarray(a[motors] - np.tensordot(back[motors], a[still], axes=1))

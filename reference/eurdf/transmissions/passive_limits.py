@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from eurdf.kinematics.array import Vector
+from eurdf.array import Vector
 from eurdf.kinematics.scale import characteristic_length, velocity_scale
 from eurdf.kinematics.tolerances import MOVES
 from eurdf.transmissions.exceptions import NoTransmission
-from eurdf.transmissions.limits import motor_ranges
+from eurdf.transmissions.motors import motor_ranges
 from eurdf.transmissions.selection import selectable, selection
-from eurdf.transmissions.transmission import at_one
+from eurdf.transmissions.transmission import at_one, require
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -58,39 +58,36 @@ def passive_limits(robot: Robot, q: Vector) -> tuple[PassiveLimit, ...]:
             or a control range that is not from below to above zero; or springs block actuators.
     """
     actuated = set(robot.actuation.joints)
-    joints = [name for name, _ in selectable(robot) if name not in actuated]
-    if not actuated or not joints:
+    passive = [name for name, _ in selectable(robot) if name not in actuated]
+    if not actuated or not passive:
         return ()
-    motors = selection(robot, robot.actuation.joints, "actuators")
-    at = at_one(robot, selection(robot, joints), q, motors)
-    if at.rank_motors < len(at.motors):
-        reason = f"only {at.rank_motors} of {len(at.motors)} actuator velocities are independent here"
+    motors, joints = selection(robot, robot.actuation.joints, "actuators"), selection(robot, passive)
+    at = at_one(robot, joints, q, motors)
+    if at.rank_motors < len(motors):
+        reason = f"only {at.rank_motors} of {len(motors)} actuator velocities are independent here"
         raise NoTransmission(
             "a limit of each passive joint", f"{reason}; name joints and motors in eurdf.serial_limits"
         )
-    determined = [name for name in joints if not any(_is_of(label, name) for label in at.undetermined)]
-    if len(determined) < len(joints):
+    free = {
+        robot.tree.velocity_names[velocity]
+        for name, velocity in zip(joints.names, joints.velocities.tolist(), strict=True)
+        if name in at.undetermined
+    }
+    if free:
+        determined = [name for name in passive if name not in free]
         if not determined:
             return ()
-        at = at_one(robot, selection(robot, determined), q, motors)
-    if at.B_J is None:
-        raise NoTransmission("B_J", at.inverse_reason or "")
-    lower, upper, fastest = motor_ranges(robot, at.motors)
+        joints = selection(robot, determined)
+        at = at_one(robot, joints, q, motors)
+    (B_J,) = require(at, "B_J")
+    lower, upper, fastest = motor_ranges(robot, motors.names, motors.velocities)
     unit = velocity_scale(robot, characteristic_length(robot))
-    units: list[Literal["rad", "m"]] = [
-        "m" if word == "length" else "rad" for name in determined for word in robot.slots[name].joint.type.coordinates
-    ]
-    moves = np.abs(at.B_J) * unit[at.motor_index] / unit[at.joint_index][:, None] > MOVES
+    moves = np.abs(B_J) * unit[motors.velocities] / unit[joints.velocities][:, None] > MOVES
     found = []
-    for name, own_unit, b, moved in zip(at.joints, units, at.B_J, moves, strict=True):
+    for name, own_unit, b, moved in zip(joints.names, joints.units, B_J, moves, strict=True):
         if moved.any():
             b, low, high = b[moved], lower[moved], upper[moved]
             ends = np.sort(np.array((low / b, high / b)), axis=0)
             velocity = float(np.abs(b) @ fastest[moved])
             found.append(PassiveLimit(name, own_unit, velocity, (float(ends[0].max()), float(ends[1].min()))))
     return tuple(found)
-
-
-def _is_of(label: str, joint: str) -> bool:
-    """Whether a label of a velocity is of a joint."""
-    return label == joint or (label.startswith(f"{joint}[") and label.endswith("]"))

@@ -5,17 +5,17 @@ from __future__ import annotations
 import io
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
+from eurdf.array import Matrix, Vector
 from eurdf.diagnostics.extras import install_command
 from eurdf.exceptions import MissingExtra
-from eurdf.kinematics.array import Matrix, Vector
 from eurdf.transmissions.inertia import reflected_inertia
-from eurdf.transmissions.limits import CommonLimits, serial_limits, unlimited_motors
+from eurdf.transmissions.limits import CommonLimits, serial_limits
+from eurdf.transmissions.motors import unlimited_motors
 from eurdf.transmissions.reach import Stop
 from eurdf.transmissions.transmission import at_many
 from eurdf.transmissions.workspace import Workspace
@@ -38,21 +38,14 @@ _STYLES: dict[str, Any] = {
     "ytick.major.width": 0.6,
     "svg.hashsalt": "eurdf",
 }
+# Units of the torque, the velocity and the inertia of a joint by that of its position, and the factor of the inertia.
+_UNITS = {"rad": ("N·m", "rad/s", "10⁻³ kg·m²", 1e3), "m": ("N", "m/s", "kg", 1.0)}
 # Points closer to a singular pose than this, in the condition number of G, are not drawn.
 _WORST_CONDITION = 1e4
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Field:
-    """Values over the workspace.
-
-    Attributes:
-        title: What they are, with their unit.
-        values: One for each point (N,).
-    """
-
-    title: str
-    values: Vector
+#: Values over the workspace: what they are, with their unit, and one for each point (N,).
+_Field = tuple[str, Vector]
 
 
 def plot_workspace(
@@ -125,17 +118,15 @@ def _maps(figure: Any, found: Workspace, armature: Mapping[str, float] | None) -
     units = _shown_units(found)
     colors = _colors(found)
     for row, own in enumerate(fields):
-        for column, field in enumerate(own):
+        for column, (title, values) in enumerate(own):
             axis = axes[row, column]
-            filled = axis.tricontourf(triangles, field.values, levels=12, cmap="viridis")
-            lines = axis.tricontour(
-                triangles, field.values, levels=filled.levels[2:-1:3], colors="white", linewidths=0.5
-            )
+            filled = axis.tricontourf(triangles, values, levels=12, cmap="viridis")
+            lines = axis.tricontour(triangles, values, levels=filled.levels[2:-1:3], colors="white", linewidths=0.5)
             axis.clabel(lines, fontsize=5.5, fmt="%.3g")
             bar = figure.colorbar(filled, ax=axis, pad=0.02, aspect=25)
             bar.outline.set_linewidth(0.4)
             bar.ax.tick_params(labelsize=5.5, width=0.4)
-            axis.set_title(field.title)
+            axis.set_title(title)
             _draw_outlines(axis, found, colors)
             axis.use_sticky_edges = False  # else the filled contours hide half of the outline
             axis.margins(0.04)
@@ -157,9 +148,9 @@ def _curves(figure: Any, found: Workspace, armature: Mapping[str, float] | None)
     axes = figure.subplots(1, len(fields), squeeze=False)[0]
     (degrees,), (unit,) = _in_degrees(found), _shown_units(found)
     colors = _colors(found)
-    for axis, field in zip(axes, fields, strict=True):
-        axis.plot(degrees * positions[:, 0], field.values, color=_COLORS[0], linewidth=1.0)
-        axis.set_title(field.title)
+    for axis, (title, values) in zip(axes, fields, strict=True):
+        axis.plot(degrees * positions[:, 0], values, color=_COLORS[0], linewidth=1.0)
+        axis.set_title(title)
         axis.set_xlabel(f"{found.joints[0]} [{unit}]")
         axis.set_ylim(bottom=0.0)
         for point in found.boundary:
@@ -176,29 +167,20 @@ def _drawable(found: Workspace, q: Matrix) -> Any:
 def _fields(found: Workspace, q: Matrix, armature: Mapping[str, float] | None) -> list[list[_Field]]:
     """The quantities of each joint at configurations (B, nq)."""
     robot, (joints, motors) = found.robot, found.selections
-    turning = [unit == "rad" for unit in found.units]
-    rows: list[list[_Field]] = [[] for _ in joints.names]
+    limits = condition = None
     if unlimited_motors(robot, motors):
         condition = at_many(robot, joints, q, motors).condition
-        for row in rows:
-            row.append(_Field("condition number of G", condition))
     else:
-        at = serial_limits(robot, joints.joints, q, motors.joints)
-        assert isinstance(at, CommonLimits)
-        for row, name, turns, torque, velocity in zip(
-            rows,
-            joints.names,
-            turning,
-            np.abs(at.torque_axes).min(axis=2).T,
-            np.abs(at.velocity_axes).min(axis=2).T,
-            strict=True,
-        ):
-            row.append(_Field(f"{name}: torque [{'N·m' if turns else 'N'}]", torque))
-            row.append(_Field(f"{name}: velocity [{'rad/s' if turns else 'm/s'}]", velocity))
+        limits = cast(CommonLimits, serial_limits(robot, joints.joints, q, motors.joints))
     inertia = reflected_inertia(robot, joints.joints, q, motors.joints, armature=armature).equivalent_armature
-    for index, (row, name, turns) in enumerate(zip(rows, joints.names, turning, strict=True)):
-        unit, scale = ("10⁻³ kg·m²", 1e3) if turns else ("kg", 1.0)
-        row.append(_Field(f"{name}: inertia [{unit}]", scale * inertia[:, index, index]))
+    rows: list[list[_Field]] = []
+    for k, (name, unit) in enumerate(zip(joints.names, found.units, strict=True)):
+        force, speed, inert, scale = _UNITS[unit]
+        row = [("condition number of G", condition)] if condition is not None else []
+        if limits is not None:
+            row.append((f"{name}: torque [{force}]", np.abs(limits.torque_axes[:, k]).min(axis=1)))
+            row.append((f"{name}: velocity [{speed}]", np.abs(limits.velocity_axes[:, k]).min(axis=1)))
+        rows.append([*row, (f"{name}: inertia [{inert}]", scale * inertia[:, k, k])])
     return rows
 
 

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Annotated
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from eurdf.array import Matrix, Vector
 from eurdf.json_schema import HIDDEN, LISTS, ROW, ROWS
-from eurdf.kinematics.array import Matrix, Vector
 from eurdf.pinocchio.arguments import checked_array
+from eurdf.transmissions.workspace import Workspace
+
+# Points for each coefficient of the polynomials.
+_POINTS_A_COEFFICIENT = 3
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -84,7 +88,30 @@ def design(x: Matrix, degree: int) -> Matrix:
     return basis
 
 
-def fitted(x: Matrix, values: Matrix, degree: int) -> Matrix:
-    """Coefficients (nm, degree + 1, …) of the least-squares fit of values (B, nm) at scaled positions (B, nJ)."""
-    solution = np.linalg.lstsq(design(x, degree), values, rcond=None)[0]
-    return np.asarray(solution.T.reshape(values.shape[1], *(degree + 1,) * x.shape[1]))
+def fitted_map(found: Workspace, degree: int) -> PolynomialMap:
+    """Polynomials through the points of a workspace, tested between them.
+
+    Args:
+        found: The workspace.
+        degree: Degree in each joint; lowered where the workspace has too few points.
+    """
+    joints, motors = found.selections
+    n = len(joints)
+    while degree > 1 and _POINTS_A_COEFFICIENT * (degree + 1) ** n > len(found.q):
+        degree -= 1
+    lower, upper = np.array([(axis[0], axis[-1]) for axis in found.axes]).T
+    start = motors.read(found.first)
+    at = motors.nearest(motors.read(found.q), start)
+    solution = np.linalg.lstsq(design(scaled(found.positions, lower, upper), degree), at, rcond=None)[0]
+    coefficients = np.asarray(solution.T.reshape(len(motors), *(degree + 1,) * n), np.float64)
+    none = np.full((len(motors), n), np.nan)
+    fit = PolynomialMap(joints.names, motors.names, lower, upper, coefficients, none[:, 0], none)
+    where = found.positions + 0.5 * np.array([axis[1] - axis[0] for axis in found.axes])
+    tested = found.moved(found.q, where)
+    reached = np.isfinite(tested).all(axis=1)
+    if not reached.any():
+        return fit
+    tested, where = tested[reached], where[reached]
+    error = np.abs(fit.motor_positions(where) - motors.nearest(motors.read(tested), start)).max(axis=0)
+    error_of_G = np.nanmax(np.abs(fit.G(where) - found.transmissions_at(tested).G), axis=0)
+    return replace(fit, error=error, error_of_G=error_of_G)

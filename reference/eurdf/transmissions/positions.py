@@ -7,17 +7,19 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from eurdf.kinematics.array import Vector
-from eurdf.kinematics.assembly import assemble, start
-from eurdf.kinematics.exceptions import NotClosable
+from eurdf.array import Vector
+from eurdf.kinematics.assembly import assemble, closed_start, start
+from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.forward import farthest
 from eurdf.kinematics.position_limit import position_limits
+from eurdf.kinematics.problem import Problem
+from eurdf.kinematics.tolerances import SOLVED
 from eurdf.mechanism.joint import LIMIT_TOLERANCE
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.transmissions.exceptions import NoTransmission, OutOfReach
 from eurdf.transmissions.motors import motors_of, passive_joints_of
 from eurdf.transmissions.selection import Selection, selection
-from eurdf.transmissions.transmission import Transmission, at_one
+from eurdf.transmissions.transmission import at_one, require
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -60,7 +62,9 @@ def actuator_values(robot: Robot, joints: Mapping[str, float], q0: Vector | None
     given = _single(robot, joints, "joints")
     motors = motors_of(robot, given)
     q = _moved(robot, given, motors, joints, q0)
-    _refuse_more(at_one(robot, given, q, motors))
+    at = at_one(robot, given, q, motors)
+    if at.missing:
+        raise NoTransmission("the motor position", at.reason or "")
     return _positions(robot, motors.joints, q)
 
 
@@ -100,7 +104,7 @@ def joint_values(
     chosen = _single(robot, dict.fromkeys(names, 0.0), "joints")
     at = at_one(robot, chosen, q, _all_motors(robot))
     if at.undetermined:
-        raise NoTransmission("B_J", at.inverse_reason or "")
+        require(at, "B_J")
     return _positions(robot, names, q)
 
 
@@ -118,31 +122,24 @@ def _all_motors(robot: Robot) -> Selection:
     return selection(robot, single, "motors")
 
 
-def _moved(robot: Robot, given: Selection, motors: Selection, values: Mapping[str, float], q0: Vector | None) -> Vector:
+def _moved(
+    robot: Robot, chosen: Selection, motors: Selection, values: Mapping[str, float], q0: Vector | None
+) -> Vector:
     """The configuration (nq,) with these values, and the actuators that are not ``motors`` where they are at q0."""
-    wanted = {name: checked_array(f"the value of '{name}'", values[name], (), (1,)).item() for name in given.joints}
-    closed = assemble(robot, start(robot, q0))
-    if not closed.closes:
-        raise NotClosable("no closed configuration was found near the start", closed.open, closed.q)
-    at = robot.coordinates(closed.q)
-    still: dict[str, Sequence[float]] = {
-        name: at[name] for name in robot.actuation.joints if name not in motors.joints and name not in wanted
-    }
-    q, part = farthest(robot, {**still, **wanted}, closed.q)
+    wanted = {name: checked_array(f"the value of '{name}'", values[name], (), (1,)).item() for name in chosen.joints}
+    with borrowed(robot, Problem) as problem:
+        first = closed_start(problem, start(robot, q0), SOLVED)
+    at = robot.coordinates(first)
+    moved = {*motors.joints, *wanted}
+    given: dict[str, Sequence[float]] = {name: at[name] for name in robot.actuation.joints if name not in moved}
+    given |= {name: (value,) for name, value in wanted.items()}
+    q, part = farthest(robot, given, first)
     if part < 1.0:
-        reached = {name: robot.coordinates(q)[name][0] for name in wanted}
-        least = assemble(robot, robot.configuration({**robot.coordinates(q), **still, **_lists(wanted)}), wanted)
+        at = robot.coordinates(q)
+        reached = {name: at[name][0] for name in wanted}
+        least = assemble(robot, robot.configuration({**at, **given}), wanted)
         raise OutOfReach(wanted, reached, part, least.open, least.q)
     return q
-
-
-def _lists(values: Mapping[str, float]) -> dict[str, tuple[float]]:
-    return {name: (value,) for name, value in values.items()}
-
-
-def _refuse_more(at: Transmission) -> None:
-    if at.G is None and at.missing:
-        raise NoTransmission("the motor position", at.reason or "")
 
 
 def _decided(robot: Robot, candidates: Iterable[str], q: Vector) -> tuple[str, ...]:

@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from eurdf.kinematics.array import Matrix, Vector
+from eurdf.array import Matrix, Vector
 from eurdf.transmissions.c_source import CSource, c_source
 from eurdf.transmissions.drive import STEPS, Drive, closed_pose
 from eurdf.transmissions.exceptions import NoTransmission
-from eurdf.transmissions.joint_coordinates import JointCoordinates, coordinates_of
-from eurdf.transmissions.motors import motors_of
-from eurdf.transmissions.selection import selection
+from eurdf.transmissions.motors import sides
+from eurdf.transmissions.selection import Selection
 from eurdf.transmissions.transmission import Transmission, at_one
 
 if TYPE_CHECKING:
@@ -55,14 +54,14 @@ class PreparedTransmission:
         motors: Names of the motors.
     """
 
-    def __init__(self, at: Transmission, joints: JointCoordinates, motors: JointCoordinates) -> None:
+    def __init__(self, at: Transmission, joints: Selection, motors: Selection) -> None:
         self._at, self._joints, self._motors = at, joints, motors
         self.joints, self.motors = at.joints, at.motors
         self._first = self._q = at.q
         self._by_joints = Drive(at, joints, motors)
         self._by_motors: Drive | None = None
         # Last positions of joints without limits, whose turns are counted from call to call.
-        self._angles: dict[JointCoordinates, Vector] = {}
+        self._angles: dict[Selection, Vector] = {}
 
     def __getstate__(self) -> Any:
         """What is pickled and copied: what makes it, and where it is. The working memory is made anew."""
@@ -90,42 +89,23 @@ class PreparedTransmission:
         self._angles.clear()
 
     def start_at_joints(self, positions: Vector) -> None:
-        """Start at positions of the serial joints, reached from the first pose instead of the last one.
+        """Start at positions (nJ,) of the serial joints, reached from the first pose instead of the last one.
 
-        Args:
-            positions: Positions (nJ,) of the serial joints, rad or m. Turns are counted from here.
-
-        Raises:
-            NotClosable: The loops cannot be closed at the positions.
-            TooFar: They can, but not everywhere on the straight path from the first pose.
-            NoTransmission: The joints do not determine the motors there.
-            ValueError: ``positions`` does not fit.
+        Turns are counted from here. The errors are those of `at_joints`.
         """
         self._start_at(self._by_joints, positions)
 
     def start_at_motors(self, positions: Vector) -> None:
-        """Start at positions of the motors, reached from the first pose instead of the last one.
+        """Start at positions (nm,) of the motors, reached from the first pose instead of the last one.
 
-        Args:
-            positions: Positions (nm,) of the motors, rad or m. Turns are counted from here.
-
-        Raises:
-            NotClosable: The loops cannot be closed at the positions.
-            TooFar: They can, but not everywhere on the straight path from the first pose.
-            NoTransmission: The motors do not determine the joints there.
-            ValueError: ``positions`` does not fit.
+        Turns are counted from here. The errors are those of `at_motors`.
         """
         self._start_at(self._drive_of_motors, positions)
 
     def at_joints(self, positions: Vector) -> MotorSide:
-        """The motors at positions of the serial joints.
+        """The motors at positions (nJ,) of the serial joints, rad or m.
 
-        Args:
-            positions: Positions (nJ,) of the serial joints, rad or m.
-
-        Returns:
-            Positions of the motors and G. An angle without limits counts turns: it is within half a turn of that of the
-            call before.
+        An angle without limits counts turns: it is within half a turn of that of the call before.
 
         Raises:
             NotClosable: The loops cannot be closed at the positions.
@@ -136,19 +116,9 @@ class PreparedTransmission:
         return MotorSide(*self._move(self._by_joints, positions))
 
     def at_motors(self, positions: Vector) -> SerialSide:
-        """The serial joints at positions of the motors.
+        """The serial joints at positions (nm,) of the motors, rad or m.
 
-        Args:
-            positions: Positions (nm,) of the motors, rad or m.
-
-        Returns:
-            Positions of the serial joints and B; as to angles without limits, see `at_joints`.
-
-        Raises:
-            NotClosable: The loops cannot be closed at the positions.
-            TooFar: They can, but not everywhere on the straight path from the last pose.
-            NoTransmission: The motors do not determine the joints there.
-            ValueError: ``positions`` does not fit.
+        Turns are counted, and errors raised, as by `at_joints`; here the motors have to determine the joints.
         """
         return SerialSide(*self._move(self._drive_of_motors, positions))
 
@@ -173,14 +143,11 @@ class PreparedTransmission:
         Raises:
             ValueError: An argument does not fit; or a joint or constraint is of a type that C does not support.
         """
-        return c_source(self._at.robot, self._by_joints, self._inverse(), self._q, prefix, steps, substeps)
-
-    def _inverse(self) -> Drive | None:
-        """What moves the motors; None if that is not possible."""
         try:
-            return self._drive_of_motors
+            inverse = self._drive_of_motors
         except NoTransmission:
-            return None
+            inverse = None
+        return c_source(self._at.robot, self._by_joints, inverse, self._q, prefix, steps, substeps)
 
     @property
     def _drive_of_motors(self) -> Drive:
@@ -230,7 +197,5 @@ def prepare_transmission(
         NoTransmission: The joints do not determine the motors, or depend on each other.
         ValueError: An argument does not fit.
     """
-    serial = selection(robot, joints)
-    side = motors_of(robot, serial) if motors is None else selection(robot, motors, "motors")
-    at = at_one(robot, serial, closed_pose(robot, q), side)
-    return PreparedTransmission(at, coordinates_of(robot, serial), coordinates_of(robot, side))
+    serial, by = sides(robot, joints, motors)
+    return PreparedTransmission(at_one(robot, serial, closed_pose(robot, q), by), serial, by)

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
+from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.batch import forward_kinematics
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.mechanism.joint import LIMIT_TOLERANCE
 from eurdf.pinocchio.robot import build_robot
-from eurdf.transmissions.joint_coordinates import coordinates_of
 from eurdf.transmissions.selection import Selection
 from eurdf.transmissions.transmission import at_many
 
@@ -53,8 +52,7 @@ class Stop:
         return words.get(self.kind, f"{self.side} {end} of '{self.joint}'")
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Examined:
+class Examined(NamedTuple):
     """What was found at B positions.
 
     Attributes:
@@ -80,7 +78,6 @@ class Reach:
         self._robot, self._joints, self._motors = robot, joints, motors
         driven = replace(robot.mechanism, actuators=joints.joints, motors={})
         self._driven = build_robot(driven, geometry=False)
-        self._coordinates = coordinates_of(robot, joints)
         self._limits = position_limits(robot)
         self._unit = derived(robot, TangentSpaces).scale[joints.velocities]
         nv = robot.tree.nv
@@ -99,8 +96,8 @@ class Reach:
 
         They move in short steps, and stop after the first one that they cannot make.
         """
-        own = self._coordinates
-        start = np.array([own.nearest(own.read(each), to) for each, to in zip(q, positions, strict=True)])
+        own = self._joints
+        start = own.nearest(own.read(q), positions)
         longest = np.abs((positions - start) / self._unit).max(initial=0.0)
         steps = max(1, math.ceil(longest / _LONGEST_STEP))
         end, stop = q.copy(), np.full(len(q), -1, np.intp)
@@ -134,11 +131,8 @@ class Reach:
 
     def _values(self, positions: Matrix) -> Matrix:
         """Positions (B, nJ) as the driven robot's actuated coordinates (B, nu)."""
-        circular = self._coordinates.circular
-        if not circular.any():
-            return positions
         columns = []
-        for column, turns in zip(positions.T, circular.tolist(), strict=True):
+        for column, turns in zip(positions.T, self._joints.circular.tolist(), strict=True):
             columns += [np.cos(column), np.sin(column)] if turns else [column]
         return np.stack(columns, axis=1)
 
@@ -159,9 +153,5 @@ class Reach:
         return sign
 
     def _at_limit(self, velocity: int, side: Side) -> Stop:
-        kind: StopKind = "passive"
-        if velocity in self._joints.velocities:
-            kind = "joint"
-        elif velocity in self._robot.actuation.idx_v:
-            kind = "motor"
-        return Stop(kind, self._limits.joints[velocity], side)
+        own, actuated = velocity in self._joints.velocities, velocity in self._robot.actuation.idx_v
+        return Stop("joint" if own else "motor" if actuated else "passive", self._limits.joints[velocity], side)

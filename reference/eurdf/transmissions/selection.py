@@ -1,16 +1,15 @@
-"""The joints and motors of a transmission: their names, and their velocities."""
+"""The joints and motors of a transmission: their names, their velocities, and their positions in a configuration."""
 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices
-from eurdf.mechanism.joint import drivers
+from eurdf.array import Indices, Mask, Vector
 from eurdf.pinocchio.arguments import as_names
 
 if TYPE_CHECKING:
@@ -20,25 +19,54 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Selection:
-    """Some joints of a robot.
+    """Some joints of a robot: a number for each of their n velocities, joint by joint.
+
+    The arrays are read-only, as a selection is kept with the robot.
 
     Attributes:
         joints: Their names.
-        velocities: Indices (n,) in v of their velocities, joint by joint.
         names: A name for each velocity: that of the joint; with several velocities ``joint[0]``, ``joint[1]``.
-
-    The indices are read-only, as a selection is kept with the robot.
+        units: Unit (n,) of each position.
+        velocities: Indices (n,) in v.
+        coordinates: Indices (n,) in q: of the number, or of the cosine of a (cos, sin) pair.
+        circular: Which of them (n,) are angles whose whole turns change nothing: (cos, sin) pairs in q.
     """
 
     joints: tuple[str, ...]
-    velocities: Indices
     names: tuple[str, ...]
+    units: tuple[Literal["m", "rad"], ...]
+    velocities: Indices
+    coordinates: Indices
+    circular: Mask
 
     def __post_init__(self) -> None:
-        self.velocities.flags.writeable = False
+        for indices in (self.velocities, self.coordinates, self.circular):
+            indices.flags.writeable = False
 
     def __len__(self) -> int:
         return len(self.names)
+
+    def read(self, q: Vector) -> Vector:
+        """The positions (…, n) at q (…, nq), rad or m; an angle of a pair is from -pi to pi."""
+        at = q[..., self.coordinates]
+        if not self.circular.any():
+            return at
+        return np.where(self.circular, np.arctan2(q[..., np.where(self.circular, self.coordinates + 1, 0)], at), at)
+
+    def write(self, positions: Vector, q: Vector) -> None:
+        """Change q (nq,) so that the joints are at the positions (n,)."""
+        if not self.circular.any():
+            q[self.coordinates] = positions
+            return
+        q[self.coordinates] = np.where(self.circular, np.cos(positions), positions)
+        q[self.coordinates[self.circular] + 1] = np.sin(positions[self.circular])
+
+    def nearest(self, positions: Vector, to: Vector) -> Vector:
+        """The positions (…, n), with angles whose whole turns change nothing as near as possible to others (…, n)."""
+        if not self.circular.any():
+            return positions
+        turns = np.round((positions - to) / (2.0 * np.pi))
+        return np.where(self.circular, positions - 2.0 * np.pi * turns, positions)
 
 
 def selection(robot: Robot, joints: str | Iterable[str], argument: str = "joints") -> Selection:
@@ -59,7 +87,15 @@ def selection(robot: Robot, joints: str | Iterable[str], argument: str = "joints
     twice = next((name for name in given if given.count(name) > 1), None)
     if twice is not None:
         raise ValueError(f"{argument} names '{twice}' twice")
-    return _selected(given, [_slot(robot, name) for name in given])
+    each = [(name, slot, k) for name in given for slot in [_slot(robot, name)] for k in range(slot.nv)]
+    return Selection(
+        given,
+        tuple(name if slot.nv == 1 else f"{name}[{k}]" for name, slot, k in each),
+        tuple("m" if slot.joint.type.coordinates[k] == "length" else "rad" for _, slot, k in each),
+        np.array([slot.idx_v + k for _, slot, k in each], np.intp),
+        np.array([slot.idx_q + k for _, slot, k in each], np.intp),
+        np.array([slot.nq > slot.nv for _, slot, _ in each]),
+    )
 
 
 def selectable(robot: Robot) -> list[tuple[str, Slot]]:
@@ -67,14 +103,9 @@ def selectable(robot: Robot) -> list[tuple[str, Slot]]:
     return [(name, slot) for name, slot in robot.slots.items() if not slot.joint.type.moving_frame]
 
 
-def _selected(names: Sequence[str], slots: Sequence[Slot]) -> Selection:
-    velocities = [slot.idx_v + k for slot in slots for k in range(slot.nv)]
-    labels = [
-        name if slot.nv == 1 else f"{name}[{k}]"
-        for name, slot in zip(names, slots, strict=True)
-        for k in range(slot.nv)
-    ]
-    return Selection(tuple(names), np.array(velocities, np.intp), tuple(labels))
+def listed(names: Iterable[str]) -> str:
+    """Names in a message."""
+    return ", ".join(f"'{name}'" for name in names)
 
 
 def _slot(robot: Robot, name: str) -> Slot:
@@ -84,9 +115,9 @@ def _slot(robot: Robot, name: str) -> Slot:
             return slot
         kind = slot.joint.type.value
         raise ValueError(f"joint '{name}' is {kind}; a transmission is between joints whose coordinates have rates")
-    mimics = drivers({joint.name: joint.mimic for joint in robot.mechanism.joints if joint.mimic is not None})
-    if name in mimics:
-        raise ValueError(f"joint '{name}' is a mimic joint; give its leader '{mimics[name].joint}' instead")
+    leaders = robot.mechanism.leaders
+    if name in leaders:
+        raise ValueError(f"joint '{name}' is a mimic joint; give its leader '{leaders[name].joint}' instead")
     if any(joint.name == name for joint in robot.mechanism.joints):
         raise ValueError(f"joint '{name}' is fixed")
     near = difflib.get_close_matches(name, robot.slots, n=1)

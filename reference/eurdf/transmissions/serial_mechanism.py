@@ -8,9 +8,9 @@ from types import MappingProxyType
 
 import numpy as np
 
+from eurdf.array import Matrix
 from eurdf.convert.coordinates import rotation_matrix
 from eurdf.convert.inertia import about_centre
-from eurdf.kinematics.array import Matrix
 from eurdf.mechanism.body import Body, Inertia
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.mechanism import Mechanism
@@ -68,9 +68,19 @@ def with_properties(mechanism: Mechanism, properties: Mapping[str, JointProperti
     return replace(
         mechanism,
         joints=tuple(
-            replace(joint, properties=properties[joint.name]) if joint.name in properties else joint
+            joint.with_properties(properties[joint.name]) if joint.name in properties else joint
             for joint in mechanism.joints
         ),
+    )
+
+
+def springs_left_out(mechanism: Mechanism, bodies: Collection[str]) -> tuple[str, ...]:
+    """A note on the springs of the joints that are left out with the bodies of the linkage."""
+    gone = [joint.name for joint in mechanism.joints if joint.child in bodies and any(joint.properties.stiffness)]
+    if not gone:
+        return ()
+    return (
+        f"springs of the linkage are left out, those of {', '.join(map(repr, gone))}: add their torque to the drives",
     )
 
 

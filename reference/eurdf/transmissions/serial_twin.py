@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, cast
 
 import numpy as np
 
+from eurdf.array import Mask, Matrix, Vector
 from eurdf.convert.export import export, files_of_meshes
 from eurdf.diagnostics import enumerated
-from eurdf.json_schema import PAIRS, ROW, ROWS, Keywords
-from eurdf.kinematics.array import Mask, Matrix, Vector
+from eurdf.json_schema import PAIRS, ROW, ROWS, Keywords, to_json
 from eurdf.kinematics.problem import Problem
 from eurdf.mechanism.joint import JointProperties
 from eurdf.mechanism.mechanism import ROOT_JOINT
@@ -23,15 +23,12 @@ from eurdf.pinocchio.robot import build_robot
 from eurdf.transmissions.drive import closed_pose
 from eurdf.transmissions.exceptions import NoTransmission
 from eurdf.transmissions.inertia import reflected_inertia
-from eurdf.transmissions.joint_coordinates import coordinates_of
-from eurdf.transmissions.limits import CommonLimits, serial_limits, unlimited_motors
-from eurdf.transmissions.linkage_bodies import linkage_bodies
-from eurdf.transmissions.motors import motors_of
-from eurdf.transmissions.polynomial_map import PolynomialMap, fitted, scaled
-from eurdf.transmissions.reach import Reach
-from eurdf.transmissions.selection import Selection, selection
-from eurdf.transmissions.serial_mechanism import serial_mechanism, with_properties
-from eurdf.transmissions.transmission import Transmission, at_many, at_one
+from eurdf.transmissions.limits import CommonLimits, serial_limits
+from eurdf.transmissions.motors import linkage_bodies, sides, unlimited_motors
+from eurdf.transmissions.polynomial_map import PolynomialMap, fitted_map
+from eurdf.transmissions.selection import Selection, listed
+from eurdf.transmissions.serial_mechanism import serial_mechanism, springs_left_out, with_properties
+from eurdf.transmissions.transmission import Transmission, at_one
 from eurdf.transmissions.workspace import Workspace, workspace
 from eurdf.writing.output_folder import write_files
 
@@ -46,9 +43,6 @@ _NUMBERS = ("position", "torque", "velocity", "armature", "damping", "friction")
 
 # Number of points of a grid, about, and along one joint, at most, where the caller does not say how fine it is.
 _POINTS, _MOST_ALONG = 441, 51
-
-# Points for each coefficient of the polynomials.
-_POINTS_A_COEFFICIENT = 3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -125,24 +119,22 @@ class SerialTwin:
 
     def report(self) -> dict[str, Any]:
         """The numbers as plain values, for JSON; infinite ones are None."""
-        own = {
-            name: getattr(self, name) for name in ("position", "torque", "velocity", "armature", "damping", "friction")
-        }
-        lost = {name: getattr(self.neglected, name) for name in self.neglected.__slots__}
-        fit = {name: getattr(self.map, name) for name in self.map.__slots__ if name not in ("joints", "motors")}
         q = self.workspace.robot.coordinates(self.q)
-        return {
-            "joints": list(self.joints),
-            "motors": list(self.motors),
-            "lumped": list(self.bodies),
-            "lumped_at": {name: list(values) for name, values in q.items()},
-            "chosen": self.chosen,
-            **{name: _plain(value) for name, value in own.items()},
-            "neglected": {name: _plain(value) for name, value in lost.items()},
-            "stops": {str(stop): count for stop, count in self.workspace.stops.items()},
-            "map": {name: _plain(value) for name, value in fit.items()},
-            "notes": list(self.notes),
-        }
+        found: dict[str, Any] = to_json(
+            {
+                "joints": self.joints,
+                "motors": self.motors,
+                "lumped": self.bodies,
+                "lumped_at": q,
+                "chosen": self.chosen,
+                **{name: getattr(self, name) for name in _NUMBERS},
+                "neglected": self.neglected,
+                "stops": {str(stop): count for stop, count in self.workspace.stops.items()},
+                "map": self.map,
+                "notes": self.notes,
+            }
+        )
+        return found
 
     def files(self) -> dict[str, bytes]:
         """The twin as URDF and MJCF, and its report: the content by path."""
@@ -209,15 +201,14 @@ def serial_twin(
         raise ValueError(f"limits is {limits!r}; it must be 'conservative' or 'fitted'")
     if not 1 <= degree <= 30:
         raise ValueError(f"degree is {degree}; it must be from 1 to 30")
-    serial = selection(robot, joints)
-    by = motors_of(robot, serial) if motors is None else selection(robot, motors, "motors")
+    serial, by = sides(robot, joints, motors)
     pose = closed_pose(robot, q)
     grid = max(5, min(_MOST_ALONG, round(_POINTS ** (1.0 / len(serial))))) if grid is None else grid
-    bodies = linkage_bodies(robot, serial.joints, by.joints)
+    bodies = linkage_bodies(robot, serial, by)
     _refuse_other_motors(robot, bodies, serial, by)
     found = workspace(robot, serial.joints, pose, by.joints, grid=grid, ranges=ranges)
     plain = _without_linkage(robot, pose, bodies, serial, by)
-    inside = _box(found, coordinates_of(robot, serial).read(pose))
+    inside = _box(found, serial.read(pose))
     chosen = inside if limits == "conservative" else np.ones(len(found.q), dtype=bool)
     points = found.positions[chosen]
     position = np.stack((points.min(axis=0), points.max(axis=0)), axis=1)
@@ -235,26 +226,33 @@ def serial_twin(
     diagonal = np.maximum(np.diagonal(needed, axis1=1, axis2=2), 0.0)
     added = diagonal[chosen].max(axis=0) if limits == "conservative" else diagonal.mean(axis=0)
     losses = _losses(robot, at_one(robot, serial, pose, by))
-    notes += _springs_left_out(robot, bodies)
-    properties = _properties(robot, serial, position, most.torque, most.velocity, added, *losses)
-    mechanism = with_properties(plain.mechanism, properties)
+    notes += springs_left_out(robot.mechanism, bodies)
+    numbers = {
+        "lower": position[:, 0],
+        "upper": position[:, 1],
+        "velocity": most.velocity,
+        "effort": most.torque,
+        "damping": losses[0],
+        "friction": losses[1],
+        "armature": added,
+    }
+    mechanism = with_properties(plain.mechanism, _properties(robot, serial, numbers))
     twin = build_robot(
         mechanism, geometry=robot.geometry is not None, resolve=partial(_found_mesh, files_of_meshes(robot))
     )
     error = np.linalg.norm(lumped + np.diag(added) - terms.total, 2, axis=(1, 2))
     neglected = Neglected(
-        _mass(robot, bodies),
+        sum(body.inertia.mass for body in robot.mechanism.bodies if body.name in bodies and body.inertia is not None),
         _extent(diagonal),
         _extent(np.diagonal(terms.rotors, axis1=1, axis2=2)),
         _extent(np.diagonal(terms.linkage, axis1=1, axis2=2)),
         np.abs(needed * (1.0 - np.eye(len(serial)))).max(axis=0),
         float((error / np.linalg.norm(terms.total, 2, axis=(1, 2))).max()),
-        _gravity_error(robot, plain, found.q, own, serial, by),
+        np.abs(_holding(robot, found.q, serial, by) - _holding(plain, own, serial, by)).max(axis=0),
         most.torque_alone,
         most.velocity_alone,
         float(chosen.mean()),
     )
-    fit = _fit(robot, found, serial, by, pose, degree)
     return SerialTwin(
         twin,
         serial.names,
@@ -267,7 +265,7 @@ def serial_twin(
         most.velocity,
         added,
         *losses,
-        fit,
+        fitted_map(found, degree),
         neglected,
         found,
         notes,
@@ -345,16 +343,14 @@ def _limits(
     unlimited = unlimited_motors(robot, motors)
     if unlimited:
         none = np.full(len(joints), np.inf)
-        listed = ", ".join(f"'{name}'" for name in unlimited)
-        note = f"torque and velocity limits are left out: {listed} have no effort or no velocity limit"
+        note = f"torque and velocity limits are left out: {listed(unlimited)} have no effort or no velocity limit"
         return _Limits(none, none, None, None), (note,)
     at = cast(CommonLimits, serial_limits(robot, joints.joints, found.q, motors.joints))
     alone = _extent(np.abs(at.torque_axes).min(axis=2)), _extent(np.abs(at.velocity_axes).min(axis=2))
     if choice == "fitted":
-        torques, velocities = (
-            np.array([getattr(each, box) for each in at.each]) for box in ("torque_box", "velocity_box")
-        )
-        return _Limits(torques.mean(axis=0), velocities.mean(axis=0), *alone), ()
+        boxes = [(each.torque_box, each.velocity_box) for each in at.each]
+        torque, velocity = np.mean(boxes, axis=0)
+        return _Limits(torque, velocity, *alone), ()
     within = cast(CommonLimits, serial_limits(robot, joints.joints, found.q[chosen], motors.joints))
     return _Limits(within.torque_box, within.velocity_box, *alone), ()
 
@@ -370,123 +366,30 @@ def _losses(robot: Robot, at: Transmission) -> tuple[Vector, Vector]:
     )
 
 
-def _springs_left_out(robot: Robot, bodies: Sequence[str]) -> tuple[str, ...]:
-    """A note on the springs of the joints that are left out with the bodies of the linkage."""
-    gone = [joint.name for joint in robot.mechanism.joints if joint.child in bodies and any(joint.properties.stiffness)]
-    if not gone:
-        return ()
-    return (
-        f"springs of the linkage are left out, those of {', '.join(map(repr, gone))}: add their torque to the drives",
-    )
-
-
-def _properties(
-    robot: Robot,
-    joints: Selection,
-    position: Matrix,
-    torque: Vector,
-    velocity: Vector,
-    armature: Vector,
-    damping: Vector,
-    friction: Vector,
-) -> dict[str, JointProperties]:
-    """The properties of each joint; its spring is that of the robot's."""
+def _properties(robot: Robot, joints: Selection, numbers: Mapping[str, Vector]) -> dict[str, JointProperties]:
+    """The properties of each joint: its numbers by velocity (nJ,), and the spring and rates of the robot's."""
     found: dict[str, JointProperties] = {}
-    before = {joint.name: joint.properties for joint in robot.mechanism.joints}
     for name in joints.joints:
-        own = [index for index, label in enumerate(joints.names) if label.partition("[")[0] == name]
-
-        def of(values: Vector, own: list[int] = own) -> tuple[float, ...]:
-            return tuple(values[own].tolist())
-
-        found[name] = JointProperties(
-            of(position[:, 0]),
-            of(position[:, 1]),
-            of(velocity),
-            of(torque),
-            of(damping),
-            of(friction),
-            of(armature),
-            stiffness=before[name].stiffness,
-            rest=before[name].rest,
-            acceleration=before[name].acceleration,
-            deceleration=before[name].deceleration,
-            jerk=before[name].jerk,
-        )
+        own = np.isin(joints.velocities, robot.tree.velocities_of(name))
+        of = {word: tuple(values[own].tolist()) for word, values in numbers.items()}
+        found[name] = replace(robot.slots[name].joint.properties, **of, gear_ratio=(), rotor_inertia=())
     return found
 
 
-def _mass(robot: Robot, bodies: Sequence[str]) -> float:
-    """Mass of some bodies, kg."""
-    return sum(body.inertia.mass for body in robot.mechanism.bodies if body.name in bodies and body.inertia is not None)
+def _holding(robot: Robot, q: Matrix, joints: Selection, motors: Selection) -> Matrix:
+    """Torques (B, nJ) that hold the joints against gravity at q (B, nq), while actuators that are not motors are held.
 
-
-def _gravity_error(
-    robot: Robot, twin: Robot, q: Matrix, of_twin: Matrix, joints: Selection, motors: Selection
-) -> Vector:
-    """Largest difference (nJ,) of the torques that hold the joints against gravity."""
-    others = [name for name in robot.actuation.joints if name not in motors.joints and name not in joints.joints]
-    one, other = _Holding(robot, joints.joints, others), _Holding(twin, joints.joints, others)
-    differences = [one.torque(own) - other.torque(twins) for own, twins in zip(q, of_twin, strict=True)]
-    return np.asarray(np.abs(differences).max(axis=0))
-
-
-class _Holding:
-    """Holds joints against gravity, while other joints are held too."""
-
-    def __init__(self, robot: Robot, joints: Sequence[str], others: Sequence[str]) -> None:
-        self._tree = robot.tree
-        self._memory = robot.tree.memory()
-        driven = [velocity for name in (*joints, *others) for velocity in robot.tree.velocities_of(name)]
-        self._motion = Problem(robot, driven)
-        self._count = sum(len(robot.tree.velocities_of(name)) for name in joints)
-
-    def torque(self, q: Vector) -> Vector:
-        """Torques (n,) at q (nq,); NaN where the motion is in doubt."""
-        (D,), (sure,) = self._motion.derivative(q[None])
-        if not sure:
-            return np.full(self._count, np.nan)
-        zero = np.zeros(self._tree.nv)
-        return np.asarray(D[:, : self._count].T @ self._tree.inverse_dynamics(q, zero, zero, self._memory))
-
-
-def _fit(
-    robot: Robot, found: Workspace, joints: Selection, motors: Selection, pose: Vector, degree: int
-) -> PolynomialMap:
-    """Polynomials through the points of the workspace, tested between them."""
-    n = len(joints)
-    while degree > 1 and _POINTS_A_COEFFICIENT * (degree + 1) ** n > len(found.q):
-        degree -= 1
-    lower, upper = np.array([(axis[0], axis[-1]) for axis in found.axes]).T
-    at = coordinates_of(robot, motors)
-    start = at.read(pose)
-
-    def positions(q: Matrix) -> Matrix:
-        return np.array([at.nearest(at.read(each), start) for each in q])
-
-    coefficients = fitted(scaled(found.positions, lower, upper), positions(found.q), degree)
-    none = np.full(len(motors), np.nan)
-    fit = PolynomialMap(joints.names, motors.names, lower, upper, coefficients, none, np.full((len(motors), n), np.nan))
-    cell = np.array([axis[1] - axis[0] for axis in found.axes])
-    between = Reach(robot, joints, motors, pose, found.axes).examine(found.q, found.positions + 0.5 * cell)
-    tested = between.q[between.reached]
-    if not len(tested):
-        return fit
-    where = found.positions[between.reached] + 0.5 * cell
-    error = np.abs(fit.motor_positions(where) - positions(tested)).max(axis=0)
-    error_of_G = np.nanmax(np.abs(fit.G(where) - at_many(robot, joints, tested, motors).G), axis=0)
-    return replace(fit, error=error, error_of_G=error_of_G)
+    NaN where the motion is in doubt.
+    """
+    tree, own = robot.tree, {*joints.joints, *motors.joints}
+    names = (*joints.joints, *(name for name in robot.actuation.joints if name not in own))
+    D, sure = Problem(robot, [velocity for name in names for velocity in tree.velocities_of(name)]).derivative(q)
+    dynamics, zero = tree.dynamics(), np.zeros(tree.nv)
+    gravity = np.array([dynamics.inverse_dynamics(each, zero, zero) for each in q])
+    torques = (gravity[:, None] @ D[:, :, : len(joints)])[:, 0]
+    return np.where(sure[:, None], torques, np.nan)
 
 
 def _extent(values: Matrix) -> Matrix:
     """Smallest and largest (n, 2) of values (B, n)."""
     return np.stack((values.min(axis=0), values.max(axis=0)), axis=1)
-
-
-def _plain(value: Any) -> Any:
-    """Numbers and arrays as plain values; None for those that are not finite."""
-    if isinstance(value, np.ndarray):
-        return _plain(value.tolist())
-    if isinstance(value, list):
-        return [_plain(each) for each in value]
-    return None if isinstance(value, float) and not np.isfinite(value) else value

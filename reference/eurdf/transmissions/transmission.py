@@ -10,18 +10,16 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
+from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.blocks import blocks, checked_configurations, shape_of
 from eurdf.kinematics.finite import overflow_refused
 from eurdf.kinematics.problem import for_many
 from eurdf.pinocchio.arguments import checked_array
-from eurdf.transmissions.curvature import second_derivative
 from eurdf.transmissions.exceptions import DependentVelocities, NoTransmission
-from eurdf.transmissions.maps import Maps, Task, maps, maps_at, pseudoinverse
-from eurdf.transmissions.motors import motors_of, springs_of
-from eurdf.transmissions.reasons import BOTH_EXIST, reasons
-from eurdf.transmissions.selection import Selection, selection
+from eurdf.transmissions.maps import Maps, Task, maps, maps_at, pseudoinverse, reasons, second_derivative
+from eurdf.transmissions.motors import sides, springs_of
+from eurdf.transmissions.selection import Selection
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -40,7 +38,8 @@ class Transmission:
 
     v_m = G v_J and τ_J = Gᵀ τ_m; v_J = B_J v_m and τ_m = B_Jᵀ τ_J. Velocities are in rad/s or m/s, torques and forces
     in N·m or N. τ_J are the torques that the motors produce at the joints of a serial robot without motors and rods:
-    static, without friction, gravity and springs. Motor values are after the gear.
+    static, without friction, gravity and springs. Motor values are after the gear. Methods raise `NoTransmission` where
+    their map does not exist, and `ValueError` where an argument has another shape or is not finite.
 
     Attributes:
         robot: The robot.
@@ -84,63 +83,40 @@ class Transmission:
     motions: Matrix
 
     def motor_velocity(self, v_J: ArrayLike) -> Vector:
-        """v_m = G v_J (nm,).
-
-        Args:
-            v_J: Joint velocities (nJ,), rad/s or m/s.
+        """v_m = G v_J (nm,), for joint velocities v_J (nJ,), rad/s or m/s.
 
         Raises:
-            NoTransmission: There is no G.
             DependentVelocities: The loops do not allow these joint velocities together.
-            ValueError: ``v_J`` has another shape or is not finite.
         """
-        G, v = self._forward, checked_array("v_J", v_J, (len(self.joints),))
+        (G,), v = require(self, "G"), checked_array("v_J", v_J, (len(self.joints),))
         if self.rank_joints < len(self.joints):
             self._refuse_dependent(self.joints, self.joint_index, v)
         return np.asarray(G @ v)
 
     def joint_velocity(self, v_m: ArrayLike) -> Vector:
-        """v_J = B_J v_m (nJ,).
-
-        Args:
-            v_m: Motor velocities (nm,), rad/s or m/s.
+        """v_J = B_J v_m (nJ,), for motor velocities v_m (nm,), rad/s or m/s.
 
         Raises:
-            NoTransmission: There is no B_J.
             DependentVelocities: The loops do not allow these motor velocities together.
-            ValueError: ``v_m`` has another shape or is not finite.
         """
-        B, v = self._inverse, checked_array("v_m", v_m, (len(self.motors),))
+        (B,), v = require(self, "B_J"), checked_array("v_m", v_m, (len(self.motors),))
         if self.rank_motors < len(self.motors):
             self._refuse_dependent(self.motors, self.motor_index, v)
         return np.asarray(B @ v)
 
     def joint_torque(self, tau_m: ArrayLike) -> Vector:
-        """τ_J = Gᵀ τ_m (nJ,).
-
-        Args:
-            tau_m: Motor torques or forces (nm,), N·m or N.
-
-        Raises:
-            NoTransmission: There is no G.
-            ValueError: ``tau_m`` has another shape or is not finite.
-        """
-        return np.asarray(self._forward.T @ checked_array("tau_m", tau_m, (len(self.motors),)))
+        """τ_J = Gᵀ τ_m (nJ,), for motor torques or forces τ_m (nm,), N·m or N."""
+        (G,) = require(self, "G")
+        return np.asarray(G.T @ checked_array("tau_m", tau_m, (len(self.motors),)))
 
     def motor_torque(self, tau_J: ArrayLike) -> Vector:
-        """τ_m = B_Jᵀ τ_J (nm,).
+        """τ_m = B_Jᵀ τ_J (nm,), for joint torques or forces τ_J (nJ,), N·m or N.
 
         If the motors depend on each other, it is the solution with the least norm in units of the characteristic
         length; any torques of `internal` may be added.
-
-        Args:
-            tau_J: Joint torques or forces (nJ,), N·m or N.
-
-        Raises:
-            NoTransmission: There is no B_J.
-            ValueError: ``tau_J`` has another shape or is not finite.
         """
-        return np.asarray(self._inverse.T @ checked_array("tau_J", tau_J, (len(self.joints),)))
+        (B,) = require(self, "B_J")
+        return np.asarray(B.T @ checked_array("tau_J", tau_J, (len(self.joints),)))
 
     @cached_property
     def internal(self) -> Matrix:
@@ -150,54 +126,21 @@ class Transmission:
 
     @cached_property
     def hessian(self) -> Matrix:
-        """∂²q_m/∂q_J² (nm, nJ, nJ), symmetric in the last two.
-
-        Raises:
-            NoTransmission: There is no G, or the joints depend on each other, so that its derivative is not unique.
-        """
-        if self.G is not None and self.rank_joints < len(self.joints):
+        """∂²q_m/∂q_J² (nm, nJ, nJ), symmetric in the last two; not unique if the joints depend on each other."""
+        require(self, "G")
+        if self.rank_joints < len(self.joints):
             reason = "the joints depend on each other; leave out some of them"
             raise NoTransmission("the derivative of G", reason)
-        if self.G is None:
-            raise NoTransmission("G", self.reason or "")
         indices = self.joint_index, self.motor_index, self.held_index
         return second_derivative(self.robot, self.q, self.motions, *indices)
 
     def rate(self, v_J: ArrayLike) -> Matrix:
-        """Ġ (nm, nJ) while the joints move at v_J.
-
-        Args:
-            v_J: Joint velocities (nJ,), rad/s or m/s.
-
-        Raises:
-            NoTransmission: As for `hessian`.
-            ValueError: ``v_J`` has another shape or is not finite.
-        """
+        """Ġ (nm, nJ) while the joints move at v_J (nJ,), rad/s or m/s; see `hessian`."""
         return np.asarray(self.hessian @ checked_array("v_J", v_J, (len(self.joints),)))
 
     def bias(self, v_J: ArrayLike) -> Vector:
-        """Ġ v_J (nm,): the motor accelerations are a_m = G a_J + Ġ v_J.
-
-        Args:
-            v_J: Joint velocities (nJ,), rad/s or m/s.
-
-        Raises:
-            NoTransmission: As for `hessian`.
-            ValueError: ``v_J`` has another shape or is not finite.
-        """
+        """Ġ v_J (nm,): the motor accelerations are a_m = G a_J + Ġ v_J; see `rate`."""
         return np.asarray(self.rate(v_J) @ checked_array("v_J", v_J, (len(self.joints),)))
-
-    @property
-    def _forward(self) -> Matrix:
-        if self.G is None:
-            raise NoTransmission("G", self.reason or "")
-        return self.G
-
-    @property
-    def _inverse(self) -> Matrix:
-        if self.B_J is None:
-            raise NoTransmission("B_J", self.inverse_reason or "")
-        return self.B_J
 
     def _dimensionless(self, index: Indices) -> Matrix:
         """Rows (n, m) of the motions, dimensionless."""
@@ -298,22 +241,44 @@ def transmission(
         ValueError: A name is unknown, no actuator moves the joints, ``q`` is not a configuration, or springs block
             motors.
     """
-    chosen = selection(robot, joints)
-    by = motors_of(robot, chosen) if motors is None else selection(robot, motors, "motors")
+    chosen, by = sides(robot, joints, motors)
+    each, single = configurations(robot, q)
+    return at_one(robot, chosen, each[0], by) if single else at_many(robot, chosen, each, by)
+
+
+def configurations(robot: Robot, q: Vector | Matrix | None) -> tuple[Matrix, bool]:
+    """Configurations (B, nq) that a caller gave, and whether it gave a single one, or None.
+
+    Raises:
+        ValueError: They are not configurations.
+    """
     if shape_of(q)[1:] == (robot.tree.nq,):
-        return at_many(robot, chosen, checked_configurations(robot, "q", q), by)
-    return at_one(robot, chosen, start(robot, q, "q"), by)
+        return checked_configurations(robot, "q", q), False
+    return start(robot, q, "q")[None], True
+
+
+def require(at: Transmission, *names: Literal["G", "B_J"], place: str = "") -> tuple[Matrix, ...]:
+    """Maps that have to exist.
+
+    Raises:
+        NoTransmission: One does not.
+    """
+    for name in names:
+        if getattr(at, name) is None:
+            raise NoTransmission(name + place, (at.reason if name == "G" else at.inverse_reason) or "")
+    return tuple(getattr(at, name) for name in names)
 
 
 def at_one(robot: Robot, joints: Selection, q: Vector, motors: Selection) -> Transmission:
     """The transmission at one closed configuration (nq,); see `transmission`."""
     task = _task(robot, motors, joints)
     at, Q = maps_at(robot, task, q)
-    held = _names(robot, task.springs[at.held[0]])
+    held_index = task.springs[at.held[0]]
+    held = tuple(robot.tree.velocity_names[velocity] for velocity in held_index.tolist())
     if at.blocked[0]:
         raise ValueError(f"the springs of {', '.join(held)} cannot all be held while the motors move")
     ranks = int(at.rank[0]), int(at.rank_motors[0]), int(at.rank_joints[0])
-    why = BOTH_EXIST if ranks[0] == ranks[1] == ranks[2] else reasons(robot, motors, joints, Q, ranks)
+    why = reasons(robot, motors, joints, Q, ranks)
     return Transmission(
         robot,
         q,
@@ -321,8 +286,7 @@ def at_one(robot: Robot, joints: Selection, q: Vector, motors: Selection) -> Tra
         motors.names,
         at.G[0] if why.forward is None else None,
         at.B_J[0] if why.inverse is None else None,
-        ranks[1],
-        ranks[2],
+        *ranks[1:],
         None if np.isnan(at.condition[0]) else float(at.condition[0]),
         why.forward,
         why.inverse,
@@ -331,7 +295,7 @@ def at_one(robot: Robot, joints: Selection, q: Vector, motors: Selection) -> Tra
         held,
         np.array(motors.velocities),
         np.array(joints.velocities),
-        task.springs[at.held[0]],
+        held_index,
         task.problem.spaces.scale[:, None] * Q,
     )
 
@@ -341,11 +305,9 @@ def at_many(robot: Robot, joints: Selection, q: Matrix, motors: Selection) -> Tr
     task = _task(robot, motors, joints)
     work = blocks(2 * task.problem.numbers + 20 * robot.tree.nv, None, 1, None, None)
     at = Maps(*work.map(maps, task, (q,)))
-    forward, inverse = _codes(at, len(joints), len(motors))
+    why = _codes(at, at.rank_joints, len(joints)), _codes(at, at.rank_motors, len(motors))
     ranks = at.rank_motors, at.rank_joints
-    return Transmissions(
-        robot, q, joints.names, motors.names, at.G, at.B_J, *ranks, at.condition, forward, inverse, motors, joints
-    )
+    return Transmissions(robot, q, joints.names, motors.names, at.G, at.B_J, *ranks, at.condition, *why, motors, joints)
 
 
 def _task(robot: Robot, motors: Selection, joints: Selection) -> Task:
@@ -353,10 +315,10 @@ def _task(robot: Robot, motors: Selection, joints: Selection) -> Task:
     return Task(for_many(robot), motors.velocities, joints.velocities, driven, springs_of(robot))
 
 
-def _codes(at: Maps, nJ: int, nm: int) -> tuple[tuple[Reason | None, ...], tuple[Reason | None, ...]]:
-    """Why G and why B_J do not exist, for each configuration."""
+def _codes(at: Maps, own: Indices, count: int) -> tuple[Reason | None, ...]:
+    """Why a map from ``count`` velocities, of which ``own`` (b,) are independent, does not exist."""
 
-    def code(rank: int, own: int, count: int, blocked: bool) -> Reason | None:
+    def code(rank: int, own: int, blocked: bool) -> Reason | None:
         if rank < 0:
             return "loops open"
         if blocked:
@@ -365,14 +327,4 @@ def _codes(at: Maps, nJ: int, nm: int) -> tuple[tuple[Reason | None, ...], tuple
             return None
         return "more motions" if rank > count else "singular"
 
-    rows = list(
-        zip(at.rank.tolist(), at.rank_motors.tolist(), at.rank_joints.tolist(), at.blocked.tolist(), strict=True)
-    )
-    forward = tuple(code(rank, own, nJ, blocked) for rank, _, own, blocked in rows)
-    inverse = tuple(code(rank, own, nm, blocked) for rank, own, _, blocked in rows)
-    return forward, inverse
-
-
-def _names(robot: Robot, velocities: Indices) -> tuple[str, ...]:
-    owner = {slot.idx_v + k: name for name, slot in robot.slots.items() for k in range(slot.nv)}
-    return tuple(owner[velocity] for velocity in velocities.tolist())
+    return tuple(map(code, at.rank.tolist(), own.tolist(), at.blocked.tolist()))

@@ -3,51 +3,31 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise, product
+from itertools import product
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices, Matrix, Vector
+from eurdf.array import Indices, Matrix, Vector
 from eurdf.kinematics.blocks import checked_configurations, checked_rows
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.transmissions.drive import closed_pose
-from eurdf.transmissions.exceptions import NoTransmission
-from eurdf.transmissions.joint_coordinates import coordinates_of
-from eurdf.transmissions.motors import motors_of
-from eurdf.transmissions.outline import outlines
-from eurdf.transmissions.reach import Examined, Reach, Stop
-from eurdf.transmissions.selection import Selection, selection
-from eurdf.transmissions.transmission import Transmission, Transmissions, at_many, at_one
+from eurdf.transmissions.grid_search import BoundaryPoint, GridSearch
+from eurdf.transmissions.motors import sides
+from eurdf.transmissions.reach import Reach, Stop
+from eurdf.transmissions.selection import Selection
+from eurdf.transmissions.transmission import Transmissions, at_many, at_one, require
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
-# Bisections of the step from a point that the joints reach to one that they do not.
-_BISECTIONS = 20
-# Corners of an outline are looked for until its points are this part of a cell apart.
-_FINEST = 1.0 / 64.0
 # Number of points of a grid, about, and along one joint, at most, where the caller does not say how fine it is.
 _POINTS, _MOST_ALONG = 1681, 101
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class BoundaryPoint:
-    """A point at which the joints stop.
-
-    Attributes:
-        position: Positions (nJ,) of the joints, rad or m.
-        q: The configuration (nq,).
-        stop: What stops them.
-    """
-
-    position: Vector
-    q: Vector
-    stop: Stop
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -62,6 +42,7 @@ class Workspace:
         index: Indices (N, nJ) on the grid of the points reached.
         positions: Positions (N, nJ) there.
         q: Configurations (N, nq) there.
+        first: The pose (nq,) that was given, closed.
     """
 
     robot: Robot
@@ -71,9 +52,10 @@ class Workspace:
     index: Indices
     positions: Matrix
     q: Matrix
+    first: Vector
     _joints: Selection
     _motors: Selection
-    _search: _Search
+    _search: GridSearch
 
     @property
     def boundary(self) -> tuple[BoundaryPoint, ...]:
@@ -98,7 +80,7 @@ class Workspace:
     @property
     def units(self) -> tuple[Literal["m", "rad"], ...]:
         """Unit of the position of each joint."""
-        return coordinates_of(self.robot, self._joints).units
+        return self._joints.units
 
     @property
     def selections(self) -> tuple[Selection, Selection]:
@@ -129,7 +111,7 @@ class Workspace:
             ValueError: An argument has another shape, or is not finite.
         """
         q = checked_configurations(self.robot, "q", q)
-        found = self._search.moved(q, checked_rows("positions", positions, len(self.joints)))
+        found = self._search.reach.examine(q, checked_rows("positions", positions, len(self.joints)))
         return np.where(found.reached[:, None], found.q, np.nan)
 
     @property
@@ -146,10 +128,7 @@ class Workspace:
     @property
     def stops(self) -> Mapping[Stop, int]:
         """What bounds the workspace, with the number of points of the boundary at which it does, most first."""
-        counts: dict[Stop, int] = {}
-        for point in self.boundary:
-            counts[point.stop] = counts.get(point.stop, 0) + 1
-        return dict(sorted(counts.items(), key=lambda each: -each[1]))
+        return dict(Counter(point.stop for point in self.boundary).most_common())
 
     def on_grid(self, values: Matrix) -> Matrix:
         """Values (N, ...) at the points reached as an array over the grid, (n₁, …, n_nJ, ...); NaN elsewhere."""
@@ -193,18 +172,16 @@ def workspace(
         NoTransmission: The motors do not hold the joints at q.
         ValueError: A joint is beyond its limits at q, or has none and no range; or an argument is wrong.
     """
-    chosen = selection(robot, joints)
-    by = motors_of(robot, chosen) if motors is None else selection(robot, motors, "motors")
+    chosen, by = sides(robot, joints, motors)
     first = closed_pose(robot, q)
-    coordinates = coordinates_of(robot, chosen)
-    axes = _axes(robot, chosen, coordinates.read(first), grid, ranges or {})
-    _require_both_ways(at_one(robot, chosen, first, by))
+    axes = _axes(robot, chosen, chosen.read(first), grid, ranges or {})
+    require(at_one(robot, chosen, first, by), "G", "B_J")
     reach = Reach(robot, chosen, by, first, axes)
     stop = reach.beyond_limits(first)
     if stop is not None:
         raise ValueError(f"q is beyond the {stop}; give a pose within the limits")
-    start, pose = _first_node(reach, axes, coordinates.read(first), first)
-    search = _Search(reach, axes)
+    start, pose = _first_node(reach, axes, chosen.read(first), first)
+    search = GridSearch(reach, axes)
     search.flood(start, pose)
     index = np.argwhere(search.reached)
     return Workspace(
@@ -215,175 +192,11 @@ def workspace(
         index,
         np.stack([axis[own] for axis, own in zip(axes, index.T, strict=True)], axis=1),
         search.q[tuple(index.T)],
+        first,
         chosen,
         by,
         search,
     )
-
-
-class _Search:
-    """What was found on the grid.
-
-    Attributes:
-        reached: Which points of the grid are reached.
-        q: Configurations (..., nq) there.
-    """
-
-    def __init__(self, reach: Reach, axes: tuple[Vector, ...]) -> None:
-        self._reach, self._axes = reach, axes
-        self._shape = tuple(map(len, axes))
-        self.reached = np.zeros(self._shape, dtype=bool)
-        self.q: Matrix = np.zeros(0)
-        self._cell = np.array([(axis[-1] - axis[0]) / (len(axis) - 1) for axis in axes])
-
-    def flood(self, start: tuple[int, ...], pose: Vector) -> None:
-        """Find all points that can be reached from one."""
-        self.q = np.full((*self._shape, len(pose)), np.nan)
-        self.reached[start], self.q[start] = True, pose
-        seen = self.reached.copy()
-        wave = [start]
-        while wave:
-            new: dict[tuple[int, ...], tuple[int, ...]] = {}
-            for node in wave:
-                for other in self._around(node):
-                    if self._on_grid(other) and not seen[other]:
-                        new.setdefault(other, node)
-            if not new:
-                return
-            nodes, origins = list(new), list(new.values())
-            found = self._reach.examine(self.q[tuple(np.transpose(origins))], self._positions(nodes))
-            wave = []
-            for node, q, reached in zip(nodes, found.q, found.reached.tolist(), strict=True):
-                seen[node] = True
-                if reached:
-                    self.reached[node], self.q[node] = True, q
-                    wave.append(node)
-
-    def moved(self, q: Matrix, positions: Matrix) -> Examined:
-        """Motions from configurations (B, nq) straight to positions (B, nJ)."""
-        return self._reach.examine(q, positions)
-
-    def boundary(self) -> tuple[BoundaryPoint, ...]:
-        """The points between a point that is reached and a neighbour that is not."""
-        edges = [
-            (node, other)
-            for node in map(tuple, np.argwhere(self.reached).tolist())
-            for other in self._around(node)
-            if not self._is_reached(other)
-        ]
-        return self._crossings(edges)
-
-    def outlined(self) -> tuple[tuple[BoundaryPoint, ...], tuple[tuple[int, ...], ...]]:
-        """The boundary in two dimensions, and the curves that it consists of."""
-        points: list[BoundaryPoint] = []
-        curves = []
-        for edges in outlines(self.reached):
-            curve = self._with_corners(_distinct(self._crossings(edges)))
-            curves.append(tuple(range(len(points), len(points) + len(curve))))
-            points += curve
-        positions = np.array([point.position for point in points])
-        curves.sort(key=lambda curve: -_area(positions[list(curve)]))
-        return tuple(points), tuple(curves)
-
-    def _is_reached(self, node: tuple[int, ...]) -> bool:
-        return self._on_grid(node) and bool(self.reached[node])
-
-    def _on_grid(self, node: tuple[int, ...]) -> bool:
-        return all(0 <= own < n for own, n in zip(node, self._shape, strict=True))
-
-    def _around(self, node: tuple[int, ...]) -> list[tuple[int, ...]]:
-        """The neighbours of a node, also outside of the grid."""
-        return [(*node[:axis], node[axis] + step, *node[axis + 1 :]) for axis in range(len(node)) for step in (-1, 1)]
-
-    def _positions(self, nodes: Iterable[tuple[int, ...]]) -> Matrix:
-        """Positions (B, nJ) of nodes, also outside of the grid."""
-        first = np.array([axis[0] for axis in self._axes])
-        return np.asarray(first + np.array(list(nodes)) * self._cell)
-
-    def _crossings(self, edges: Iterable[tuple[tuple[int, ...], tuple[int, ...]]]) -> tuple[BoundaryPoint, ...]:
-        """Where the joints stop on the way from the first node of each edge to the second."""
-        edges = list(edges)
-        if not edges:
-            return ()
-        inner, outer = [edge[0] for edge in edges], [edge[1] for edge in edges]
-        q = self.q[tuple(np.transpose(inner))]
-        return tuple(self._bisected(q, self._positions(inner), self._positions(outer)))
-
-    def _bisected(self, q: Matrix, inner: Matrix, outer: Matrix) -> list[BoundaryPoint]:
-        """Where the joints stop between positions (B, nJ) that they reach at q (B, nq), and others."""
-        inner, q, outer = inner.copy(), q.copy(), outer.copy()
-        stop = self._reach.examine(q, outer).stop
-        for _ in range(_BISECTIONS):
-            middle = 0.5 * (inner + outer)
-            found = self._reach.examine(q, middle)
-            yes = found.reached
-            inner[yes], q[yes] = middle[yes], found.q[yes]
-            outer[~yes], stop[~yes] = middle[~yes], found.stop[~yes]
-        return [
-            BoundaryPoint(position, own, self._reach.stops[which])
-            for position, own, which in zip(inner, q, stop.tolist(), strict=True)
-        ]
-
-    def _with_corners(self, curve: list[BoundaryPoint]) -> list[BoundaryPoint]:
-        """The curve with points near its corners, where one stop follows on another."""
-        part = 1.0
-        while part > _FINEST:
-            part *= 0.5
-            pairs = [
-                (a, b)
-                for a, b in pairwise([*curve, curve[0]])
-                if a.stop != b.stop and np.abs((b.position - a.position) / self._cell).max() > _FINEST
-            ]
-            if not pairs:
-                break
-            between = self._between(pairs)
-            longer: list[BoundaryPoint] = []
-            for a, b in pairwise([*curve, curve[0]]):
-                longer.append(a)
-                added = between.get((id(a), id(b)))
-                if added is not None:
-                    longer.append(added)
-            curve = longer
-        return curve
-
-    def _between(self, pairs: list[tuple[BoundaryPoint, BoundaryPoint]]) -> dict[tuple[int, int], BoundaryPoint]:
-        """For points of an outline that follow on each other, a point of it between them."""
-        a, b = np.array([one.position for one, _ in pairs]), np.array([other.position for _, other in pairs])
-        q = np.array([one.q for one, _ in pairs])
-        middle, along = 0.5 * (a + b), (b - a) / self._cell
-        out = np.stack((along[:, 1], -along[:, 0]), axis=1) * self._cell  # the inside is on the left
-        there = self._reach.examine(q, middle)
-        found: dict[tuple[int, int], BoundaryPoint] = {}
-        for outwards in (True, False):
-            which = np.flatnonzero(there.reached == outwards)
-            if not len(which):
-                continue
-            far = middle[which] + (out[which] if outwards else -out[which])
-            end = self._reach.examine(there.q[which] if outwards else q[which], far)
-            bracketed = end.reached != outwards
-            which, far = which[bracketed], far[bracketed]
-            if not len(which):
-                continue
-            inner, outer = (middle[which], far) if outwards else (far, middle[which])
-            start = there.q[which] if outwards else end.q[bracketed]
-            for index, point in zip(which.tolist(), self._bisected(start, inner, outer), strict=True):
-                found[id(pairs[index][0]), id(pairs[index][1])] = point
-        return found
-
-
-def _distinct(points: Iterable[BoundaryPoint]) -> list[BoundaryPoint]:
-    """The points of a closed curve, without those at the place of the one before."""
-    found: list[BoundaryPoint] = []
-    for point in points:
-        if not found or np.abs(point.position - found[-1].position).max() > 1e-9:
-            found.append(point)
-    return found
-
-
-def _area(curve: Matrix) -> float:
-    """The area inside a closed curve (k, 2), negative if it is clockwise."""
-    x, y = curve.T
-    return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
 
 
 def _axes(
@@ -411,14 +224,6 @@ def _axes(
             raise ValueError(f"q has joint '{name}' at {own:.6g}, outside its range {lower:g} to {upper:g}")
         axes.append(np.linspace(lower, upper, grid))
     return tuple(axes)
-
-
-def _require_both_ways(at: Transmission) -> None:
-    """Refuse joints that their motors do not hold, or do not move alone."""
-    if at.G is None:
-        raise NoTransmission("G", at.reason or "")
-    if at.B_J is None:
-        raise NoTransmission("B_J", at.inverse_reason or "")
 
 
 def _first_node(reach: Reach, axes: tuple[Vector, ...], start: Vector, q: Vector) -> tuple[tuple[int, ...], Vector]:

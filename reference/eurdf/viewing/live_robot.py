@@ -11,12 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eurdf.kinematics.array import Vector
+from eurdf.array import Vector
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
-from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Closure, Constraint, Coupling
-from eurdf.mechanism.joint import drivers
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, root_joint
 from eurdf.mechanism.pose import IDENTITY, Pose, direction
 from eurdf.viewing.scene import Scene
@@ -90,7 +88,8 @@ def live_robot(robot: Robot, q: Vector | None = None) -> dict[str, Any]:
     session = Session(robot, q)
     mechanism, tree, scene = robot.mechanism, robot.tree, Scene(robot, session.q)
     limits, length = position_limits(robot), characteristic_length(robot)
-    velocities = {name: list(map(int, tree.velocities_of(name))) for name in _moving(robot)}
+    root = [ROOT_JOINT] if mechanism.root == "floating" else []
+    velocities = {name: list(map(int, tree.velocities_of(name))) for name in (*root, *robot.slots)}
     bodies = {body.name: index for index, body in enumerate(mechanism.bodies)}
     joints = _joints(mechanism, bodies, velocities)
     numbers = {joint["name"]: index for index, joint in enumerate(joints)}
@@ -127,16 +126,10 @@ def live_robot(robot: Robot, q: Vector | None = None) -> dict[str, Any]:
     }
 
 
-def _moving(robot: Robot) -> Iterable[str]:
-    """Names of the joints that have velocities of their own."""
-    root = [ROOT_JOINT] if robot.mechanism.root == "floating" else []
-    return [*root, *(each.name for each in robot.mechanism.joints if each.mimic is None and not each.type.is_fixed)]
-
-
 def _joints(
     mechanism: Mechanism, bodies: Mapping[str, int], velocities: Mapping[str, list[int]]
 ) -> list[dict[str, Any]]:
-    leaders = drivers({joint.name: joint.mimic for joint in mechanism.joints if joint.mimic is not None})
+    leaders = mechanism.leaders
     joints = list(mechanism.joints)
     parents = [bodies[joint.parent] for joint in joints]
     if mechanism.root == "floating":
@@ -177,15 +170,12 @@ def _constraint(
             found["coefficients"] = [coefficient for _, coefficient in constraint.coefficients]
             found["offset"] = constraint.offset
         case Closure():
-            found["a"], found["b"] = (_anchor(each, bodies) for each in constraint.anchors)
+            anchors = [{"body": bodies[each.body], "pose": _pose(each.pose)} for each in constraint.anchors]
+            found["a"], found["b"] = anchors
             found |= constraint.own
             if "axes" in found:
                 found["axes"] = [direction(axis) for axis in found["axes"]]
     return found
-
-
-def _anchor(anchor: Anchor, bodies: Mapping[str, int]) -> dict[str, Any]:
-    return {"body": bodies[anchor.body], "pose": _pose(anchor.pose)}
 
 
 def _coordinates(robot: Robot, joints: Sequence[Mapping[str, Any]], q: Vector) -> list[list[float]]:

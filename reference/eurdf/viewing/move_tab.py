@@ -11,8 +11,8 @@ import pinocchio as pin
 
 from eurdf.diagnostics.wording import visible
 from eurdf.kinematics.assembly import Assembly
-from eurdf.viewing.page import Page
 from eurdf.viewing.scene import Placed, wxyz
+from eurdf.viewing.shown import Page
 from eurdf.writing.saved_configuration import CannotSave, ConfigurationExists
 
 # Steps of a slider over its range, and decimals of its number.
@@ -24,15 +24,12 @@ _NONE = "(none)"
 
 
 class MoveTab:
-    """Sliders of the actuators, and buttons that bring all joints elsewhere."""
+    """Sliders of the actuators, and buttons that bring all joints elsewhere, in the container that is open.
+
+    The choices of the tab before, which is removed already, are kept.
+    """
 
     def __init__(self, page: Page, before: MoveTab | None = None) -> None:
-        """Add the controls to the container that is open.
-
-        Args:
-            page: The page.
-            before: The one whose choices to keep, removed already.
-        """
         self._page = page
         gui, session = page.server.gui, page.shown.session
         self._sliders = [self._slider(index) for index in range(len(session.sliders))]
@@ -137,12 +134,6 @@ class _Gizmo:
     """The choice of a frame, and the handle on it."""
 
     def __init__(self, page: Page, before: _Gizmo | None = None) -> None:
-        """Add the choice to the container that is open.
-
-        Args:
-            page: The page.
-            before: The one whose choice to keep, removed already.
-        """
         self._page = page
         self._handle: Any = None
         self._held = False

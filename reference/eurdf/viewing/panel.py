@@ -12,10 +12,10 @@ from eurdf.viewing import text
 from eurdf.viewing.figure import LAYERS
 from eurdf.viewing.graph import graph_svg
 from eurdf.viewing.move_tab import MoveTab
-from eurdf.viewing.page import Page
 from eurdf.viewing.play_tab import PlayTab
+from eurdf.viewing.playback import Trajectory
 from eurdf.viewing.scene import Placed
-from eurdf.viewing.trajectory import Trajectory
+from eurdf.viewing.shown import Page
 
 # Time between looks at the files, s.
 _LOOK = 0.5

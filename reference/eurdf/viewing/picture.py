@@ -12,9 +12,9 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
+from eurdf.array import Vector
 from eurdf.diagnostics.extras import install_command
 from eurdf.exceptions import MissingExtra
-from eurdf.kinematics.array import Vector
 from eurdf.kinematics.residual import openings_once
 from eurdf.pinocchio.robot import Robot
 from eurdf.viewing.scene import Scene

@@ -5,24 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any, Literal
 
-from eurdf.viewing.page import Page
-from eurdf.viewing.playback import gravity_frames, sweep_frames, trajectory_frames
-from eurdf.viewing.trajectory import Trajectory, read_trajectory
+from eurdf.viewing.playback import Trajectory, gravity_frames, read_trajectory, sweep_frames, trajectory_frames
+from eurdf.viewing.shown import Page
 
 #: What can be played.
 Kind = Literal["sweep", "gravity", "trajectory"]
 
 
 class PlayTab:
-    """A range of motion, gravity, a trajectory; and a button that pauses each."""
+    """A range of motion, gravity, a trajectory, and a button that pauses each; made as `MoveTab` is."""
 
     def __init__(self, page: Page, before: PlayTab | None = None) -> None:
-        """Add the controls to the container that is open.
-
-        Args:
-            page: The page.
-            before: The one whose choices to keep, removed already.
-        """
         self._page = page
         self._frames: Iterator[float] | None = None
         self._plays: Kind | None = None

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import csv
+import io
+import math
 import time
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pinocchio as pin
 
-from eurdf.kinematics.array import Vector
+from eurdf.array import Vector
+from eurdf.diagnostics import did_you_mean
 from eurdf.kinematics.exceptions import NotClosable, SimulationDiverged
 from eurdf.kinematics.forward import forward_kinematics
 from eurdf.kinematics.residual import residual
@@ -20,7 +24,6 @@ from eurdf.kinematics.simulation import Simulation, simulate
 from eurdf.kinematics.tolerances import CLOSED
 from eurdf.pinocchio.robot import build_robot
 from eurdf.viewing.session import Session
-from eurdf.viewing.trajectory import Trajectory, frames_between
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -39,6 +42,8 @@ _SHORTEST_STEP = _STEP / 32.0
 _BUDGET = 0.025
 # Time between looks at whether a frame is computed, s.
 _POLL = 0.002
+# The column of times in the file of a trajectory.
+_TIME = "time"
 # A floating root has the first coordinates of q: position and quaternion.
 _ROOT_COORDINATES = 7
 
@@ -62,6 +67,89 @@ def sweep_frames(session: Session, index: int, show: Show) -> Iterator[float]:
             yield _FRAME
 
 
+@dataclass(frozen=True, slots=True)
+class Trajectory:
+    """Coordinates of joints at times; the other joints follow.
+
+    Attributes:
+        times: In ascending order, s.
+        coordinates: At each time, the coordinates of the joints as in files.
+    """
+
+    times: tuple[float, ...]
+    coordinates: tuple[Mapping[str, tuple[float, ...]], ...]
+
+
+def read_trajectory(text: str, robot: Robot) -> Trajectory:
+    """Read a CSV file; `Viewer.replay` has what it contains.
+
+    Args:
+        text: The file.
+        robot: Whose joints they are.
+
+    Raises:
+        ValueError: The file has an error; the text says in which line.
+    """
+    rows = csv.reader(io.StringIO(text.removeprefix("\ufeff")))
+    header = [name.strip() for name in next(rows, [])]
+    columns = _columns(header, robot)
+    times: list[float] = []
+    coordinates: list[Mapping[str, tuple[float, ...]]] = []
+    for row in rows:
+        line = rows.line_num
+        if not any(cell.strip() for cell in row):
+            continue
+        if len(row) != len(header):
+            raise ValueError(f"line {line}: {len(row)} values, but the first line names {len(header)} columns")
+        numbers = [_number(cell, line, name) for cell, name in zip(row, header, strict=True)]
+        time = numbers[header.index(_TIME)]
+        if times and time <= times[-1]:
+            raise ValueError(f"line {line}: time {time:g} does not follow {times[-1]:g}; times must ascend")
+        times.append(time)
+        coordinates.append({joint: tuple(numbers[at] for at in places) for joint, places in columns.items()})
+    if not times:
+        raise ValueError("the trajectory has no line of values")
+    return Trajectory(tuple(times), tuple(coordinates))
+
+
+def _columns(header: list[str], robot: Robot) -> dict[str, list[int]]:
+    """For each joint the indices of its columns."""
+    if _TIME not in header:
+        raise ValueError(f"line 1: there is no column '{_TIME}'; the first line names the columns, such as: time,motor")
+    for name in header:
+        if header.count(name) > 1:
+            raise ValueError(f"line 1: column '{name}' occurs {header.count(name)} times")
+    sizes = {joint.name: len(joint.type.coordinates) for joint in robot.mechanism.joints if joint.name in robot.slots}
+    expected = {
+        joint: [joint] if size == 1 else [f"{joint}:{number + 1}" for number in range(size)]
+        for joint, size in sizes.items()
+    }
+    joint_of = {column: joint for joint, names in expected.items() for column in names}
+    columns: dict[str, list[int]] = {}
+    for name in header:
+        if name == _TIME:
+            continue
+        joint = joint_of.get(name)
+        if joint is None:
+            hint = did_you_mean(name, joint_of) or "columns are 'time' and names of moving joints"
+            raise ValueError(f"line 1: there is no joint '{name}'; {hint}")
+        missing = [other for other in expected[joint] if other not in header]
+        if missing:
+            raise ValueError(f"line 1: joint '{joint}' has {sizes[joint]} coordinates; add column '{missing[0]}'")
+        columns[joint] = [header.index(other) for other in expected[joint]]
+    return columns
+
+
+def _number(cell: str, line: int, column: str) -> float:
+    try:
+        number = float(cell)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise ValueError(f"line {line}: '{cell.strip()}' in column '{column}' is not a finite number")
+    return number
+
+
 def trajectory_frames(session: Session, trajectory: Trajectory, show: Show) -> Iterator[float]:
     """A trajectory, once: the joints of its columns have its values, and the others follow.
 
@@ -71,14 +159,15 @@ def trajectory_frames(session: Session, trajectory: Trajectory, show: Show) -> I
     Raises:
         ValueError: A configuration cannot be reached; the text says at which time.
     """
-    for at, (left, coordinates) in zip(trajectory.times, frames_between(trajectory), strict=True):
+    following = (*trajectory.times[1:], trajectory.times[-1])
+    for at, after, coordinates in zip(trajectory.times, following, trajectory.coordinates, strict=True):
         begin = time.monotonic()
         try:
             session.show(forward_kinematics(session.robot, coordinates, session.q))
         except NotClosable as reason:
             raise ValueError(f"the trajectory stops at time {at:g} s: {reason}") from None
         show(f"trajectory: {at:.3f} s of {trajectory.times[-1]:g} s")
-        yield max(0.0, left - (time.monotonic() - begin))
+        yield max(0.0, after - at - (time.monotonic() - begin))
 
 
 def gravity_frames(session: Session, show: Show, *, dissipation: bool, held: bool = False) -> Iterator[float]:

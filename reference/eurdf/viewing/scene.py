@@ -12,15 +12,14 @@ import coal
 import numpy as np
 import pinocchio as pin
 
+from eurdf.array import Matrix, Vector
 from eurdf.closures.se3 import quaternion_of
-from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.evaluate import Frames, frames_at
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.residual import all_openings
 from eurdf.mechanism.body import Anchor, Inertia
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import direction
 from eurdf.pinocchio.frames import body_frame_ids, placement_of
 from eurdf.viewing.surface import Surface, sphere, surface_of
@@ -278,7 +277,7 @@ def _ellipsoid(inertia: Inertia) -> tuple[Vector, Matrix]:
 
 def _axes(joint: Joint, body: int, actuated: bool) -> list[Axis]:
     """The axes of a joint, fixed to its child: three for a ball, those of the plane and its normal for a planar one."""
-    if joint.type.is_fixed or joint.type is JointType.FLOATING:
+    if joint.type.nv in (0, 6):
         return []
     written = joint.axes or (_X, _Y, _Z)
     in_child = placement_of(joint.offset).inverse()

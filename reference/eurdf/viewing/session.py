@@ -6,27 +6,25 @@ Knows no viewer, so that what happens on a page can be tested without one.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from eurdf.array import Mask, Vector
 from eurdf.kinematics.analysis import Analysis, analyze
-from eurdf.kinematics.array import Mask, Vector
 from eurdf.kinematics.assembly import Assembly, assemble, start
 from eurdf.kinematics.branch import Branch, Point
-from eurdf.kinematics.derived import derived
 from eurdf.kinematics.inverse import inverse_kinematics
 from eurdf.kinematics.path import Elements, follow
-from eurdf.kinematics.position_limit import driven_coordinates, position_limits
+from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.residual import residual
-from eurdf.kinematics.scale import characteristic_length
 from eurdf.kinematics.sweep import sweep
 from eurdf.kinematics.tolerances import CLOSED, DEAD, START
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array
-from eurdf.viewing.joint_pose import LONGEST, NAMES, ROTATION, motions, values_at
+from eurdf.transmissions.selection import selection
+from eurdf.viewing.sliders import LONGEST, NAMES, ROTATION, Slider, motions, sliders_of, values_at
 from eurdf.viewing.spring_rest import SpringRest
 
 if TYPE_CHECKING:
@@ -44,33 +42,6 @@ _REST_STEPS = 40
 _SHORTEST_REST_STEP = 2.0**-12
 # Longest step of a coordinate of a pose, as a part of the range of its slider.
 _POSE_STEP = 1.0 / 40.0
-
-
-@dataclass(frozen=True, slots=True)
-class Slider:
-    """A coordinate that the user moves.
-
-    Attributes:
-        joint: Name of the joint.
-        label: Name of the joint, and of the coordinate if it has several.
-        unit: ``rad`` or ``m``.
-        lower: Least value: the position limit; without one, half a turn or a characteristic length from the start.
-        upper: Greatest value.
-        number: Which of the joint's coordinates it is; of a planar, spherical or floating one, of its pose.
-        velocity: Index in v of the velocity that drives it; None if it is of a pose, which several velocities drive.
-        actuated: Whether the joint is actuated.
-        follow: Names of the dependent actuators that follow, as the loops do not let this one move alone.
-    """
-
-    joint: str
-    label: str
-    unit: Literal["rad", "m"]
-    lower: float
-    upper: float
-    number: int
-    velocity: int | None
-    actuated: bool
-    follow: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +95,7 @@ class Session:
         self.configurations: dict[str, Vector] = dict(robot.configurations)
         self.analysis: Analysis = analyze(robot, assembly.q)
         self._limits = position_limits(robot)
-        self.sliders = tuple(_sliders(robot, self.first, self.analysis))
+        self.sliders = tuple(sliders_of(robot, self.first, self.analysis))
         self._branches: dict[int, Branch] = {}
         self._largest: dict[int, float] = {}
 
@@ -140,16 +111,11 @@ class Session:
 
     def value(self, index: int) -> float:
         """The coordinate of a slider, rad or m; the angle of a joint without limits is from -pi to pi."""
-        slider, tree = self.sliders[index], self.robot.tree
-        velocity = slider.velocity
-        if velocity is None:
-            return float(self._pose(slider, self.q)[slider.number])
-        driven, coordinates = derived(self.robot, driven_coordinates)
-        if velocity in driven:
-            return float(self.q[coordinates[velocity]])
-        own = zip(tree.own_coordinates, tree.own_velocities, strict=True)
-        cosine, sine = next(self.q[list(places)] for places, velocities in own if velocity in velocities)
-        return math.atan2(sine, cosine)
+        slider = self.sliders[index]
+        values = (
+            self._pose(slider, self.q) if slider.velocity is None else selection(self.robot, slider.joint).read(self.q)
+        )
+        return float(values[slider.number])
 
     def move(self, index: int, value: float) -> Stop | None:
         """Move a coordinate; the passive joints follow on the same branch.
@@ -404,47 +370,3 @@ class Session:
             follow = {each for joint in slider.follow for each in self.robot.tree.velocities_of(joint)}
             self._branches[velocity] = Branch(self.robot, velocity, self._limits, follow)
         return self._branches[velocity]
-
-
-def _sliders(robot: Robot, q: Vector, analysis: Analysis) -> Iterator[Slider]:
-    tree, limits = robot.tree, position_limits(robot)
-    joints = {joint.name: joint for joint in robot.mechanism.joints}
-    moved = robot.actuation.joints or [name for name in robot.slots if name in joints]
-    length = characteristic_length(robot)
-    driven, coordinates = derived(robot, driven_coordinates)
-    direct = set(driven.tolist())
-    for name in moved:
-        joint = joints[name]
-        velocities = tree.velocities_of(name)
-        turns = joint.type.is_axial and not joint.type.limited
-        actuated = name in robot.actuation.joints
-        if not len(velocities) or (joint.type in NAMES and robot.constraints and not actuated):
-            continue  # the velocities of a joint that is not actuated are not held, so its pose is not either
-        dependent = [each for each in analysis.dependent_actuators if name in each]
-        follow = tuple(other for each in dependent for other in each if other != name)
-        for number, word in enumerate(NAMES.get(joint.type, ())):
-            slot = robot.slots[name]
-            is_position = word.startswith("position")
-            at = float(values_at(joint.type, q[slot.idx_q : slot.idx_q + slot.nq])[number]) if is_position else 0.0
-            around = length if is_position else math.pi
-            unit: Literal["rad", "m"] = "m" if is_position else "rad"
-            yield Slider(name, f"{name} {word}", unit, at - around, at + around, number, None, actuated, follow)
-        if joint.type in NAMES:
-            continue
-        for number, velocity in enumerate(velocities):
-            word = joint.type.coordinates[number]
-            at = float(q[coordinates[velocity]]) if velocity in direct else 0.0
-            around = length if word == "length" else math.pi
-            lower, upper = float(limits.lower[velocity]), float(limits.upper[velocity])
-            several = f" {number + 1} ({word})" if len(velocities) > 1 else ""
-            yield Slider(
-                name,
-                f"{name}{several}",
-                "m" if word == "length" else "rad",
-                -math.pi if turns else min(lower, at) if math.isfinite(lower) else at - around,
-                math.pi if turns else max(upper, at) if math.isfinite(upper) else at + around,
-                number,
-                int(velocity),
-                actuated,
-                follow,
-            )

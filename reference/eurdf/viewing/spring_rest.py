@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices, Vector
+from eurdf.array import Indices, Vector
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.position_limit import driven_coordinates, position_limits
 from eurdf.kinematics.rank import numerical_rank
@@ -17,7 +17,7 @@ from eurdf.kinematics.tolerances import MOST_STEPS, START
 from eurdf.mechanism.joint import LIMIT_TOLERANCE
 
 if TYPE_CHECKING:
-    from eurdf.kinematics.array import Matrix
+    from eurdf.array import Matrix
     from eurdf.pinocchio.robot import Robot
 
 _LONGEST = 0.3  # bound of the motion of a joint in one step (rad, or characteristic lengths)
@@ -116,5 +116,5 @@ class SpringRest:
 def _solutions(A: Matrix, b: Vector) -> tuple[Vector, Matrix]:
     """The least solution of A x = b in the least squares sense, and the x of A x = 0 as columns."""
     left, values, right = np.linalg.svd(A)
-    rank = numerical_rank(values, values.max(initial=0.0))
+    rank = numerical_rank(values)
     return right[:rank].T @ ((left[:, :rank].T @ b) / values[:rank]), right[rank:].T

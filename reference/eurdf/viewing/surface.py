@@ -11,7 +11,7 @@ import coal
 import numpy as np
 import numpy.typing as npt
 
-from eurdf.kinematics.array import Matrix, Vector
+from eurdf.array import Matrix, Vector
 
 # Vertices on a circle, and on a quarter of one.
 _AROUND = 36

@@ -49,9 +49,10 @@ def dimensions(analysis: Analysis) -> str:
     """The figures of `eurdf info`."""
     cells = "".join(
         f"<tr style='overflow-wrap: normal'><td>{name}</td>"
-        f"<td style='text-align: right; padding: 0 8px'><b>{_figure(analysis, name)}</b></td>"
+        f"<td style='text-align: right; padding: 0 8px'><b>{'-' if value is None else value}</b></td>"
         f"<td style='opacity: 0.7'>{meaning}</td></tr>"
         for name, meaning in FIGURES.items()
+        for value in [getattr(analysis, name)]
     )
     dependent = [
         box(f"dependent actuators: {escaped(', '.join(joints))}", color=_ORANGE)
@@ -59,11 +60,6 @@ def dimensions(analysis: Analysis) -> str:
     ]
     left_out = [box(escaped(analysis.left_out), color=_ORANGE)] if analysis.left_out else []
     return f'<div style="{_BOX}"><table>{cells}</table></div>' + "".join([*dependent, *left_out])
-
-
-def _figure(analysis: Analysis, name: str) -> str:
-    value = getattr(analysis, name)
-    return "-" if value is None else str(value)
 
 
 def gauge(analysis: Analysis) -> str:

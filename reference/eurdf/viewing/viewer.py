@@ -11,17 +11,16 @@ from typing import Any
 
 import numpy as np
 
+from eurdf.array import Vector
 from eurdf.exceptions import EurdfError
-from eurdf.kinematics.array import Vector
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.pinocchio.robot import Robot
 from eurdf.reading.robot_source import RobotSource
 from eurdf.viewing.files import RobotOnDisk
-from eurdf.viewing.page import Page
 from eurdf.viewing.panel import Panel
+from eurdf.viewing.playback import read_trajectory
 from eurdf.viewing.server import LOOPBACK, start_server, stop_server, url_of
-from eurdf.viewing.shown import ShownRobot
-from eurdf.viewing.trajectory import read_trajectory
+from eurdf.viewing.shown import Page, ShownRobot
 from eurdf.viewing.worker import Worker
 from eurdf.writing.atomic_file import write_atomically
 

@@ -206,9 +206,6 @@ def scratch_folder(beside: Path) -> Iterator[Path]:
     A lock shows whether the process that made such a folder still runs. Windows has no such lock: what a killed process
     left stays there.
 
-    Args:
-        beside: The folder that contains it.
-
     Raises:
         OSError: It cannot be made.
     """

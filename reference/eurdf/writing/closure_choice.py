@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from eurdf.closures.kind import REGISTRY
+from eurdf.closures import REGISTRY
 from eurdf.diagnostics import enumerated
 from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.mechanism import Mechanism
@@ -69,11 +69,6 @@ def choose_types(mechanism: Mechanism, undecided: Iterable[str], called: Sequenc
     A closure is 6d, as where version 1 does not state its type, unless the loops then cannot close, or are locked, or
     have actuators whose velocities depend on one another, and with 3d they do not. Of loops that need 3d, each closure
     becomes 6d again that is closed as well, and that leaves fewer motions without an actuator.
-
-    Args:
-        mechanism: The robot, with any types of these closures.
-        undecided: Names of the closures.
-        called: What the notes call the robot's closures, in their order.
 
     Returns:
         Their types, and why.

@@ -73,11 +73,6 @@ def attach(
     A comment beside something goes with the entry that begins last before it; beside a key whose whole value is on
     the same line, with the key. A comment on a line of its own goes with the next entry. What is before the first
     entry, or after all, is under the empty pointer: above or beside.
-
-    Args:
-        comments: In their order.
-        pointers: Of the entries: keys at the top, and items of lists.
-        document: The file.
     """
     spots: list[tuple[int, int, Pointer]] = []
     whole: dict[int, Pointer] = {}

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any, Literal
 
 from lxml import etree
@@ -17,16 +17,16 @@ from lxml import etree
 from eurdf.diagnostics.wording import visible
 from eurdf.format.closure_model import (
     CLOSURE,
-    AnyClosure,
     Compliance,
     FrameOnLink,
     FrameReference,
     NamedFrame,
     PoseOnLink,
 )
+from eurdf.format.closure_model import Closure as ClosureEntry
 from eurdf.format.closure_model import Coupling as CouplingEntry
 from eurdf.format.conventions import VERSION2_1, VERSION_KEY, is_own_key
-from eurdf.format.joint_model import JOINT, Geared, Limits
+from eurdf.format.joint_model import JOINT, NAMED, Geared, Limits
 from eurdf.format.joint_model import Joint as JointEntry
 from eurdf.format.model import VERSION2, Version2, lowest_version
 from eurdf.format.yaml_text import entries_of, modeline, text_of
@@ -37,16 +37,9 @@ from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import IDENTITY, Vector3
 from eurdf.mechanism.same_model import with_universal_joints
+from eurdf.writing import urdf_elements as elements
 from eurdf.writing.urdf_elements import (
     Color,
-    add_dynamics,
-    add_inertial,
-    add_joint,
-    add_limit,
-    add_material,
-    add_mimic,
-    add_shape,
-    state_version,
 )
 from eurdf.writing.xml_text import file_content, representable, rpy_of
 
@@ -54,9 +47,6 @@ from eurdf.writing.xml_text import file_content, representable, rpy_of
 _TWO_HYPHENS = re.compile("-(?=-)")
 
 _Z: Vector3 = (0.0, 0.0, 1.0)
-
-#: Fields of all kinds of closure.
-_COMMON = frozenset(each.name for each in fields(Closure))
 
 
 class NotWritable(ValueError):  # noqa: N818 - named as the other refusals are
@@ -129,11 +119,7 @@ def describe_mechanism(
 
 
 def _refuse_unwritable(mechanism: Mechanism) -> None:
-    """Refuse what neither file can say.
-
-    Raises:
-        NotWritable: A name cannot be in XML, or the axes of a joint have different gears.
-    """
+    """Raise `NotWritable` for a name that XML cannot contain, and for a joint whose axes have different gears."""
     for kind, names in (
         ("link", [body.name for body in mechanism.bodies]),
         ("joint", [joint.name for joint in mechanism.joints]),
@@ -158,12 +144,12 @@ class _Urdf:
         self.joints = {joint.name for joint in mechanism.joints}
         self.robot = etree.Element("robot", name=mechanism.name)
         for name, color in materials.items():
-            add_material(self.robot, name, color)
+            elements.add_material(self.robot, name, color)
         self._link(mechanism.bodies[0])
         for joint, body in zip(mechanism.joints, mechanism.bodies[1:], strict=True):
             self._joint(joint)
             self._link(body)
-        state_version(self.robot)
+        elements.state_version(self.robot)
 
     def content(self, comments: Sequence[str]) -> bytes:
         """The bytes of the file."""
@@ -174,10 +160,10 @@ class _Urdf:
     def _link(self, body: Body) -> None:
         link = etree.SubElement(self.robot, "link", name=body.name)
         if body.inertia is not None:
-            add_inertial(link, body.inertia)
+            elements.add_inertial(link, body.inertia)
         for use, shapes in (("visual", body.visuals), ("collision", body.collisions)):
             for shape in shapes:
-                add_shape(link, use, shape, shape.filename, shape.texture, self.names_of_colors)
+                elements.add_shape(link, use, shape, shape.filename, shape.texture, self.names_of_colors)
 
     def _joint(self, joint: Joint) -> None:
         kind, axis = _in_urdf(joint)
@@ -188,14 +174,14 @@ class _Urdf:
             else:
                 child = _new(f"{joint.child}_joint", self.links)
                 fixed = _new(f"{joint.name}_offset", self.joints)
-        element = add_joint(self.robot, joint.name, kind, joint.parent, child, placement, axis)
+        element = elements.add_joint(self.robot, joint.name, kind, joint.parent, child, placement, axis)
         if joint.mimic is not None:
-            add_mimic(element, joint.mimic)
+            elements.add_mimic(element, joint.mimic)
         if kind.is_axial:
             self._properties(joint, kind, element)
         if child != joint.child:
             etree.SubElement(self.robot, "link", name=child)
-            add_joint(self.robot, fixed, JointType.FIXED, child, joint.child, joint.offset, None)
+            elements.add_fixed_joint(self.robot, fixed, child, joint.child, joint.offset)
 
     def _properties(self, joint: Joint, kind: JointType, element: etree._Element) -> None:
         properties = joint.properties
@@ -208,8 +194,8 @@ class _Urdf:
         effort, velocity = _common(properties.effort, math.inf), _common(properties.velocity, math.inf)
         rates = {name: values[0] for name, values in properties.rates.items() if len(set(values)) == 1}
         if position is not None or math.isfinite(effort) or math.isfinite(velocity) or rates:
-            add_limit(element, position, effort, velocity, rates)
-        add_dynamics(element, _common(properties.damping, 0.0), _common(properties.friction, 0.0))
+            elements.add_limit(element, position, effort, velocity, rates)
+        elements.add_dynamics(element, _common(properties.damping, 0.0), _common(properties.friction, 0.0))
 
 
 def _new(name: str, taken: set[str]) -> str:
@@ -230,9 +216,10 @@ def _in_urdf(joint: Joint) -> tuple[JointType, Vector3 | None]:
     if not joint.type.replaces:
         return joint.type, None if joint.type.is_fixed or joint.type.quaternion is not None else axis
     index = _limited_in_urdf(joint)
-    if index is None:
+    if index is None and JointType.CONTINUOUS in joint.type.replaces:
         return JointType.CONTINUOUS, axis
-    return JointType.PRISMATIC if joint.type.coordinates[index] == "length" else JointType.REVOLUTE, axis
+    slides = index is None or joint.type.steps[index].kind == "slide"
+    return JointType.PRISMATIC if slides else JointType.REVOLUTE, axis
 
 
 def _limited_in_urdf(joint: Joint) -> int | None:
@@ -331,10 +318,9 @@ def _is_geared(joint: Joint) -> bool:
 
 
 def _actuator(name: str, mechanism: Mechanism) -> Geared:
-    (joint,) = (joint for joint in mechanism.joints if joint.name == name)
-    motor = mechanism.motors.get(name)
+    joint = next(joint for joint in mechanism.joints if joint.name == name)
     stated: dict[str, Any] = {}
-    if motor is not None:
+    if motor := mechanism.motors.get(name):
         stated = {"name": None if motor.name == name else motor.name, "control": motor.control}
     if _is_geared(joint):
         stated["gear_ratio"] = joint.properties.gear_ratio[0]
@@ -342,23 +328,15 @@ def _actuator(name: str, mechanism: Mechanism) -> Geared:
     return Geared(joint=name, **stated)
 
 
-def _closure(closure: Closure, anchors: _Anchors) -> AnyClosure:
-    # What a kind has besides, one of its entries has by the same name.
-    own = {each.name: getattr(closure, each.name) for each in fields(closure)}
-    own = {key: value for key, value in own.items() if key not in _COMMON}
-    if "axes" in own and len(set(own["axes"])) == 1:
-        own = {"axis": own["axes"][0]}
-    forms = [record for record in CLOSURE.records if closure.type in record.values_of_type()]
-    form = next(record.model for record in forms if own.keys() <= record.all_keys.keys())
+def _closure(closure: Closure, anchors: _Anchors) -> ClosureEntry:
     linear, angular = closure.compliance.linear or None, closure.compliance.angular or None
-    written: AnyClosure = form(
+    return CLOSURE.entry(
+        closure.type,
+        closure.stated(),
         name=closure.name,
-        type=closure.type,
         frames=(anchors.reference(closure.a), anchors.reference(closure.b)),
         compliance=Compliance(linear=linear, angular=angular) if linear or angular else None,
-        **own,
     )
-    return written
 
 
 class _Anchors:
@@ -403,7 +381,7 @@ def _inside(place: Any, key: str) -> Any:
     """What is at a key or an index; an actuator or a joint that is a name alone becomes a mapping."""
     if isinstance(place, dict):
         value = place.get(key)
-        if isinstance(value, str) and value in ("spherical", "cylindrical"):
+        if isinstance(value, str) and value in NAMED:
             place[key] = value = {"type": value}
         return value
     if isinstance(place, list) and key.isdigit() and int(key) < len(place):

@@ -10,10 +10,10 @@ from eurdf.closures.point import PointClosure
 from eurdf.diagnostics import Diagnostics, enumerated
 from eurdf.format.conventions import VERSION2_0, VERSION2_1, is_own_key
 from eurdf.format.urdf.data import Urdf
-from eurdf.format.yaml_text import Entry, Value, entries_of, lines_of, modeline, text_of
+from eurdf.format.yaml_text import Value, YamlEntry, entries_of, lines_of, modeline, text_of
+from eurdf.linking.joints import joint_of
+from eurdf.linking.link import reread
 from eurdf.linking.merging import find_chains
-from eurdf.linking.rereading import reread
-from eurdf.linking.urdf_tree import joint_of
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.mechanism import Mechanism, Root
 from eurdf.mechanism.spanning_tree import rigid_poses
@@ -26,6 +26,7 @@ from eurdf.writing.naming_conventions import (
     GeneratedVersion,
     NamedClosure,
     find,
+    mimic_pairs,
     with_type,
 )
 
@@ -134,13 +135,8 @@ def _mate_notes(mates: Mates, version: GeneratedVersion) -> tuple[str, ...]:
 def _merges(urdf: Urdf, found: Found, version: GeneratedVersion) -> dict[str, tuple[str, str, str]]:
     """EU-ONE-007, but for motors, which version 1 would merge as well."""
     joints = {joint.name: joint_of(joint) for joint in urdf.joints.values()}
-    coupled = {name for joint in urdf.joints.values() if joint.mimic for name in (joint.name, joint.mimic.joint)}
-    links = {
-        frame if frame in urdf.links else urdf.joints[frame].child
-        for closure in found.closures
-        for frame in closure.frames
-    }
-    excluded = {*found.sphericals, *coupled, *(() if version == "1" else found.motors)}
+    links = {_link(urdf, frame) for closure in found.closures for frame in closure.frames}
+    excluded = {*found.sphericals, *mimic_pairs(urdf), *(() if version == "1" else found.motors)}
     chains = [tuple(joint.name for joint in chain.joints) for chain in find_chains(urdf, joints, excluded, links)]
     # A key that begins with x- would be user data.
     return {third: (first, second, third) for first, second, third in chains if version == "1" or not is_own_key(third)}
@@ -193,7 +189,7 @@ def _link(urdf: Urdf, frame: str) -> str:
 
 def _version2(
     found: Found, merges: Mapping[str, tuple[str, str, str]], root: Root, urdf_path: str, version: str
-) -> Iterator[Entry]:
+) -> Iterator[YamlEntry]:
     """The entries of a description in version 2.0, which has no hinges, or 2.1."""
     joints: dict[str, Value] = dict.fromkeys(found.sphericals, "spherical")
     joints |= {name: {"type": "spherical", "merges": three} for name, three in merges.items()}
@@ -211,7 +207,7 @@ def _version2(
     return entries_of({key: value for key, value in content.items() if value})
 
 
-def _version1(found: Found) -> Iterator[Entry]:
+def _version1(found: Found) -> Iterator[YamlEntry]:
     """The entries of a description in version 1, which merges revolutes by itself."""
     values: dict[str, Value] = {
         "closed_loop": [closure.frames for closure in found.closures],
@@ -221,4 +217,4 @@ def _version1(found: Found) -> Iterator[Entry]:
         "joint_type": ["SPHERICAL"] * len(found.sphericals),
     }
     # Without any key of the format, it would still be a description of version 1: of nothing.
-    return (Entry(lines_of(key, value)) for key, value in values.items() if value or key in ("closed_loop", "type"))
+    return (YamlEntry(lines_of(key, value)) for key, value in values.items() if value or key in ("closed_loop", "type"))

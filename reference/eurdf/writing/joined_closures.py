@@ -100,10 +100,6 @@ def join_points(closures: Sequence[Closure], poses: Mapping[str, tuple[str, Pose
 
     Two such points, and more on a line, hold a hinge; others fix one body to the other. As 3d closures, they have
     redundant rows.
-
-    Args:
-        closures: The closures of a mechanism.
-        poses: As of `eurdf.mechanism.spanning_tree.rigid_poses`.
     """
     groups: dict[tuple[str, str], list[list[_Point]]] = {}
     for index, closure in enumerate(closures):

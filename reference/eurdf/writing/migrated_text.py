@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 from eurdf.diagnostics import FileError
 from eurdf.diagnostics.lines import BREAK
-from eurdf.format.closure_model import AXES, CLOSURE, Closure, FrameReference, NamedFrame
+from eurdf.format.closure_model import AXES, CLOSURE, FrameReference, NamedFrame
 from eurdf.format.conventions import VERSION2_0, VERSION2_1, is_own_key
 from eurdf.format.joint_model import JOINT, Joint, Overridden, Spherical
 from eurdf.format.model import VERSION1, Description
@@ -18,8 +18,8 @@ from eurdf.format.schema import FILES
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.yaml_text import (
     WIDTH,
-    Entry,
     Value,
+    YamlEntry,
     item_of_mapping,
     lines_of,
     lines_of_item,
@@ -55,22 +55,14 @@ class NotMigratable(Exception):  # noqa: N818 - shown to the user as it is
         super().__init__(message)
 
 
-@dataclass(frozen=True, slots=True)
-class Migrated:
-    """A description in version 2, and what was done to it, one sentence each."""
-
-    text: str
-    notes: tuple[str, ...]
-
-
 def migrated(
     description: Description,
     urdf: Urdf,
     merged: Mapping[str, Sequence[str]],
     urdf_path: str = "robot.urdf",
     schema: str | None = None,
-) -> Migrated:
-    """Write a description of version 1 in version 2.
+) -> tuple[str, list[str]]:
+    """Write a description of version 1 in version 2: its text, and what was done, one sentence each.
 
     Args:
         description: The description, of version 1 and linked without error.
@@ -82,7 +74,8 @@ def migrated(
     Raises:
         NotMigratable: Version 2 cannot say the same.
     """
-    return _Migration(description, urdf, merged, urdf_path, schema).migrated()
+    migration = _Migration(description, urdf, merged, urdf_path, schema)
+    return migration.text(), migration.notes
 
 
 def version_needed(urdf: Urdf) -> Literal["2", "2.1"]:
@@ -114,38 +107,35 @@ def own_keys(data: Iterable[str]) -> dict[str, str]:
     return names
 
 
-def split_halves(description: Description) -> dict[str, tuple[str, int]]:
-    """For each revolute that version 1 makes of a universal joint: that joint, and 0 or 1 for the first or second."""
-    return {
-        f"{entry.name}_{letter}": (entry.name, index)
-        for entry in description.joints
-        for index, letter in enumerate(entry.split)
-    }
-
-
+@dataclass(slots=True)
 class _Migration:
-    """One file at work."""
+    """One file at work; the fields are the arguments of `migrated`."""
 
-    def __init__(
-        self,
-        description: Description,
-        urdf: Urdf,
-        merged: Mapping[str, Sequence[str]],
-        urdf_path: str,
-        schema: str | None,
-    ) -> None:
-        self.document = description.document
-        self.description = description
-        self.urdf = urdf
-        self.merged = merged
-        self.urdf_path = urdf_path
-        self.schema = schema
-        self.version = version_needed(urdf)
-        self.mimicking = {joint.name for joint in urdf.joints.values() if joint.mimic}
-        self.halves = split_halves(description)
-        self.notes: list[str] = []
+    description: Description
+    urdf: Urdf
+    merged: Mapping[str, Sequence[str]]
+    urdf_path: str
+    schema: str | None
+    notes: list[str] = field(default_factory=list)
 
-    def migrated(self) -> Migrated:
+    @property
+    def document(self) -> YamlDocument:
+        return self.description.document
+
+    @property
+    def mimicking(self) -> list[str]:
+        return [joint.name for joint in self.urdf.joints.values() if joint.mimic]
+
+    @property
+    def halves(self) -> dict[str, tuple[str, int]]:
+        """For each revolute that version 1 makes of a universal joint: that joint, and 0 or 1 for first or second."""
+        return {
+            f"{entry.name}_{letter}": (entry.name, index)
+            for entry in self.description.joints
+            for index, letter in enumerate(entry.split)
+        }
+
+    def text(self) -> str:
         comments = comments_of(self.document.source)
         own, comments = self.own_entries(comments)
         attached = attach(comments, self.pointers(), self.document)
@@ -158,8 +148,8 @@ class _Migration:
             "actuators": list(self.actuators(attached)),
         }
         entries = [
-            Entry(lines_of("extended_urdf", VERSION2_0 if self.version == "2" else VERSION2_1), (*line, *head)),
-            Entry(lines_of("urdf", self.urdf_path)),
+            YamlEntry(lines_of("extended_urdf", VERSION2_1 if self.mimicking else VERSION2_0), (*line, *head)),
+            YamlEntry(lines_of("urdf", self.urdf_path)),
         ]
         foot = attached[()].beside
         for key, written in items.items():
@@ -170,9 +160,9 @@ class _Migration:
                 foot = [*above, *([beside] if beside else []), *foot]
         for key, entry in own.items():
             above, beside = _together(attached, [(key,)])
-            entries.append(Entry(entry.lines, above, beside))
+            entries.append(YamlEntry(entry.lines, above, beside))
         foot_text = "".join(f"{comment}\n" for comment in foot)
-        return Migrated(text_of(entries) + foot_text, tuple(self.notes))
+        return text_of(entries) + foot_text
 
     def pointers(self) -> Iterator[Pointer]:
         """The entries that comments may go with."""
@@ -183,11 +173,11 @@ class _Migration:
 
     # -- what the format knows ------------------------------------------------------------------------------------
 
-    def closures(self, attached: Mapping[Pointer, Attached]) -> Iterator[Entry]:
+    def closures(self, attached: Mapping[Pointer, Attached]) -> Iterator[YamlEntry]:
         for index, closure in enumerate(self.description.closures):
             a, b = map(self.frame, closure.frames)
-            value = CLOSURE.write(Closure(name=closure.name, type=closure.type, frames=(a, b)))
-            yield Entry(item_of_mapping(value), *_together(attached, [("closed_loop", index), ("type", index)]))
+            value = CLOSURE.write(CLOSURE.entry(closure.type, {}, name=closure.name, frames=(a, b)))
+            yield YamlEntry(item_of_mapping(value), *_together(attached, [("closed_loop", index), ("type", index)]))
         count = len(self.description.closures)
         if count:
             to = f" to 'closure_{count}'" if count > 1 else ""
@@ -196,9 +186,10 @@ class _Migration:
     def frame(self, reference: FrameReference) -> FrameReference:
         """A closure's frame; the second half of a universal joint is now the joint itself."""
         name = reference.target
-        if name not in self.halves or name in self.urdf.links:
+        halves = self.halves
+        if name not in halves or name in self.urdf.links:
             return reference
-        joint, index = self.halves[name]
+        joint, index = halves[name]
         if index == 0:
             raise NotMigratable(
                 f"the frame '{name}' lies between the two axes of universal joint '{joint}', "
@@ -207,10 +198,11 @@ class _Migration:
             )
         return NamedFrame(target=joint)
 
-    def joints(self, attached: Mapping[Pointer, Attached]) -> Iterator[Entry]:
+    def joints(self, attached: Mapping[Pointer, Attached]) -> Iterator[YamlEntry]:
         pointers: dict[str, Pointer] = {entry.name: entry.pointer for entry in self.description.joints}
         changed = {*pointers, *(joint for joints in self.merged.values() for joint in joints)}
-        freed = [name for name in self.urdf.joints if name in self.mimicking and name not in changed]
+        mimicking = self.mimicking
+        freed = [name for name in mimicking if name not in changed]
         for name in (*pointers, *self.merged, *freed):
             if is_own_key(name):
                 raise NotMigratable(
@@ -219,17 +211,15 @@ class _Migration:
                 )
         for index, entry in enumerate(self.description.joints):
             lines = lines_of(entry.name, self.joint(entry))
-            yield Entry(lines, *_together(attached, [("joint_name", index), ("joint_type", index)]))
+            yield YamlEntry(lines, *_together(attached, [("joint_name", index), ("joint_type", index)]))
         for name, joints in self.merged.items():
-            mimic = None if self.mimicking.isdisjoint(joints) else False
-            yield Entry(lines_of(name, JOINT.write(Spherical(type="spherical", merges=tuple(joints), mimic=mimic))))
+            mimic = False if any(joint in mimicking for joint in joints) else None
+            yield YamlEntry(lines_of(name, JOINT.write(Spherical(type="spherical", merges=tuple(joints), mimic=mimic))))
         for name in freed:
-            yield Entry(lines_of(name, JOINT.write(Overridden(mimic=False))))
-        if self.mimicking:
-            freed = [name for name in self.urdf.joints if name in self.mimicking]
-            self.notes.append(
-                f"freed with 'mimic: false', because version 1 ignores <mimic> and version 2 does not: {_joints(freed)}"
-            )
+            yield YamlEntry(lines_of(name, JOINT.write(Overridden(mimic=False))))
+        if mimicking:
+            why = "because version 1 ignores <mimic> and version 2 does not"
+            self.notes.append(f"freed with 'mimic: false', {why}: {_joints(mimicking)}")
         if self.merged:
             self.notes.append(
                 "merged from three revolutes, which version 1 does implicitly and version 2 states: spherical "
@@ -247,26 +237,26 @@ class _Migration:
         written: Value = JOINT.write(type(entry)(type=entry.type, axes=axes, mimic=mimic))
         return written
 
-    def actuators(self, attached: Mapping[Pointer, Attached]) -> Iterator[Entry]:
-        entries = iter(self.description.actuators)
+    def actuators(self, attached: Mapping[Pointer, Attached]) -> Iterator[YamlEntry]:
+        entries, halves = iter(self.description.actuators), self.halves
         for entry in entries:
             name, pointers = entry.joint, [entry.pointer]
-            if name in self.halves:
-                name, index = self.halves[name]
+            if name in halves:
+                name, index = halves[name]
                 other = next(entries, None)
-                if index != 0 or other is None or self.halves.get(other.joint) != (name, 1):
-                    first, second = (half for half, (joint, _) in self.halves.items() if joint == name)
+                if index != 0 or other is None or halves.get(other.joint) != (name, 1):
+                    first, second = (half for half, (joint, _) in halves.items() if joint == name)
                     raise NotMigratable(
                         f"actuator '{entry.joint}' is one of the two axes of universal joint '{name}', and version 2 "
                         f"actuates both, one after the other: '{first}', '{second}'",
                         entry.pointer,
                     )
                 pointers.append(other.pointer)
-            yield Entry(lines_of_item(name), *_together(attached, pointers))
+            yield YamlEntry(lines_of_item(name), *_together(attached, pointers))
 
     # -- user-defined keys ----------------------------------------------------------------------------------------
 
-    def own_entries(self, comments: list[Comment]) -> tuple[dict[str, Entry], list[Comment]]:
+    def own_entries(self, comments: list[Comment]) -> tuple[dict[str, YamlEntry], list[Comment]]:
         """The user-defined entries, as they are written if that is possible; and the comments outside them."""
         document = self.document
         source = document.source
@@ -279,7 +269,7 @@ class _Migration:
         for key, name in own_keys(document.data).items():
             if name != key:
                 self.notes.append(f"'{key}', your own data, is now '{name}'")
-            entries[key] = Entry(lines_of(name, document.data[key]))
+            entries[key] = YamlEntry(lines_of(name, document.data[key]))
             start, begin = spans[key]
             if begin is None or BREAK.search(source.text, start, begin):
                 continue
@@ -289,7 +279,7 @@ class _Migration:
                 end = inside.pop().index
             verbatim = BREAK.sub("\n", scalar(name) + source.text[begin:end].rstrip())
             if _says(verbatim, name, document.data[key]):
-                entries[key] = Entry(tuple(verbatim.split("\n")))
+                entries[key] = YamlEntry(tuple(verbatim.split("\n")))
                 kept.update(comment.index for comment in inside)
         return entries, [comment for comment in comments if comment.index not in kept]
 
@@ -305,12 +295,12 @@ def _says(text: str, key: str, value: object) -> bool:
     return repr(data) == repr({key: value, "next": "entry"})
 
 
-def _section(key: str, items: list[Entry], above: tuple[str, ...], beside: str) -> Entry:
+def _section(key: str, items: list[YamlEntry], above: tuple[str, ...], beside: str) -> YamlEntry:
     if key == "actuators" and not any(item.above or item.beside for item in items):
         names = [item.lines[0].removeprefix("- ") for item in items]
         one = f"{key}: [{', '.join(names)}]"
         if len(one) <= WIDTH:
-            return Entry((one,), above, beside)
+            return YamlEntry((one,), above, beside)
     return section(key, items, above, beside)
 
 

@@ -8,7 +8,7 @@ from eurdf.diagnostics import Diagnostics
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.urdf.elements import UrdfReader
 from eurdf.format.urdf.mimics import check_mimics
-from eurdf.linking.rereading import reread
+from eurdf.linking.link import reread
 from eurdf.linking.robot_files import ReadRobot
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
@@ -47,20 +47,20 @@ def migrate(read: ReadRobot, urdf_path: str = "robot.urdf", schema: str | None =
     Raises:
         NotMigratable: Version 2 cannot say the same.
     """
-    extension, urdf, before = read.description, read.urdf, read.mechanism
+    description, urdf, before = read.description, read.urdf, read.mechanism
     _refuse_wrong_mimics(urdf)
-    result = migrated(extension, urdf, merged_by_rule(read), urdf_path, schema)
-    after, diagnostics = reread(result.text, urdf, extension.document.source.file)
+    text, notes = migrated(description, urdf, merged_by_rule(read), urdf_path, schema)
+    after, diagnostics = reread(text, urdf, description.document.source.file)
     if after is None:
         raise NotMigratable(f"version 2 does not allow it: {diagnostics.errors[0].message}", ())
     found = differences(before, after)
-    own = {str(key): value for (key,), value in extension.own_data.items()}
+    own = {str(key): value for (key,), value in description.own_data.items()}
     expected = {json_pointer([name]): own[key] for key, name in own_keys(own).items()}
     if repr(expected) != repr(dict(after.own_data)):
         found.append("your own data differ")
     if found:
         raise NotMigratable(f"version 2 would not be the same model: {'; '.join(found)}", ())
-    return Migration(result.text, (*result.notes, *_order(before, after)), after)
+    return Migration(text, (*notes, *_order(before, after)), after)
 
 
 def _refuse_wrong_mimics(urdf: Urdf) -> None:
@@ -83,8 +83,8 @@ def _refuse_wrong_mimics(urdf: Urdf) -> None:
 
 def merged_by_rule(read: ReadRobot) -> dict[str, tuple[str, str, str]]:
     """For each spherical joint that version 1 made of three revolutes by itself, their names (EU-ONE-007)."""
-    extension, urdf, mechanism = read.description, read.urdf, read.mechanism
-    listed = {entry.name for entry in extension.joints}
+    description, urdf, mechanism = read.description, read.urdf, read.mechanism
+    listed = {entry.name for entry in description.joints}
     carrying = {joint.child: joint.name for joint in urdf.joints.values()}
 
     def chain(third: str) -> tuple[str, str, str]:

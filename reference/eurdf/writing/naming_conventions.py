@@ -14,6 +14,7 @@ from eurdf.format.yaml_text import Value
 from eurdf.linking.merging import MASSLESS
 from eurdf.mechanism.joint_types import ROTARY
 from eurdf.mechanism.pose import Vector3
+from eurdf.mechanism.spanning_tree import rigid_roots
 
 #: The types of closure that are chosen between.
 ClosureType = Literal["3d", "6d"]
@@ -194,7 +195,7 @@ def _closures(urdf: Urdf, patterns: Iterable[re.Pattern[str]], warnings: list[st
     for joint in urdf.joints.values():
         bodies.setdefault(joint.name, joint.child)
     loops = _loops(bodies, patterns)
-    rigid = _rigid(urdf)
+    rigid = rigid_roots(urdf.root, urdf.walk())
     joined: dict[frozenset[str], str] = {}
     paired: list[NamedClosure] = []
     for name in sorted(loops, key=_natural):
@@ -271,14 +272,6 @@ def _unpaired(loop: str, sides: Mapping[str, Sequence[str]]) -> str:
     return f"loop '{loop}' has {len(sides)} sides, {names}: a closure has two frames; left out"
 
 
-def _rigid(urdf: Urdf) -> dict[str, str]:
-    """For each link, the one nearest to the root that it is rigidly fixed to."""
-    rigid = {urdf.root: urdf.root}
-    for joint in urdf.walk():
-        rigid[joint.child] = rigid[joint.parent] if joint.type.is_fixed else joint.child
-    return rigid
-
-
 def _natural(name: str) -> list[tuple[int, str]]:
     """Sorts loop2 before loop10, by the length of a number before its digits."""
     parts = re.split(r"(\d+)", name)
@@ -301,8 +294,13 @@ def _motors(urdf: Urdf, patterns: Sequence[re.Pattern[str]], warnings: list[str]
     return motors
 
 
+def mimic_pairs(urdf: Urdf) -> set[str]:
+    """Names of the joints that mimic others, and of those that they mimic."""
+    return {name for joint in urdf.joints.values() if joint.mimic for name in (joint.name, joint.mimic.joint)}
+
+
 def _sphericals(urdf: Urdf, patterns: Sequence[re.Pattern[str]], warnings: list[str]) -> Iterable[str]:
-    coupled = {name for joint in urdf.joints.values() if joint.mimic for name in (joint.name, joint.mimic.joint)}
+    coupled = mimic_pairs(urdf)
     for joint in urdf.walk():
         if not any(pattern.search(joint.name) for pattern in patterns):
             continue

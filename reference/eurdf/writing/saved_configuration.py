@@ -12,7 +12,7 @@ from eurdf.diagnostics import Diagnostics
 from eurdf.exceptions import EurdfError
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.residual import residual
-from eurdf.linking.rereading import reread
+from eurdf.linking.link import reread
 from eurdf.linking.robot_files import ReadRobot
 from eurdf.mechanism.mechanism import ROOT_JOINT, root_joint
 from eurdf.pinocchio.configuration import configuration_vector
@@ -45,10 +45,6 @@ class ConfigurationExists(CannotSave):
 def file_to_save_to(path: RobotSource, read: ReadRobot) -> str:
     """The file of a description that configurations can be saved to.
 
-    Args:
-        path: What the user gave.
-        read: What was read from it.
-
     Raises:
         CannotSave: There is none.
     """
@@ -69,13 +65,6 @@ def file_to_save_to(path: RobotSource, read: ReadRobot) -> str:
 
 def save_configuration(read: ReadRobot, robot: Robot, q: Vector, name: str = NAME, *, force: bool) -> bool:
     """Save a configuration under a name.
-
-    Args:
-        read: Of version 2, from a file.
-        robot: The robot built from it, with its own root.
-        q: Closed configuration (nq,).
-        name: Name of the configuration.
-        force: Whether to replace a different configuration of this name.
 
     Returns:
         Whether the file changed; it does not if it has this configuration.
@@ -117,12 +106,6 @@ def with_closed_configuration(read: ReadRobot, robot: Robot, q: Vector, name: st
 
     Joints at their neutral are left out, unless the file states them already. Numbers are rounded to 15 decimals where
     the loops stay as closed.
-
-    Args:
-        read: Of version 2.
-        robot: The robot built from it, with its own root.
-        q: Configuration (nq,).
-        name: Name of the configuration; an existing one is replaced.
 
     Returns:
         The text, and its diagnostics, such as a coordinate beyond its limits.

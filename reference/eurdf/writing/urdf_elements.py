@@ -101,6 +101,11 @@ def add_joint(
     return element
 
 
+def add_fixed_joint(robot: etree._Element, name: str, parent: str, child: str, placement: Pose) -> None:
+    """Add a joint that does not move."""
+    add_joint(robot, name, JointType("fixed"), parent, child, placement, None)
+
+
 def add_limit(
     joint: etree._Element,
     position: tuple[float, float] | None,

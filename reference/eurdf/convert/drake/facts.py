@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import math
 
-from eurdf.closures.distance import DistanceClosure
 from eurdf.convert.common_losses import CONVERSION, impossible_inertia, unequal
+from eurdf.convert.conventions import LEAST
 from eurdf.convert.losses import Motor, approximate, by_writer, dropped, exact
 from eurdf.convert.urdf.facts import EXACT as URDF_EXACT
 from eurdf.convert.urdf.facts import URDF_ROWS
+from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.joint import Joint
 
 #: Stiffness of a coupling, N/m or N·m/rad: Drake has no rigid ones of three joints, and softens what is stiffer than
 #: its time step allows.
 STIFFNESS = 1e12
-
-#: kg and kg·m² that links without mass get where Drake needs some: far below any of a robot.
-LEAST = 1e-13
 
 #: The closures that are written.
 CLOSURES = ("3d", "6d", "hinge")
@@ -48,10 +46,10 @@ def _lacks_rates(joint: Joint) -> bool:
     return not (is_limited and has_one_acceleration(joint) and "jerk" not in joint.properties.rates)
 
 
-def _rod(closure: DistanceClosure) -> str:
+def _rod(closure: Closure) -> str:
     p, r = closure.a.pose.xyz, closure.b.pose.xyz
     bodies = f"body_A '{closure.a.body}', p_AP {list(p)}, body_B '{closure.b.body}', p_BQ {list(r)}"
-    return f"is left out: {bodies}, distance {closure.length}"
+    return f"is left out: {bodies}, distance {closure.own['length']}"
 
 
 def _cannot_act(motor: Motor) -> bool:

@@ -166,7 +166,7 @@ def _on_the_world(mechanism: Mechanism) -> Mechanism:
     world = mechanism.bodies[0]
     held = [joint for joint in mechanism.joints if joint.parent == _WORLD]
     bare = world.inertia is None and not world.visuals and not world.collisions
-    if bare and len(held) == 1 and held[0].type is JointType.FIXED and held[0].placement == IDENTITY:
+    if bare and len(held) == 1 and held[0].type.is_fixed and held[0].placement == IDENTITY:
         return replace(mechanism, bodies=mechanism.bodies[1:], joints=mechanism.joints[1:])
     return mechanism
 

@@ -17,25 +17,24 @@ from lxml import etree
 
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.hinge import HingeClosure
-from eurdf.convert.conventions import point_on
+from eurdf.convert.conventions import LEAST, point_on
 from eurdf.convert.coordinates import Coordinates
-from eurdf.convert.drake.facts import CLOSURES, EXACT, LEAST, ROWS, STIFFNESS, can_have_actuator, has_one_acceleration
+from eurdf.convert.drake.facts import CLOSURES, EXACT, ROWS, STIFFNESS, can_have_actuator, has_one_acceleration
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format
 from eurdf.convert.inertia import accepted_inertia, has_inertia
 from eurdf.convert.losses import Losses
-from eurdf.convert.parts import Part, part_of
+from eurdf.convert.parts import part_of
 from eurdf.convert.steps import AXES, ExportedJoint
 from eurdf.convert.urdf.tree import UrdfTree
 from eurdf.mechanism.body import Body, Inertia
 from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
-from eurdf.mechanism.pose import IDENTITY, Vector3, direction
-from eurdf.writing.urdf_elements import add_dynamics, add_joint
+from eurdf.mechanism.mechanism import Mechanism, root_joint
+from eurdf.mechanism.pose import IDENTITY, ORIGIN, Vector3, direction
+from eurdf.writing.urdf_elements import add_dynamics, add_fixed_joint
 from eurdf.writing.xml_text import file_content, numbers, rpy_of
 
-_ORIGIN: Vector3 = (0.0, 0.0, 0.0)
 _NAMESPACE = "http://drake.mit.edu"
 _WORLD = "world"
 
@@ -90,10 +89,10 @@ class _DrakeTree(UrdfTree):
         mechanism = self.mechanism
         base = self.links[self.base]
         if mechanism.root == "floating":
-            self.parts.append(Part((base,), ROOT_JOINT, JointType.FLOATING, orientation_first=True))
+            self.parts.append(part_of(root_joint(""), (base,), (), orientation_first=True))
         elif base != _WORLD:
             etree.SubElement(self.root, "link", name=_WORLD)
-            add_joint(self.root, self.names.new(f"{_WORLD}_{base}"), JointType.FIXED, _WORLD, base, IDENTITY, None)
+            add_fixed_joint(self.root, self.names.new(f"{_WORLD}_{base}"), _WORLD, base, IDENTITY)
         super().write()
         for frame in mechanism.frames:
             pose = {"xyz": numbers(frame.pose.xyz), "rpy": numbers(rpy_of(frame.pose))}
@@ -174,7 +173,7 @@ class _DrakeTree(UrdfTree):
     # -- constraints ------------------------------------------------------------------------------------------------
 
     def _closure(self, closure: Closure) -> None:
-        points = [(_ORIGIN, _ORIGIN)]
+        points = [(ORIGIN, ORIGIN)]
         if isinstance(closure, HingeClosure):
             one, other = (point_on(direction(axis)) for axis in closure.axes)
             points.append((one, other))

@@ -71,7 +71,7 @@ def _closure(element: etree._Element, tree: UrdfTree, names: UniqueNames) -> Clo
         case "revolute" | "continuous":
             axis = element.find("axis")
             if axis is None:
-                return HingeClosure(name, a, b)
+                return HingeClosure(name, a, b, ((0.0, 0.0, 1.0),) * 2)
             xyz = elements.axis(axis)
             return HingeClosure(name, a, b, (xyz, xyz))
     tree.losses.add("import-loop", name, f"is left out: it has the type '{element.get('type')}'")

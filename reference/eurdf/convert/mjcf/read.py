@@ -35,7 +35,6 @@ from eurdf.convert.mjcf.read_state import (
 from eurdf.convert.xml_elements import places_of_names
 from eurdf.linking.configurations import beyond_limits
 from eurdf.mechanism.body import Frame
-from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.mechanism.spanning_tree import depth_first
 
@@ -269,7 +268,7 @@ def _coordinates(reading: MjcfReading, qpos: Sequence[float], mechanism: Mechani
         )
     whole = {each.name: each for each in reading.whole.values()}
     for each in mechanism.joints:
-        if each.name in whole and each.type is not JointType.FIXED and each.mimic is None:
+        if each.name in whole and not each.type.is_fixed and each.mimic is None:
             found[each.name] = coordinates_at(whole[each.name], qpos)
     return MappingProxyType(found)
 

@@ -9,7 +9,6 @@ from dataclasses import replace
 from eurdf.convert.mjcf.compiled import Element
 from eurdf.convert.mjcf.read_joints import largest_effort
 from eurdf.convert.mjcf.read_state import MjcfReading
-from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Motor
 
 
@@ -35,7 +34,7 @@ def read_actuators(reading: MjcfReading) -> tuple[tuple[str, ...], dict[str, Mot
     motors: dict[str, Motor] = {}
     actuated = []
     for name, group in groups.items():
-        if reading.joints[name].type is JointType.FIXED or reading.joints[name].mimic:
+        if reading.joints[name].type.is_fixed or reading.joints[name].mimic:
             for actuator, _ in group:
                 reading.losses.add("import-actuator", _name_of(actuator))
             continue

@@ -10,10 +10,11 @@ from eurdf.closures.frame import FrameClosure
 from eurdf.closures.point import PointClosure
 from eurdf.convert.mjcf.compiled import Element
 from eurdf.convert.mjcf.read_state import MjcfReading, pose_from, vector
+from eurdf.convert.steps import turn_type
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Closure, Coupling
-from eurdf.mechanism.joint import Joint, Mimic
-from eurdf.mechanism.joint_types import JointType
+from eurdf.mechanism.joint import Mimic
+from eurdf.mechanism.joint_types import ROTARY
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 from eurdf.mechanism.spanning_tree import rigid_roots
@@ -150,12 +151,11 @@ def _lock(reading: MjcfReading, coefficients: Mapping[str, float], offset: float
     ((name, c),) = coefficients.items()
     value, joint = offset / c, reading.joints[name]
     if stated == f"{name}/locked" and value:  # as an export writes equal limits
-        kind = JointType.REVOLUTE if joint.type is JointType.CONTINUOUS else joint.type
-        properties = replace(joint.properties, lower=(value,), upper=(value,))
-        reading.joints[name] = replace(joint, type=kind, properties=properties)
+        locked = replace(joint, properties=replace(joint.properties, lower=(value,), upper=(value,)))
+        reading.joints[name] = replace(locked, type=turn_type(locked)) if joint.type in ROTARY else locked
         return
     placement = joint.placement * joint.transform((value,))
-    reading.joints[name] = Joint(name, JointType.FIXED, joint.parent, joint.child, placement, joint.offset)
+    reading.joints[name] = replace(joint, placement=placement).fixed()
     reading.losses.add("import-locked-joint", name, f"is fixed at {value:g}, where an equality holds it")
 
 

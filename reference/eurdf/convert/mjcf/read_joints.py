@@ -14,7 +14,7 @@ from eurdf.convert.steps import SCREW_SLIDE, suffixes
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.pose import IDENTITY, Pose, Quaternion, Vector3
+from eurdf.mechanism.pose import IDENTITY, Pose, Quaternion, Vector3, cross
 
 #: Lengths (m), and parts of unit vectors, that differ by no more are equal.
 _SAME = 1e-9
@@ -146,11 +146,11 @@ def _exported(
                 return None
         axes = axes[:1]
     elif kind is JointType.UNIVERSAL:
-        if math.hypot(*_cross(*axes)) < 1e-6:
+        if math.hypot(*cross(*axes)) < 1e-6:
             return None
     else:
         x, y, z = axes[:3]
-        if math.dist(_cross(x, y), z) > _SAME or abs(x[0] * y[0] + x[1] * y[1] + x[2] * y[2]) > _SAME:
+        if math.dist(cross(x, y), z) > _SAME or abs(x[0] * y[0] + x[1] * y[1] + x[2] * y[2]) > _SAME:
             return None
         turn, axes = _orientation(x, y, z), []
     return WholeJoint(reading.joint_names.new(stem), kind, tuple(joints), anchors[0], tuple(axes), turn, pitch)
@@ -177,11 +177,6 @@ def _advance(reading: MjcfReading, slide: Element, hinge: Element) -> float:
             reading.consumed.add(each.index)
             return float(each.data[1])
     return 0.0
-
-
-def _cross(a: Vector3, b: Vector3) -> Vector3:
-    """The vector product."""
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 def _orientation(x: Vector3, y: Vector3, z: Vector3) -> Pose:

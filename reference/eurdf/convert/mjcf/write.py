@@ -14,9 +14,8 @@ from pathlib import PurePosixPath
 
 from lxml import etree
 
-from eurdf.closures.distance import DistanceClosure
 from eurdf.closures.hinge import HingeClosure
-from eurdf.convert.conventions import neighbours, point_on, position_gain
+from eurdf.convert.conventions import LEAST, neighbours, point_on, position_gain
 from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format
 from eurdf.convert.inertia import accepted_inertia, along_principal_axes, has_inertia
@@ -29,8 +28,7 @@ from eurdf.convert.steps import AXES, ExportedJoint, in_series
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.mechanism import ROOT_JOINT
+from eurdf.mechanism.mechanism import ROOT_JOINT, root_joint
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.writing.xml_text import file_content, numbers, representable
 
@@ -122,8 +120,8 @@ class _MjcfWriter:
         element = etree.SubElement(self.world, "body", name=self.bodies.new(body.name))
         name = self.joints.new(ROOT_JOINT)
         etree.SubElement(element, "freejoint", name=name)
-        self.parts.append(Part((name,), ROOT_JOINT, JointType.FLOATING))
-        self._content(body, element, facts.LEAST)
+        self.parts.append(part_of(root_joint(""), (name,), ()))
+        self._content(body, element, LEAST)
 
     def _body(self, joint: Joint, body: Body) -> None:
         host, pose = self.hosts[joint.parent]
@@ -147,7 +145,7 @@ class _MjcfWriter:
         ratios = ((step.velocities[0], step.lead or 1.0, 0.0) for step in found.values())
         mimic = self.mimics.get(joint.name)
         self.parts.append(part_of(joint, tuple(found), ratios, mimic, turn=joint.offset.quaternion))
-        self._content(body, element, facts.LEAST)
+        self._content(body, element, LEAST)
 
     def _fixed(self, body: Body, host: etree._Element, pose: Pose) -> None:
         """A link that is fixed to its host: a body, or a site if it has no mass."""
@@ -234,7 +232,7 @@ class _MjcfWriter:
         MuJoCo itself excludes a body and its parent, unless the parent is fixed to the world.
         """
         hosts = {body: element.get("name", _WORLD) for body, (element, _) in self.hosts.items()}
-        for one, other in dict.fromkeys((hosts[a], hosts[b]) for a, b in neighbours(self.mechanism, facts.LEAST)):
+        for one, other in dict.fromkeys((hosts[a], hosts[b]) for a, b in neighbours(self.mechanism, LEAST)):
             etree.SubElement(self.contact, "exclude", body1=one, body2=other)
 
     # -- joints -----------------------------------------------------------------------------------------------------
@@ -302,13 +300,13 @@ class _MjcfWriter:
     def _closure(self, closure: Closure) -> None:
         name = self.equalities.new(closure.name)
         a, b = self._sites(closure)
-        if isinstance(closure, DistanceClosure):
+        if "length" in closure.own:
             path = self.tendons.new(closure.name)
             spatial = etree.SubElement(self.tendon, "spatial", name=path)
             etree.SubElement(spatial, "site", site=a)
             etree.SubElement(spatial, "site", site=b)
             # The equality is relative to the length at the reference configuration.
-            excess = closure.length - math.dist(*(self._origin(end.body, end.pose) for end in closure.anchors))
+            excess = closure.own["length"] - math.dist(*(self._origin(end.body, end.pose) for end in closure.anchors))
             self._tendon_equality(name, path, excess)
             return
         etree.SubElement(self.equality, facts.CLOSURES[closure.type], name=name, site1=a, site2=b)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from eurdf.closures import REGISTRY
 from eurdf.convert.common_losses import ACCELERATION, COMMON, NAMED_FILE
 from eurdf.convert.losses import LossKind, approximate, dropped, exact
 
@@ -108,7 +109,7 @@ ROWS = (
             "keep the description beside the URDF, or export to a format with loops",
             code=f"export-{kind}-dropped",
         )
-        for kind in ("3d", "6d", "hinge", "distance")
+        for kind in REGISTRY
     ),
     *PLAIN_ROWS,
 )

@@ -18,7 +18,6 @@ from eurdf.format.urdf.read import read_urdf
 from eurdf.linking.link import link
 from eurdf.mechanism.body import Shape
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism, Motor
 from eurdf.mesh_files.reader import RefusedFile
 from eurdf.reading.source import Source, read_source
@@ -175,7 +174,7 @@ def _actuated(mechanism: Mechanism, root: etree._Element, elements: Elements, lo
         joint, actuator = transmission.find("joint"), transmission.find("actuator")
         name = "" if joint is None else joint.get("name", "")
         own = joints.get(name)
-        if own is None or own.type is JointType.FIXED or own.mimic is not None or name in actuators:
+        if own is None or own.type.is_fixed or own.mimic is not None or name in actuators:
             losses.add("import-actuator", name or transmission.get("name", ""))
             continue
         shown = name if actuator is None else actuator.get("name") or name

@@ -16,7 +16,7 @@ from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import IDENTITY, Pose
-from eurdf.writing.urdf_elements import add_inertial, add_joint, add_mimic, add_shape
+from eurdf.writing.urdf_elements import add_fixed_joint, add_inertial, add_joint, add_mimic, add_shape
 from eurdf.writing.xml_text import representable
 
 
@@ -76,7 +76,7 @@ class UrdfTree:
     def fixed(self, name: str, parent: str, child: str, placement: Pose) -> None:
         """Add a fixed joint from a body to a link."""
         self.joints[name] = (name,)
-        add_joint(self.root, name, JointType.FIXED, self.links[parent], child, placement, None)
+        add_fixed_joint(self.root, name, self.links[parent], child, placement)
 
     def _joint(self, joint: Joint) -> None:
         # The slide of a screw mimics the turn, which readers want first.
@@ -88,7 +88,9 @@ class UrdfTree:
             child = self.links[joint.child] if last else self.names.new(f"{name}_link")
             if not last:
                 etree.SubElement(self.root, "link", name=child)
-            axis = Z if step.joint.type is JointType.PLANAR else next(iter(step.joint.axes), None)
+            kind = step.joint.type
+            in_a_plane = kind.moving_frame and kind.quaternion is None
+            axis = Z if in_a_plane else next(iter(step.joint.axes), None)
             element = add_joint(self.root, name, self.type(joint, step), parent, child, placement, axis)
             self.add_properties(joint, step, element)
             if step.lead:
@@ -99,7 +101,7 @@ class UrdfTree:
             parent, placement = child, IDENTITY
         if joint.offset is not IDENTITY:
             name = self.names.new(f"{joint.name}_offset")
-            add_joint(self.root, name, JointType.FIXED, parent, self.links[joint.child], joint.offset, None)
+            add_fixed_joint(self.root, name, parent, self.links[joint.child], joint.offset)
         self.joints[joint.name] = tuple(names)
         self.add_part(joint, names, steps)
 

@@ -12,13 +12,13 @@ from lxml import etree
 from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format
 from eurdf.convert.losses import Losses
-from eurdf.convert.parts import Part, part_of
+from eurdf.convert.parts import part_of
 from eurdf.convert.steps import ExportedJoint, turn_type
 from eurdf.convert.urdf.facts import EXACT, ROWS
 from eurdf.convert.urdf.tree import UrdfTree
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.mechanism import ROOT_JOINT
+from eurdf.mechanism.mechanism import ROOT_JOINT, root_joint
 from eurdf.writing.urdf_elements import add_dynamics, add_limit, state_version
 from eurdf.writing.xml_text import file_content
 
@@ -45,7 +45,7 @@ class PlainTree(UrdfTree):
             self.fixed(self.names.new(f"{name}_fixed"), frame.body, name, frame.pose)
         if self.mechanism.root == "floating":
             # The coordinates are those of the URDF once it is loaded as the hint says.
-            self.parts.insert(0, Part((ROOT_JOINT,), ROOT_JOINT, JointType.FLOATING))
+            self.parts.insert(0, part_of(root_joint(""), (ROOT_JOINT,), ()))
 
     def output(self) -> ExportOutput:
         """The files."""

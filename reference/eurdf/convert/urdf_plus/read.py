@@ -21,7 +21,6 @@ from eurdf.convert.urdf.read import URDF_LOSSES, UrdfTree, loop_left_out, read_t
 from eurdf.convert.xml_elements import named
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Closure, Coupling
-from eurdf.mechanism.joint_types import JointType
 
 _LOSSES = {
     "loop": loop_left_out("loop"),
@@ -85,7 +84,7 @@ def _coupling(element: etree._Element, tree: UrdfTree, names: UniqueNames) -> Co
     coefficients: dict[str, float] = {}
     for chain, other, factor in ((chains[0], chains[1], ratio), (chains[1], chains[0], -1.0)):
         for joint in chain:
-            if joint in other or types[joint] is JointType.FIXED:
+            if joint in other or types[joint].is_fixed:
                 continue
             if not types[joint].is_axial:
                 raise elements.refuse(element, f"{named(element)} couples joint '{joint}', which is {types[joint]}")

@@ -146,11 +146,11 @@ class DrakeModel(ReadModel):
 
     def _read_balls(self) -> list[tuple[str, list[Any]]]:
         """The points that each closure holds together, as the file has them."""
-        counts = {"3d": 1, "6d": 3, "hinge": 2, "distance": 0}
+        counts = {"3d": 1, "6d": 3, "hinge": 2}
         balls = iter(etree.fromstring(self._text.encode()).findall(f"{_DRAKE}ball_constraint"))
         found = []
         for closure in self._exported.robot.mechanism.closures:
-            if counts[closure.type]:
+            if closure.type in counts:
                 found.append((closure.name, [_ends(next(balls)) for _ in range(counts[closure.type])]))
         return found
 

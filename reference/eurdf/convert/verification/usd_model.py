@@ -12,7 +12,7 @@ from pxr import Gf, Usd, UsdGeom, UsdPhysics
 from eurdf.closures.hinge import HingeClosure
 from eurdf.convert.coordinates import Matrix, Vector
 from eurdf.convert.verification.read_model import CannotRead, Exported, Range, ReadModel, opening_between
-from eurdf.kinematics.mass_matrix import mass_matrix
+from eurdf.kinematics.dynamics import mass_matrix
 from eurdf.kinematics.opening import Opening
 from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.pose import Pose

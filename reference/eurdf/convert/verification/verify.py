@@ -18,7 +18,7 @@ from eurdf.convert.verification.fall import Fall, Motion, joint_of_velocity, lis
 from eurdf.convert.verification.read_model import CannotRead, Exported, Finding, Range, ReadModel, without_armature
 from eurdf.diagnostics.extras import install_command
 from eurdf.exceptions import MissingExtra
-from eurdf.kinematics.mass_matrix import mass_matrix
+from eurdf.kinematics.dynamics import mass_matrix
 from eurdf.kinematics.opening import Opening
 from eurdf.pinocchio.robot import Robot, build_robot
 from eurdf.writing.output_folder import write_files

@@ -1,28 +1,86 @@
-"""Dynamics of a large tree, joint by joint.
+"""Dynamics of a spanning tree, with the memory to compute in, for one thread at a time.
 
-A `pin.Data` takes some 64 nv³ bytes, 1.7 GB for 300 velocities; this takes memory linear in the number of joints, and
-nv² numbers where the mass matrix is asked for. Source: Featherstone, *Rigid Body Dynamics Algorithms*, 2008, chapters 5
-and 6.
+A `pin.Data` takes some 64 nv³ bytes, 1.7 GB for 300 velocities. The recursions of a large tree take memory linear in
+the number of joints, and nv² numbers where the mass matrix is asked for.
 """
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
-Vector = npt.NDArray[np.float64]
-Matrix = npt.NDArray[np.float64]
+from eurdf.array import Indices, Mask, Matrix, Vector
+from eurdf.pinocchio.springs import Springs
+
+#: The dynamics of trees with more velocities do without a `pin.Data`, which would take more than 140 MB.
+MOST_VELOCITIES_WITH_DATA = 130
 
 
-class TreeRecursion:
-    """The recursions over the joints of one model, with memory of their own, for one thread at a time."""
+class TreeDynamics:
+    """The dynamics of a tree, in a `pin.Data`."""
 
-    def __init__(self, model: pin.Model) -> None:
+    def __init__(self, model: pin.Model, springs: Springs, data: pin.Data | None) -> None:
+        """Take a model, the springs that it does not contain, and memory."""
+        self.model, self.data = model, data
+        self._springs = springs
+
+    def inverse_dynamics(self, q: Vector, v: Vector, a: Vector) -> Vector:
+        """The generalized force (nv,) M a + h that the acceleration a (nv,) takes; with a = 0 the bias h."""
+        return np.array(pin.rnea(self.model, self.data, q, v, a))
+
+    def mass_times(self, q: Vector, motions: Matrix) -> Matrix:
+        """The mass matrix at q (nq,), the armature included, times the columns (nv, n) of accelerations.
+
+        Up to Pinocchio 4.1, `pin.crba` has wrong entries if a mimic joint carries several branches.
+        """
+        if not len(self.model.mimicking_joints):
+            M = pin.crba(self.model, self.data, q)  # its upper triangle is valid
+            return np.asarray(np.where(_upper(self.model.nv), M, M.T) @ motions)
+        still = np.zeros(self.model.nv)
+        gravity = self.inverse_dynamics(q, still, still)
+        columns = [self.inverse_dynamics(q, still, a) - gravity for a in motions.T]
+        return np.array(columns).reshape(motions.T.shape).T
+
+    def inverse_mass_diagonal(self, q: Vector) -> Vector:
+        """The diagonal (nv,) of the inverse of the mass matrix at q (nq,), of a tree without mimic joints."""
+        return np.array(pin.computeMinverse(self.model, self.data, q).diagonal())
+
+    def kinetic_energy(self, q: Vector, v: Vector) -> float:
+        """The kinetic energy at q (nq,) and v (nv,), J, that of the armature included.
+
+        `pin.computeKineticEnergy` leaves out the armature of some joints, up to Pinocchio 4.1.
+        """
+        still = np.zeros(self.model.nv)
+        momentum = self.inverse_dynamics(q, still, v) - self.inverse_dynamics(q, still, still)
+        return 0.5 * float(v @ momentum)
+
+    def potential_energy(self, q: Vector) -> float:
+        """The potential energy of gravity and springs at q (nq,), J."""
+        return self._energy_of_gravity(q) + self._springs.energy(q)
+
+    def _energy_of_gravity(self, q: Vector) -> float:
+        if len(self.model.mimicking_joints):  # not supported by Pinocchio 4.1
+            return TreeRecursion(self.model, self._springs)._energy_of_gravity(q)
+        return float(pin.computePotentialEnergy(self.model, self.data, q))
+
+
+@lru_cache(maxsize=8)
+def _upper(n: int) -> Mask:
+    """Which entries of a matrix (n, n) are on or above the diagonal."""
+    return np.triu(np.ones((n, n), dtype=bool))
+
+
+class TreeRecursion(TreeDynamics):
+    """The dynamics of a large tree, joint by joint.
+
+    Source: Featherstone, *Rigid Body Dynamics Algorithms*, 2008, chapters 5 and 6.
+    """
+
+    def __init__(self, model: pin.Model, springs: Springs) -> None:
         """Take a model; a mimic joint has the velocities of its leader."""
-        self.model = model
+        super().__init__(model, springs, None)
         # Of each joint but the universe: its index, itself, its data, its parent, and its velocities.
         self._joints = [
             (
@@ -36,7 +94,7 @@ class TreeRecursion:
         ]
 
     def inverse_dynamics(self, q: Vector, v: Vector, a: Vector) -> Vector:
-        """M a + h (nv,), the armature included: recursive Newton-Euler, each joint in its own axes."""
+        """M a + h (nv,), by recursive Newton-Euler, each joint in its own axes."""
         model = self.model
         velocities = [pin.Motion.Zero()] * model.njoints
         accelerations = [-model.gravity] * model.njoints
@@ -57,8 +115,8 @@ class TreeRecursion:
             forces[parent] = forces[parent] + placements[joint].act(forces[joint])
         return tau
 
-    def mass_matrix(self, q: Vector) -> Matrix:
-        """M (nv, nv), the armature included: inertias of subtrees, in the axes of the world."""
+    def mass_times(self, q: Vector, motions: Matrix) -> Matrix:
+        """M (nv, nv), from the inertias of subtrees in the axes of the world, times the columns (nv, n)."""
         model = self.model
         placements = self._placements(q)
         subtrees = [placement.act(inertia) for placement, inertia in zip(placements, model.inertias, strict=True)]
@@ -76,10 +134,9 @@ class TreeRecursion:
         M[self._same] *= 0.5  # of a joint with itself
         if model.nv < model.nvExtended:
             M = self._velocities.T @ M @ self._velocities
-        return np.asarray(M + np.diag(model.armature))
+        return np.asarray((M + np.diag(model.armature)) @ motions)
 
-    def potential_energy(self, q: Vector) -> float:
-        """The potential energy of gravity at q (nq,), J."""
+    def _energy_of_gravity(self, q: Vector) -> float:
         gravity = self.model.gravity.linear
         placements = self._placements(q)
         return -sum(
@@ -97,13 +154,13 @@ class TreeRecursion:
         return placements
 
     @cached_property
-    def _owners(self) -> npt.NDArray[np.intp]:
+    def _owners(self) -> Indices:
         """The joint of each column of J (nvExtended,)."""
         counts = [moving.nvExtended for _, moving, _, _, _ in self._joints]
         return np.repeat(np.arange(1, self.model.njoints), counts)
 
     @cached_property
-    def _carries(self) -> npt.NDArray[np.bool_]:
+    def _carries(self) -> Mask:
         """Whether the joint of a column of J carries that of another, or is the same."""
         n = self.model.njoints
         carries = np.zeros((n, n), dtype=bool)
@@ -113,7 +170,7 @@ class TreeRecursion:
         return np.asarray(carries[np.ix_(self._owners, self._owners)])
 
     @cached_property
-    def _same(self) -> npt.NDArray[np.bool_]:
+    def _same(self) -> Mask:
         return np.asarray(self._owners[:, None] == self._owners)
 
     @cached_property

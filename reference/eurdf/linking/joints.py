@@ -1,0 +1,117 @@
+"""The bodies and joints that the URDF alone describes, and the joints that the description makes of these."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+
+from eurdf.diagnostics import Diagnostics, Hint, did_you_mean, quoted
+from eurdf.format.urdf.data import Limit, Urdf, UrdfJoint
+from eurdf.mechanism.body import Body
+from eurdf.mechanism.joint import Joint, JointProperties, is_no_range
+from eurdf.reading.reporter import YamlReporter
+
+_NONE = JointProperties()
+_UNLIMITED = Limit(-math.inf, math.inf, math.inf, math.inf)
+
+
+def bodies_of(urdf: Urdf) -> dict[str, Body]:
+    """Every link as a body, by name."""
+    return {link.name: Body(link.name, link.inertia, link.visuals, link.collisions) for link in urdf.links.values()}
+
+
+def joint_of(joint: UrdfJoint) -> Joint:
+    """A joint of the URDF, before the description changes it.
+
+    Limits and dynamics of planar and floating joints are not read, as in Pinocchio: URDF has one number for all of
+    their coordinates, of different units.
+    """
+    kind = joint.type
+    properties = _NONE if kind.is_fixed else JointProperties.unlimited(kind)
+    if not kind.is_axial:
+        return Joint(joint.name, kind, joint.parent, joint.child, joint.placement, properties=properties)
+    if joint.limit is not None or joint.damping or joint.friction:
+        lower, upper, velocity, effort, *rates = joint.limit or _UNLIMITED
+        acceleration, deceleration, jerk = (() if math.isinf(limit) else (limit,) for limit in rates)
+        properties = replace(
+            properties,
+            lower=(lower,) if kind.limited else properties.lower,
+            upper=(upper,) if kind.limited else properties.upper,
+            velocity=(velocity,),
+            effort=(effort,),
+            damping=(joint.damping,),
+            friction=(joint.friction,),
+            acceleration=acceleration,
+            deceleration=deceleration,
+            jerk=jerk,
+        )
+    axes, mimic = (joint.axis,), joint.mimic
+    return Joint(
+        joint.name, kind, joint.parent, joint.child, joint.placement, axes=axes, properties=properties, mimic=mimic
+    )
+
+
+def check_ranges(urdf: Urdf, joints: Mapping[str, Joint], diagnostics: Diagnostics) -> None:
+    """EU-URD-025: a joint that is to move has a range; URDF reads limits that are left out as 0.
+
+    Args:
+        urdf: The URDF.
+        joints: The joints of the mechanism: those that the description merges, makes another type or gives limits need
+            no range in the URDF.
+        diagnostics: Gets what is found.
+    """
+    found = [
+        joint
+        for joint in urdf.joints.values()
+        if (limit := joint.limit) is not None
+        and is_no_range(limit.lower, limit.upper)
+        and _has_no_range(joint, joints.get(joint.name))
+    ]
+    if not found:
+        return
+    names = quoted([joint.name for joint in found])
+    count = "1 joint has" if len(found) == 1 else f"{len(found)} joints have"
+    diagnostics.report(
+        "urdf-no-range",
+        f"{count} the position limits 0 and 0: {names}",
+        partial(urdf.document.place, next(found[0].element.iterchildren("limit"))),
+        "state 'lower' and 'upper', or use type 'continuous' if there are no limits",
+    )
+
+
+def _has_no_range(joint: UrdfJoint, made: Joint | None) -> bool:
+    """Whether the range from 0 to 0 of a joint of the URDF is that of its joint in the mechanism."""
+    return joint.type.is_ranged and made is not None and made.type.is_ranged and made.lacks_range
+
+
+@dataclass(slots=True)
+class Joints:
+    """The joints of the mechanism in the making.
+
+    Attributes:
+        urdf: The URDF.
+        reporter: Gets what is found in the description.
+        by_name: The current joints.
+        bodies: Virtual bodies that splits made.
+        merged: For each joint that was merged away, the joint it became part of.
+        split: For each joint that was split, the two that it became.
+        armature_given: Joints whose armature the description states.
+        faulty: Joints that an invalid entry refers to, or would have made: errors about them would repeat its error.
+    """
+
+    urdf: Urdf
+    reporter: YamlReporter
+    by_name: dict[str, Joint]
+    bodies: list[Body] = field(default_factory=list)
+    merged: dict[str, str] = field(default_factory=dict)
+    split: dict[str, tuple[str, str]] = field(default_factory=dict)
+    armature_given: set[str] = field(default_factory=set)
+    faulty: set[str] = field(default_factory=set)
+
+    def meant(self, name: str, candidates: Iterable[str]) -> Hint:
+        """The hint about a name that is no joint's, although it should be one of the candidates'."""
+        if name in self.urdf.links:
+            return f"'{name}' is a link; name the joint that moves it"
+        return partial(did_you_mean, name, candidates)
