@@ -283,7 +283,7 @@ class _Closing:
         return [residuals[0][:, np.searchsorted(together.loops.rows, each.loops.rows)] for each in problem.groups]
 
 
-class _Generators(dict[int, np.random.Generator]):
+class _Generators(dict[int, "np.random.Generator"]):  # a text: few searches need what takes time to import
     """Of each element random numbers, the same for all."""
 
     def __missing__(self, element: int) -> np.random.Generator:

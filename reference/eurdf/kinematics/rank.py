@@ -162,12 +162,11 @@ def numerical_ranks(values: Matrix, reference: Vector | None = None) -> Indices:
     """`numerical_rank` of the singular values (…, k) of several matrices; by default relative to the first of each."""
     if values.shape[-1] == 0:
         return np.zeros(values.shape[:-1], dtype=np.intp)
-    largest = values[..., :1] if reference is None else reference[..., None]
-    counts = largest > NOTHING
-    relative = np.clip(values / np.where(counts, largest, 1.0), FLOOR, 1.0)
-    ends = np.ones_like(largest)
-    ladder = np.concatenate((ends, relative, FLOOR * ends), axis=-1)
-    return np.where(counts[..., 0], np.argmax(ladder[..., :-1] / ladder[..., 1:], axis=-1), 0)
+    most = values[..., :1] if reference is None else reference[..., None]
+    ladder = np.empty((*values.shape[:-1], values.shape[-1] + 2))
+    ladder[..., 0], ladder[..., -1] = 1.0, FLOOR
+    ladder[..., 1:-1] = np.minimum(np.maximum(values / np.maximum(most, NOTHING), FLOOR), 1.0)
+    return np.asarray(np.argmax(ladder[..., :-1] / ladder[..., 1:], axis=-1) * (most[..., 0] > NOTHING))
 
 
 def certain_inverse(gram: Matrix, norm: Vector) -> tuple[Matrix, Mask]:
@@ -203,16 +202,18 @@ def least_solution(A: Matrix, b: Matrix, norm: Vector) -> tuple[Matrix, Mask]:
             return x, sure
     else:
         x, sure = np.zeros((len(A), n, b.shape[2])), np.zeros(len(A), dtype=bool)
-    doubtful = np.flatnonzero(~sure & np.isfinite(norm) & are_finite(A))
-    A, b = A[doubtful], b[doubtful]
+    doubtful = ~sure & np.isfinite(norm)  # and with it A
+    which = slice(None) if every(doubtful) else np.flatnonzero(doubtful)
+    A, b = A[which], b[which]
     left, values, right = np.linalg.svd(A, full_matrices=False)
-    counts = values > CERTAIN * norm[doubtful, None]
-    doubt = (~counts & (values > ZERO * values.max(axis=1, initial=0.0)[:, None])).any(axis=1)
+    counts = values > CERTAIN * norm[which, None]
     inverse = np.divide(1.0, values, out=np.zeros_like(values), where=counts)
-    own = np.swapaxes(right, 1, 2) @ (inverse[:, :, None] * (np.swapaxes(left, 1, 2) @ b))
+    own = right.swapaxes(1, 2) @ (inverse[:, :, None] * (left.swapaxes(1, 2) @ b))
     missed = np.abs(A @ own - b).max(axis=(1, 2), initial=0.0)
-    x[doubtful] = own
-    sure[doubtful] = ~doubt & (missed <= MISSED * np.abs(b).max(axis=(1, 2), initial=0.0))
+    certain = missed <= MISSED * np.abs(b).max(axis=(1, 2), initial=0.0)
+    if not counts.all():
+        certain &= ~(~counts & (values > ZERO * values.max(axis=1, initial=0.0)[:, None])).any(axis=1)
+    x[which], sure[which] = own, certain
     return x, sure
 
 

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 # From so many blocks of one shape on, they are decomposed together; of fewer, each alone takes less time.
 _MANY = 3
 
+_ALONE = np.zeros(1, dtype=np.intp)
+
 
 class _Block(NamedTuple):
     """The part of a tangent space in one group of loops, of b elements.
@@ -159,9 +161,10 @@ class TangentSpaces:
             decomposed += zip(groups, found, strict=True)
         ranks = np.array([each.rank for _, each in decomposed], dtype=np.intp).reshape(len(decomposed), len(A)).T
         for of_kind in np.unique(ranks, axis=0) if len(A) > 1 else ranks:
-            which = np.flatnonzero((ranks == of_kind).all(axis=1))
+            which = np.flatnonzero((ranks == of_kind).all(axis=1)) if len(A) > 1 else _ALONE
+            chosen = which if len(which) < len(A) else slice(None)
             blocks = [
-                _Block(group, each.right[which][:, :, rank:], each.inverse[which])
+                _Block(group, each.right[chosen, :, rank:], each.inverse[chosen])
                 for (group, each), rank in zip(decomposed, of_kind.tolist(), strict=True)
             ]
             yield TangentSpace(which, blocks, self, alone)

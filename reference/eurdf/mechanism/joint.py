@@ -34,8 +34,7 @@ class Motion(NamedTuple):
 _BALL = Motion(None, turns=True, advance=0.0)
 
 
-@dataclass(frozen=True, slots=True)
-class Mimic:
+class Mimic(NamedTuple):
     """q = multiplier · q_joint + offset, in rad or m."""
 
     joint: str

@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 from lxml import etree
 
@@ -208,7 +207,7 @@ class _SdfWriter:
         if joint.type.is_fixed:
             return
         if mimic := self.mimics.get(joint.name):
-            mimic = replace(mimic, offset=mimic.offset - at[0])
+            mimic = mimic._replace(offset=mimic.offset - at[0])
         zero = () if at == joint.type.neutral else at
         ratios = ((index, 1.0, -value) for index, value in enumerate(at))
         self.parts.append(part_of(joint, names, ratios, mimic, zero=zero))
