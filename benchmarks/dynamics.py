@@ -20,9 +20,9 @@ from typing import Any
 import mujoco
 import numpy as np
 import numpy.typing as npt
+import pinocchio as pin
 
 import eurdf
-import pinocchio as pin
 from benchmarks.interleaved import least_times, peak_memory
 from benchmarks.mujoco_model import move, mujoco_model
 from benchmarks.robots import CHAINS, ROBOTS, chain, chains, robot_called

@@ -12,9 +12,9 @@ from collections.abc import Iterator
 from functools import partial
 
 import numpy as np
+import pinocchio as pin
 
 import eurdf
-import pinocchio as pin
 from benchmarks.interleaved import least_times
 from benchmarks.nearby import motors_nearby
 from benchmarks.plain_newton import NotConverged, PlainNewton

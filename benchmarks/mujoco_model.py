@@ -8,9 +8,9 @@ from xml.etree import ElementTree as ET
 import mujoco
 import numpy as np
 import numpy.typing as npt
+import pinocchio as pin
 
 import eurdf
-import pinocchio as pin
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType

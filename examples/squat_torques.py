@@ -16,10 +16,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+import pinocchio as pin
 from scipy.spatial import ConvexHull
 
 import eurdf
-import pinocchio as pin
 
 Array = npt.NDArray[np.float64]
 

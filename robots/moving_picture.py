@@ -9,9 +9,9 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 
 import eurdf
-import pinocchio as pin
 from eurdf.array import Vector
 from eurdf.viewing.picture import Drawn, Image, View, drawn, seen, with_palette
 

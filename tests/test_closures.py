@@ -11,12 +11,12 @@ from typing import Any
 
 import mujoco
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import eurdf
-import pinocchio as pin
 from eurdf.closures import REGISTRY
 from eurdf.closures.distance import DistanceClosure
 from eurdf.closures.frame import FrameClosure

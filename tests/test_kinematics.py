@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from lxml import etree
 
 import eurdf
-import pinocchio as pin
 from support.places import DATA, ROBOTS
 
 NUMBER = re.compile(r'(?<=["\s])-?\d+\.?\d*(e-?\d+)?(?=["\s])')

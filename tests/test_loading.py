@@ -12,12 +12,12 @@ from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-import pinocchio as pin
 from support.described import body
 from support.places import DATA, ROBOTS
 from support.plain_urdf import Root, inertial, joint_element, link_element, pinocchios_own, robot, trees

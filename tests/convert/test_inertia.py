@@ -7,12 +7,12 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import eurdf
-import pinocchio as pin
 from eurdf.convert.inertia import about_centre
 from eurdf.convert.verification.read_model import without_armature
 from eurdf.mechanism.body import Body, Inertia

@@ -11,12 +11,12 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-import pinocchio as pin
 from eurdf.collection import collection_names
 from eurdf.kinematics.evaluate import many_tree
 from eurdf.pinocchio.robot import Robot, build_robot

@@ -6,12 +6,12 @@ import dataclasses
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-import pinocchio as pin
 from eurdf.errors import DependentActuators, EurdfError, NotClosable, TooFar
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.forward import forward_kinematics

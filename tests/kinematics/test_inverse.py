@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import nnls
 
-import pinocchio as pin
 from eurdf.kinematics.assembly import assemble, start
 from eurdf.kinematics.bounded_step import bounded_step
 from eurdf.kinematics.forward import forward_kinematics

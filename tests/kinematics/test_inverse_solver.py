@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.kinematics import dynamics
 from eurdf.kinematics.equation_of_motion import EquationOfMotion
 from eurdf.kinematics.inverse_solver import InverseSolver

@@ -10,12 +10,12 @@ from typing import Any
 
 import coal
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-import pinocchio as pin
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.point import PointClosure
 from eurdf.errors import CannotLock, LockedOpen

@@ -7,10 +7,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.commands.robot_info import robot_info
 from eurdf.format.urdf.read import JOINT_LIMIT
 from eurdf.kinematics.evaluate import frames

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
-import pinocchio as pin
 from eurdf.errors import EurdfError, NotClosable
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.project import project_acceleration, project_configuration, project_velocity

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.residual import residual_and_jacobian
 from support.actuated import actuated, closed_near, robot_called

@@ -7,10 +7,10 @@ import re
 from dataclasses import replace
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import build_robot
 from robots.builder import Cylinder, Drawing, Motor, ball, revolute, write

@@ -11,10 +11,10 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from support.public import public_functions
 
 #: Annotations of parameters that are arrays, or mappings to arrays.

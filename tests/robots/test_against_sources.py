@@ -8,10 +8,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.pinocchio.frames import body_frame_ids
 
 #: Angles of Tello's own in the pose that is drawn, where they are not 0 (rad).

@@ -7,9 +7,9 @@ from typing import Any
 
 import mujoco
 import numpy as np
+import pinocchio as pin
 
 import eurdf
-import pinocchio as pin
 from eurdf.convert.coordinates import Coordinates
 from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.joint import Joint, JointProperties

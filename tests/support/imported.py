@@ -7,9 +7,9 @@ from typing import Any
 
 import mujoco
 import numpy as np
+import pinocchio as pin
 
 import eurdf
-import pinocchio as pin
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand

@@ -6,10 +6,10 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.pinocchio.robot import build_robot
 from support.exported import InMuJoCo
 from support.transmissions import DRIVEN, posed, slider_crank

@@ -9,10 +9,10 @@ from pathlib import Path
 import jsonschema
 import mujoco
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.commands.output import output_schemas
 from eurdf.pinocchio.robot import build_robot
 

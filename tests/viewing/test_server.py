@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.viewing import playback
 from support.places import ROBOTS
 from support.viewer_client import ViewerClient, differ

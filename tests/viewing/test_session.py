@@ -7,10 +7,10 @@ import re
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.kinematics.evaluate import frames
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.viewing.session import Session, Stop

@@ -8,13 +8,13 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from lxml import etree
 
 import eurdf
-import pinocchio as pin
 from eurdf.linking.robot_files import read_robot
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.constraint import Compliance

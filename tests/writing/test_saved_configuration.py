@@ -5,12 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-import pinocchio as pin
 from eurdf.linking.configurations import beyond_limits
 from eurdf.linking.robot_files import read_robot
 from eurdf.pinocchio.robot import build_robot

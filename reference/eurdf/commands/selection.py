@@ -90,6 +90,7 @@ def named_configuration(robot: Robot, name: str) -> Vector:
         CannotRun: There is none of this name.
     """
     import pinocchio as pin
+
     from eurdf.diagnostics import did_you_mean
 
     if name in robot.configurations:

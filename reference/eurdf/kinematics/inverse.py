@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from pinocchio import SE3
 
 from eurdf.array import Vector
 from eurdf.kinematics.assembly import assembled, start
@@ -25,7 +26,6 @@ from eurdf.kinematics.tolerances import (
     SOLVED,
 )
 from eurdf.pinocchio.arguments import checked_array, checked_count, checked_tolerance
-from pinocchio import SE3
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot

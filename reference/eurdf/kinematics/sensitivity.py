@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+from pinocchio import LOCAL
 
 from eurdf.array import Indices, Mask, Matrix, Vector, numbers
 from eurdf.errors import DependentActuators
@@ -19,7 +20,6 @@ from eurdf.kinematics.rank import numerical_rank, numerical_ranks
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces, metric, orthonormal
 from eurdf.pinocchio.arguments import checked_array
-from pinocchio import LOCAL
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot

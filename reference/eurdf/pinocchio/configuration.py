@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-
 import pinocchio as pin
+
 from eurdf.array import Vector
 from eurdf.diagnostics.wording import meant
 from eurdf.mechanism.joint import Joint

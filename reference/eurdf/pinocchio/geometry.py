@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator, Mapping
 
 import coal
 import numpy as np
-
 import pinocchio as pin
+
 from eurdf.array import Vector
 from eurdf.errors import EurdfError
 from eurdf.mechanism.body import Shape

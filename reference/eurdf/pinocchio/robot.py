@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import pinocchio as pin
+
 from eurdf.array import Vector
 from eurdf.diagnostics import Diagnostic
 from eurdf.mechanism.constraint import Constraint

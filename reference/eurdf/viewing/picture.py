@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-
 import pinocchio as pin
+
 from eurdf.array import Vector
 from eurdf.diagnostics.extras import install_command
 from eurdf.errors import MissingExtra

@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-
 import pinocchio as pin
+
 from eurdf.array import Vector
 from eurdf.diagnostics import did_you_mean
 from eurdf.errors import NotClosable, SimulationDiverged

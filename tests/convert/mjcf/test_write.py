@@ -10,12 +10,12 @@ from typing import Any
 
 import mujoco
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-import pinocchio as pin
 from eurdf.mechanism.constraint import Constraint, Coupling
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import Pose

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.commands.main import main
 from eurdf.diagnostics import did_you_mean
 from support.described import LIMITED, body, codes, load, revolute, written
