@@ -21,7 +21,7 @@ from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import (
     Numbers,
-    alone,
+    as_numbers,
     at_least,
     certain_inverse,
     choose,
@@ -161,6 +161,8 @@ class _Search:
         if np.count_nonzero(done):
             done[done] = self._problem.closes(start[done], CLOSED)
         going = np.flatnonzero(~done)
+        if not len(going):
+            return Found(best, *self._distances(errors), self._iterations, reason, at_limits)
         first = self._close(clipped[going], RESTARTS)
         best[going] = first.q
         is_open = going[~first.closes]
@@ -229,7 +231,7 @@ class _Search:
             self._iterations[which[on]] += 1
             closed = self._close(self._moved(q, v))
             e_there, at = self._error(closed.q, which[on])
-            closes, reached = alone(closed.closes), square(e_there)
+            closes, reached = as_numbers(closed.closes), square(e_there)
             gain = choose(closes, (cost - reached) / expected, 0.0)
             idle = choose(closes & (reached < (1.0 - idle_below) * cost), 0, idle + 1)
             accepted = gain > LEAST_SHARE
