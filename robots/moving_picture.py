@@ -12,7 +12,7 @@ import numpy as np
 
 import eurdf
 import pinocchio as pin
-from eurdf.kinematics.array import Vector
+from eurdf.array import Vector
 from eurdf.viewing.picture import Drawn, Image, View, drawn, seen, with_palette
 
 _ROBOT, _DRAGGED = "digit_leg", "foot"

@@ -8,8 +8,8 @@ from functools import cached_property
 from pathlib import Path
 
 import eurdf
+from eurdf.array import Vector
 from eurdf.collection import find_robot
-from eurdf.kinematics.array import Vector
 from eurdf.kinematics.sweep import Sweep
 
 

@@ -15,9 +15,9 @@ import numpy as np
 
 import eurdf
 import pinocchio as pin
+from eurdf.array import Vector
 from eurdf.closures.distance import DistanceClosure
 from eurdf.closures.hinge import HingeClosure
-from eurdf.kinematics.array import Vector
 from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.mechanism import Mechanism

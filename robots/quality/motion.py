@@ -8,7 +8,7 @@ import numpy as np
 
 import eurdf
 import pinocchio as pin
-from eurdf.kinematics.array import Matrix
+from eurdf.array import Matrix
 from eurdf.kinematics.sweep import MotionPath, Sweep
 from robots.quality.candidate import Candidate
 

@@ -1,7 +1,7 @@
 """To add a requirement, write its row, its function and where that is called: every report has it at once.
 
 The row names its clause, which gets an id in `spec/`, with a ``{diagnostic}`` in ``spec/diagnostics.md``. Add a row to
-``tests/linking/test_errors.py`` and cases to the suite, then run ``python -m spec.site.registry`` and
+``tests/linking/test_link.py`` and cases to the suite, then run ``python -m spec.site.registry`` and
 ``python -m spec.site.lint``. The function has the id in its docstring: the page of the clause shows it.
 """
 

@@ -15,8 +15,8 @@ from eurdf.kinematics.loop_analysis import LoopAnalysis
 from eurdf.pinocchio.robot import build_robot
 
 if TYPE_CHECKING:
+    from eurdf.array import Vector
     from eurdf.diagnostics import Diagnostics, Place
-    from eurdf.kinematics.array import Vector
     from eurdf.linking.robot_files import ReadRobot
     from eurdf.mechanism.mechanism import Mechanism
     from eurdf.pinocchio.robot import Robot

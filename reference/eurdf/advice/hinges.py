@@ -18,7 +18,7 @@ from eurdf.mechanism.constraint import Closure
 from eurdf.pinocchio.robot import build_robot
 
 if TYPE_CHECKING:
-    from eurdf.kinematics.array import Vector
+    from eurdf.array import Vector
     from eurdf.mechanism.pose import Vector3
     from eurdf.pinocchio.robot import Robot
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _MOST_TRIED = 24
 
 #: Unit vectors that differ by less are one direction.
-_SAME = 1e-6
+_ALIKE = 1e-6
 
 
 class LikelyHinge(NamedTuple):
@@ -91,7 +91,7 @@ def _axes(robot: Robot, q: Vector, closure: Closure) -> Iterator[tuple[Vector3, 
     directions += [axis for joint, _ in sites for axis in _joint_axis(robot, data, joint, q)]
     seen: list[Vector] = []
     for direction in directions:
-        if all(min(np.linalg.norm(direction - other), np.linalg.norm(direction + other)) > _SAME for other in seen):
+        if all(min(np.linalg.norm(direction - other), np.linalg.norm(direction + other)) > _ALIKE for other in seen):
             seen.append(direction)
             yield _in_frame(frames[0], direction), _in_frame(frames[1], direction)
 

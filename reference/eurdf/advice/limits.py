@@ -12,8 +12,8 @@ from eurdf.kinematics.position_limit import position_limits
 from eurdf.linking.configurations import BeyondLimit, beyond_limits
 
 if TYPE_CHECKING:
+    from eurdf.array import Vector
     from eurdf.diagnostics import Diagnostics
-    from eurdf.kinematics.array import Vector
     from eurdf.linking.robot_files import ReadRobot
     from eurdf.pinocchio.robot import Robot
 

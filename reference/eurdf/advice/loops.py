@@ -39,7 +39,7 @@ def closure_diagnostics(read: ReadRobot, robot: Robot, assembly: Assembly | None
         if assembly.reason == "not decided":
             diagnostics.report(
                 "x-loops-not-checked",
-                "it is not decided whether the loops close: the search reached its limit of 1e10 multiplications",
+                "could not determine whether the loops close: the search reached its limit of 1e10 multiplications",
                 read.place_of_constraint(worst.name),
                 "state a configuration 'assembled' (version 2): then the loops are checked there",
             )

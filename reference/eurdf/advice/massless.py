@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import pinocchio as pin
-from eurdf.kinematics.array import Matrix, Vector
+from eurdf.array import Matrix, Vector
 from eurdf.kinematics.loop import joints_of_loops
 from eurdf.kinematics.scale import characteristic_length
 from eurdf.mechanism.mechanism import ROOT_JOINT
@@ -47,8 +47,8 @@ def advise_on_massless_links(read: ReadRobot, robot: Robot, q: Vector, diagnosti
     massless = {joint for joint in (*with_link, *second) if _is_massless(model.inertias[joint])}
     if massless.isdisjoint(looped):
         return
-    random, length = np.random.default_rng(0), characteristic_length(robot)
-    beside = pin.integrate(model, q, random.uniform(-_MOVE, _MOVE, model.nv))
+    length = characteristic_length(robot)
+    beside = q  # another configuration, made when it is needed: `numpy.random` takes time to import
     children: dict[int, list[int]] = {}
     for joint in range(1, model.njoints):
         children.setdefault(model.parents[joint], []).append(joint)
@@ -63,6 +63,8 @@ def advise_on_massless_links(read: ReadRobot, robot: Robot, q: Vector, diagnosti
         if looped.isdisjoint(joints) or any(model.nvs[joint] != model.nvExtendeds[joint] for joint in joints):
             continue  # what mimics another has that one's motion
         motions = _motions_at_rest(model, joints, massless, q, length)
+        if len(motions) and beside is q:
+            beside = pin.integrate(model, q, np.random.default_rng(0).uniform(-_MOVE, _MOVE, model.nv))
         if len(motions) and len(_motions_at_rest(model, joints, massless, beside, length)):
             columns = [joint for joint in joints for _ in range(model.nvs[joint])]
             fast = np.abs(motions).max(axis=0) > _NOTHING

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import pinocchio as pin
-from eurdf.kinematics.array import Matrix, Vector
+from eurdf.array import Matrix, Vector
 from eurdf.kinematics.loop import joints_of_loops
 from eurdf.kinematics.loop_analysis import LoopAnalysis, Motion, sparse_basis
 from eurdf.kinematics.scale import characteristic_length

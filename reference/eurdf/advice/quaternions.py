@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 # Numbers of a quaternion that differ by less are one.
-_SAME = 1e-6
+_SAME_NUMBER = 1e-6
 
 _Coordinates = Mapping[str, tuple[float, ...]]
 
@@ -37,7 +37,7 @@ def advise_on_quaternions(read: ReadRobot, robot: Robot | None, diagnostics: Dia
             closed = _closes(robot, coordinates)
             by_turned = not closed and _closes(robot, {**coordinates, **turned})
         for joint, values in turned.items():
-            is_identity = abs(values[-1]) > 1.0 - _SAME
+            is_identity = abs(values[-1]) > 1.0 - _SAME_NUMBER
             if (by_turned and joint in looped) or (is_identity and not (closed and joint in looped)):
                 why = "the loops close" if by_turned and joint in looped else "it is the identity"
                 quaternion = ", ".join(f"{value + 0.0:g}" for value in values[-4:])
@@ -59,7 +59,7 @@ def w_first(mechanism: Mechanism, coordinates: _Coordinates) -> dict[str, tuple[
         start = quaternion.get(name)
         if start is not None:
             x, y, z, w = values[start : start + 4]
-            if min(_distance((x, y, z, w), (y, z, w, x)), _distance((x, y, z, w), (-y, -z, -w, -x))) > _SAME:
+            if min(_distance((x, y, z, w), (y, z, w, x)), _distance((x, y, z, w), (-y, -z, -w, -x))) > _SAME_NUMBER:
                 turned[name] = (*values[:start], y, z, w, x)
     return turned
 

@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from eurdf.closures.kind import ClosureKind
 
+#: A closure that is open by no more than this, m or rad, counts as closed (EU-CLO-005).
+CLOSED = 1e-6
+
 #: The module of each kind that files can state, by its type there.
 MODULES = {"3d": "point", "6d": "frame", "hinge": "hinge", "distance": "distance"}
 

@@ -20,7 +20,7 @@ _LEAST_SINE = 1e-9
 
 # Coefficients of the series of θ / sin θ in powers of cos θ - 1, for angles below _SMALL rad, where the quotients of
 # the second derivative are of small numbers: each is -(n + 1) / (2n + 3) of the one before.
-_SERIES = np.polynomial.Polynomial(np.cumprod([1.0, *(-(n + 1.0) / (2.0 * n + 3.0) for n in range(9))]))
+_SERIES = np.poly1d(np.cumprod([1.0, *(-(n + 1.0) / (2.0 * n + 3.0) for n in range(9))])[::-1])
 _SLOPE, _BEND = _SERIES.deriv(), _SERIES.deriv(2)
 _SMALL = 0.1
 

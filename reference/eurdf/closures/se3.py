@@ -272,7 +272,7 @@ def _exponential(turn: Matrix) -> tuple[tuple[Vector, Vector], tuple[Vector, Vec
 def _taylor(t: Matrix, first: int, factor: int = 0) -> Matrix:
     """Σ (-t)ⁿ / (first + 2 n)!, with the factor n + 1 of a derivative if that is asked for."""
     terms = [(n + 1) ** factor / math.factorial(first + 2 * n) for n in range(6)]
-    return np.asarray(np.polynomial.polynomial.polyval(-t, terms))
+    return np.asarray(np.polyval(terms[::-1], -t))
 
 
 def _along(a: Matrix, b: Matrix) -> Vector:

@@ -19,7 +19,7 @@ from eurdf.mechanism.mechanism import root_joint
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from eurdf.kinematics.array import Vector
+    from eurdf.array import Vector
     from eurdf.kinematics.assembly import Assembly
     from eurdf.linking.configurations import BeyondLimit
     from eurdf.pinocchio.robot import Robot

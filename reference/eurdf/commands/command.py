@@ -9,7 +9,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from eurdf.collection.near_paths import near_path
 from eurdf.commands.selection import select_one
@@ -24,7 +24,7 @@ _PATH = "a robot: a folder, a .yaml, .urdf or .xacro file, - for standard input,
 _URDF_ENDINGS = (".urdf", ".xml", ".xacro")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Option:
     """An argument of a command: the default of a parameter of its function.
 
@@ -123,8 +123,7 @@ SERIAL_JOINTS: Any = option("joints of the serial robot", nargs="+", required=Tr
 SERIAL_MOTORS: Any = option("the motors; default: the actuated joints that move the joints", nargs="+", metavar="JOINT")
 
 
-@dataclass(frozen=True, slots=True)
-class Command:
+class Command(NamedTuple):
     """A command of the command line.
 
     Attributes:

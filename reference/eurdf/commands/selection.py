@@ -16,7 +16,7 @@ from eurdf.reading.robot_source import is_stream, is_text
 from eurdf.reading.source import FILE_LIMIT, begin_of_file
 
 if TYPE_CHECKING:
-    from eurdf.kinematics.array import Vector
+    from eurdf.array import Vector
     from eurdf.pinocchio.robot import Robot
 
 #: The name of the neutral configuration, unless the description has one of this name.

@@ -1,4 +1,4 @@
-"""``eurdf serial``: write the serial robot that stands for one whose joints are moved through rods."""
+"""``eurdf serial``: write an equivalent serial robot of one whose joints are moved through rods."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from eurdf.commands.output_file import writing
 from eurdf.commands.terminal import cell, new_table, write_notes, write_rendered
 
 if TYPE_CHECKING:
-    from eurdf.kinematics.array import Matrix, Vector
+    from eurdf.array import Matrix, Vector
     from eurdf.transmissions.serial_twin import Choice, SerialTwin
 
 _DESCRIPTION = """\
-Write the serial robot that stands for one whose joints are moved through rods, as URDF and MJCF, for simulators and
+Write the serial equivalent of a robot whose joints are moved through rods, as URDF and MJCF, for simulators and
 training: without rods and cranks, with limits and armatures that follow from the motors. transmission.json has the
 same numbers, polynomials that give the positions of the motors, and what the serial robot neglects.
 """
@@ -45,7 +45,7 @@ def _value(text: str) -> tuple[str, float]:
 
 
 @command(
-    summary="write the serial robot that stands for one with rods, and show what it neglects",
+    summary="write an equivalent serial robot (URDF, MJCF) and its approximation errors",
     description=_DESCRIPTION,
     exit_codes="0 written, 1 the robot has errors, 2 the command cannot run.",
     examples=(

@@ -19,8 +19,8 @@ from eurdf.exceptions import CannotRun
 if TYPE_CHECKING:
     from rich.table import Table
 
+    from eurdf.array import Vector
     from eurdf.commands.transmission_info import LimitsInfo, PoseInfo, TransmissionInfo
-    from eurdf.kinematics.array import Vector
     from eurdf.pinocchio.robot import Robot
 
 _DESCRIPTION = """\

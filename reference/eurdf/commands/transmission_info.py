@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 
+from eurdf.array import Matrix, Vector
 from eurdf.json_schema import PAIRS, ROW, Count
-from eurdf.kinematics.array import Matrix, Vector
 from eurdf.transmissions.inertia import reflected_inertia
 from eurdf.transmissions.limits import CommonLimits, SerialLimits, serial_limits
 from eurdf.transmissions.motors import linkage_bodies

@@ -18,6 +18,10 @@ Matrix = npt.NDArray[np.float64]
 #: Error at which a position actuator reaches the effort limit, rad or m; and its gain without such a limit.
 FULL_EFFORT_AT, GAIN = 0.1, 100.0
 
+#: kg and kg·m² that a link without inertia gets where the program that reads the file needs some: far below any of a
+#: robot, and ten times the larger of MuJoCo's bounds; in single precision, far above 0.
+LEAST, LIGHT = 1e-13, 1e-9
+
 #: Distance of the points that hold a hinge, or a frame, where a format has constraints of points alone, m.
 WIDTH = 0.1
 

@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 from types import MappingProxyType
 
+from eurdf.array import Vector
 from eurdf.convert.common_losses import BEYOND_LIMITS, UNKNOWN
 from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.exceptions import CannotExport
@@ -28,7 +29,6 @@ from eurdf.convert.parts import OwnVectors, VectorPlace
 from eurdf.convert.verification.verify import Verification, verify
 from eurdf.diagnostics import did_you_mean
 from eurdf.exceptions import InvalidRobot
-from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.linking.configurations import beyond_limits

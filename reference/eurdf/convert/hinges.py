@@ -9,19 +9,19 @@ from typing import Any
 import numpy as np
 
 import pinocchio as pin
+from eurdf.array import Vector
 from eurdf.closures.hinge import HingeClosure
 from eurdf.closures.point import PointClosure
 from eurdf.convert.common_losses import COMMON
 from eurdf.convert.losses import Loss, Losses
 from eurdf.kinematics.analysis import analyze
-from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.mechanism.constraint import Closure
 from eurdf.pinocchio.robot import Robot, build_robot
 
 #: Singular values of an angular velocity, relative to those of the whole motion, that count as none.
-_NONE = 1e-9
+_NO_TURN = 1e-9
 
 #: How far the loops are moved to see whether the axis stays, rad or m, and how far it may turn, rad.
 _STEP, _SAME = 0.2, 1e-6
@@ -77,7 +77,7 @@ def _hinge(
     joints = [robot.tree.site(anchor)[0] for anchor in closure.anchors]
     one, other = (pin.getJointJacobian(robot.model, data, joint, pin.WORLD)[3:] for joint in joints)
     turns, sizes, _ = np.linalg.svd((other - one) @ freedoms)
-    if not len(sizes) or sizes[0] <= _NONE or (sizes[1:] > _NONE * sizes[0]).any():
+    if not len(sizes) or sizes[0] <= _NO_TURN or (sizes[1:] > _NO_TURN * sizes[0]).any():
         return None
     a, b = (frame.T @ turns[:, 0] for frame in _frames(robot, data, closure))
     for each in moved:

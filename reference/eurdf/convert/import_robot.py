@@ -14,6 +14,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from eurdf.array import Vector
 from eurdf.convert.exceptions import CannotImport
 from eurdf.convert.import_format import ImportFormat, ImportInput, RobotRead, import_format, loss_kinds
 from eurdf.convert.loop_axes import allowed_axes, with_axes
@@ -24,7 +25,6 @@ from eurdf.diagnostics import Diagnostic, Severity, did_you_mean
 from eurdf.diagnostics.wording import visible
 from eurdf.exceptions import RobotNotFound
 from eurdf.format.schema import FILES, SchemaVersion, json_schema, schema_text
-from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.position_limit import position_limits

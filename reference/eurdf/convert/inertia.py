@@ -18,7 +18,7 @@ from eurdf.writing.xml_text import angles_with_yaw
 Matrix = npt.NDArray[np.float64]
 
 #: A change of a principal moment by this part of the largest one is rounding.
-ROUNDING = 1e-12
+_SAME_MOMENT = 1e-12
 
 #: Programs find principal moments with errors up to this part of the largest one: MuJoCo's iteration stops at an angle
 #: of 1e-6 rad, and the formula of gz-math loses half the digits where two of them are equal.
@@ -97,7 +97,7 @@ def physical(inertia: Inertia, least: float) -> tuple[Inertia, float]:
             wanted[index] += -0.5 * room * (1.0 + 1e-9) + 1e-15 * wanted[largest]
     change = max(abs(one - other) for one, other in zip(wanted, given, strict=True))
     a, b, c = wanted
-    return replace(found, moments=(a, 0.0, 0.0, b, 0.0, c)), change if change > ROUNDING * wanted[largest] else 0.0
+    return replace(found, moments=(a, 0.0, 0.0, b, 0.0, c)), change if change > _SAME_MOMENT * wanted[largest] else 0.0
 
 
 def _matrix(inertia: Inertia) -> Matrix:

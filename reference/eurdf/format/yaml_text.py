@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from eurdf.reading.core_schema import resolve
 
@@ -27,8 +26,7 @@ _YAML_1_1_NUMBER = re.compile(r"[-+.\d][\d_.eE+-]*|0[xob][\da-fA-F_]*|[-+]?\.(?:
 _ESCAPES = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\r": "\\r", "\t": "\\t"}
 
 
-@dataclass(frozen=True, slots=True)
-class YamlEntry:
+class YamlEntry(NamedTuple):
     """An entry of a mapping or a list, with the comments that go with it.
 
     Attributes:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
+from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.descend import Descended, descend, evaluated
 from eurdf.kinematics.exceptions import NotClosable
@@ -283,7 +283,7 @@ class _Closing:
         return [residuals[0][:, np.searchsorted(together.loops.rows, each.loops.rows)] for each in problem.groups]
 
 
-class _Generators(dict[int, np.random.Generator]):
+class _Generators(dict[int, "np.random.Generator"]):  # a text: few searches need what takes time to import
     """Of each element random numbers, the same for all."""
 
     def __missing__(self, element: int) -> np.random.Generator:

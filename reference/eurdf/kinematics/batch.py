@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
+from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import close
 from eurdf.kinematics.blocks import Progress, blocks, checked_configurations, checked_rows, shape_of, starts
 from eurdf.kinematics.derived import borrowed, derived

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from eurdf.kinematics.array import Matrix
+from eurdf.array import Matrix
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.evaluate import many_tree
 from eurdf.pinocchio.arguments import checked_array, checked_count

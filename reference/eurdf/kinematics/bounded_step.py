@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from eurdf.kinematics.array import Matrix, Vector
+from eurdf.array import Matrix, Vector
 
-_ROUNDING = 1e-12
+# Below this, relative to the largest entry, is rounding.
+_SLIGHT = 1e-12
 # Maximum number of active-set changes, divided by the dimension plus one.
 _MOST_CHANGES = 5
 
@@ -28,12 +29,12 @@ def bounded_step(H: Matrix, g: Vector, G: Matrix, h: Vector) -> Vector:
     Returns:
         y (m,).
     """
-    y, slack = np.zeros(len(g)), _ROUNDING * float(np.abs(g).max(initial=0.0))
+    y, slack = np.zeros(len(g)), _SLIGHT * float(np.abs(g).max(initial=0.0))
     active: list[int] = []
     for _ in range(_MOST_CHANGES * (len(g) + 1)):
         p = _to_lowest(H, H @ y + g, G[active])
         along, room = G @ p, np.maximum(h - G @ y, 0.0)
-        approached = along > _ROUNDING * np.abs(p).max(initial=0.0)
+        approached = along > _SLIGHT * np.abs(p).max(initial=0.0)
         approached[active] = False
         reach = np.full(len(h), np.inf)
         reach[approached] = room[approached] / along[approached]

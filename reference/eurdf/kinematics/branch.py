@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eurdf.kinematics.array import Matrix, Vector
+from eurdf.array import Matrix, Vector
 from eurdf.kinematics.position_limit import PositionLimits
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import numerical_rank

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
+from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.position_limit import PositionLimits
 from eurdf.kinematics.problem import Group, Problem
 from eurdf.kinematics.rank import (

@@ -21,11 +21,12 @@ from eurdf.array import Matrix, Vector
 from eurdf.kinematics.applied_force import AppliedForce, External
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.derived import borrowed
-from eurdf.kinematics.equation_of_motion import MASSLESS, EquationOfMotion, by_joint, per_constraint
+from eurdf.kinematics.equation_of_motion import EquationOfMotion, by_joint, per_constraint
 from eurdf.kinematics.exceptions import UnderactuatedMotion
 from eurdf.kinematics.finite import finite, overflow_refused
-from eurdf.kinematics.forward_solver import SOLVED, ForwardSolver
+from eurdf.kinematics.forward_solver import ForwardSolver
 from eurdf.kinematics.inverse_solver import InverseSolver
+from eurdf.kinematics.tolerances import FORCES_SOLVED, MASSLESS
 from eurdf.pinocchio.arguments import checked_array, checked_tolerance
 from eurdf.pinocchio.tree_dynamics import TreeDynamics
 
@@ -300,7 +301,7 @@ def _uncontrolled(motion: EquationOfMotion, inertial: Vector, force: Vector) -> 
     U = motion.N @ Z @ axes
     along = U.T @ (inertial + force)
     terms = np.abs(U.T) @ (np.abs(inertial) + np.abs(force))
-    unborne = np.where(massive | (np.abs(along) <= SOLVED * terms), 0.0, along)
+    unborne = np.where(massive | (np.abs(along) <= FORCES_SOLVED * terms), 0.0, along)
     deviation = U[:, massive] @ (along[massive] / inertia[massive])
     return deviation, motion.free @ (Z @ (axes @ unborne)) / motion.unit
 

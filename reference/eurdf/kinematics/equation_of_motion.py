@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from eurdf.kinematics.array import Matrix, Vector
+from eurdf.array import Matrix, Vector
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.exceptions import InconsistentMotion, UndeterminedMotion
 from eurdf.kinematics.finite import finite
@@ -16,14 +16,12 @@ from eurdf.kinematics.loop import find_loops
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.residual import acceleration_drift, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
+from eurdf.kinematics.tolerances import MASSLESS
 from eurdf.pinocchio.tree import Tree
 from eurdf.pinocchio.tree_dynamics import TreeDynamics
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
-
-#: An inertia below this, relative to the largest one of a free motion, counts as zero.
-MASSLESS = 1e-14
 
 
 class Acceleration(NamedTuple):

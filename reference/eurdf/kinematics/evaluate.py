@@ -276,29 +276,23 @@ class TreeFew:
         self._tree = tree
 
     def integrate(self, q: Matrix, v: Matrix) -> Matrix:
-        """See `TreeMany.integrate`."""
         there = _each(self._tree.integrate, self.nq, q, v)
         # A quaternion, and a cosine and a sine, are one number more than they have velocities.
         return there if self.nq == self.nv else _each(self._tree.normalized, self.nq, there)
 
     def difference(self, q: Matrix, other: Matrix) -> Matrix:
-        """See `TreeMany.difference`."""
         return _each(self._tree.difference, self.nv, q, other)
 
     def integrate_derivative(self, q: Matrix, v: Matrix) -> Matrix:
-        """See `TreeMany.integrate_derivative`."""
         return _each(self._tree.integrate_derivative, (self.nv, self.nv), q, v)
 
     def difference_derivative(self, q: Matrix, other: Matrix) -> Matrix:
-        """See `TreeMany.difference_derivative`."""
         return _each(self._tree.difference_derivative, (self.nv, self.nv), q, other)
 
     def difference_derivative_times(self, q: Matrix, other: Matrix, forces: Matrix) -> Matrix:
-        """See `TreeMany.difference_derivative_times`."""
         return (forces[:, None] @ self.difference_derivative(q, other))[:, 0]
 
     def normalized(self, q: Matrix) -> Matrix:
-        """See `TreeMany.normalized`."""
         return _each(self._tree.normalized, self.nq, q)
 
 

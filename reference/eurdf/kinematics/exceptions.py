@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from eurdf.exceptions import EurdfError, Portable
 
 if TYPE_CHECKING:
-    from eurdf.kinematics.array import Vector
+    from eurdf.array import Vector
     from eurdf.kinematics.opening import Opening
 
 

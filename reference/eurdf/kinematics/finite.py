@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from eurdf.kinematics.array import Matrix
+from eurdf.array import Matrix
 from eurdf.kinematics.exceptions import NumericalOverflow
 
 

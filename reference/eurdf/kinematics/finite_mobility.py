@@ -9,12 +9,11 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 import numpy as np
 
-from eurdf.kinematics.array import Matrix, Vector
+from eurdf.array import Matrix, Vector
 from eurdf.kinematics.descend import descend
 from eurdf.kinematics.problem import Group, Problem
 from eurdf.kinematics.quadratic_forms import common_roots
@@ -45,8 +44,7 @@ _MOST_WORK = 2e9
 _FAR, _FAR_STEPS = 0.2, 4
 
 
-@dataclass(frozen=True, slots=True)
-class FiniteMobility:
+class FiniteMobility(NamedTuple):
     """How far the free velocities of a group of loops continue.
 
     Attributes:

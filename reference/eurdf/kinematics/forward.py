@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
+from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import assembled, close, closed_start, is_closed, start
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.exceptions import NotClosable, NumericalOverflow, TooFar

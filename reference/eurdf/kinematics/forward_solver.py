@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from eurdf.kinematics.array import Matrix, Vector
+from eurdf.array import Matrix, Vector
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.equation_of_motion import Acceleration, EquationOfMotion
 from eurdf.kinematics.finite import finite, overflow_refused
@@ -13,6 +13,7 @@ from eurdf.kinematics.independence import Independence, norm
 from eurdf.kinematics.loop import find_loops
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
+from eurdf.kinematics.tolerances import CLOSED_FOR_FORCES, FORCES_SOLVED
 from eurdf.pinocchio.constrained_dynamics import (
     ConstrainedDynamics,
     StatedGains,
@@ -22,14 +23,6 @@ from eurdf.pinocchio.tree_dynamics import TreeDynamics
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
-
-#: Residuals (m, rad), and the norm of their rates relative to 1 plus that of v, up to which closures count as closed
-#: here. Such a residual changes the acceleration as much as what the solver leaves out. `eurdf.assemble` closes to
-#: 1e-10.
-CLOSED = 1e-9
-
-#: Accepted error of the solver in either equation, relative to the largest term.
-SOLVED = 1e-9
 
 
 class ForwardSolver:
@@ -119,7 +112,8 @@ class ForwardSolver:
         found = self._solver.solve(q, v, force, gains, dynamics.data, dynamics is self._own)
         # By dot, which takes half the time of @ for small matrices.
         a, on_a, J, target = found.a, found.on_a, found.J, found.target
-        if not nearly_closed and not (found.closed_to(CLOSED) and norm(J.dot(v)) <= CLOSED * (1.0 + norm(v))):
+        bound = CLOSED_FOR_FORCES
+        if not nearly_closed and not (found.closed_to(bound) and norm(J.dot(v)) <= bound * (1.0 + norm(v))):
             return None
         missed = norm(J.dot(a) - target)
         if not (_is_small(missed, norm(target)) or _is_small(missed, norm(J.ravel()) * norm(a))):
@@ -146,4 +140,4 @@ class ForwardSolver:
 
 
 def _is_small(error: float, terms: float) -> bool:
-    return error <= SOLVED * terms < math.inf
+    return error <= FORCES_SOLVED * terms < math.inf

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from eurdf.kinematics.array import Matrix, Vector
+from eurdf.array import Matrix, Vector
 from eurdf.kinematics.tolerances import ZERO
 
 #: Up to this condition number of the dimensionless K Kᵀ, in Frobenius' norm, the rows of K are independent beyond

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eurdf.kinematics.array import Vector
+from eurdf.array import Vector
 from eurdf.kinematics.assembly import assembled, measured, start
 from eurdf.kinematics.blocks import checked_rows, shape_of
 from eurdf.kinematics.derived import borrowed

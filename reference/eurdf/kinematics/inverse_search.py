@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
+from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.closures.se3 import velocity_of_origin
-from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import Closed, close
 from eurdf.kinematics.bounded_step import bounded_step
 from eurdf.kinematics.descend import next_damping

@@ -16,12 +16,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from eurdf.kinematics.array import Vector
+from eurdf.array import Vector
 from eurdf.kinematics.derived import derived
-from eurdf.kinematics.forward_solver import CLOSED, ForwardSolver
+from eurdf.kinematics.forward_solver import ForwardSolver
 from eurdf.kinematics.independence import norm
 from eurdf.kinematics.rank import certain_inverse
 from eurdf.kinematics.tangent_space import TangentSpaces
+from eurdf.kinematics.tolerances import CLOSED_FOR_FORCES
 from eurdf.pinocchio.tree_dynamics import TreeDynamics
 
 if TYPE_CHECKING:
@@ -80,7 +81,7 @@ class InverseSolver:
             return None
         r, K = closures
         opening = K.dot(v)
-        if not (norm(r) <= CLOSED and norm(opening) <= CLOSED * (1.0 + norm(v))):
+        if not (norm(r) <= CLOSED_FOR_FORCES and norm(opening) <= CLOSED_FOR_FORCES * (1.0 + norm(v))):
             return None
         A = K * self._dimensionless
         locked = A[:, self._others]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices, Vector
+from eurdf.array import Indices, Vector
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.exceptions import CannotLock, LockedOpen
 from eurdf.kinematics.locked_mechanism import lock_joints

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices
+from eurdf.array import Indices
 from eurdf.kinematics.derived import derived
 from eurdf.mechanism.constraint import Constraint
 from eurdf.pinocchio.ancestry import Ancestry

@@ -163,7 +163,6 @@ class _BallNodes:
         return R, p
 
     def place(self, own: slice, moves: tuple[Matrix, Matrix], above: Matrix, poses: Matrix) -> None:
-        """See `_ScrewNodes.place`."""
         R, p = moves[0][own], moves[1][own]
         rest = self._placements[own] @ above
         np.einsum("nijb,njkb->nikb", rest[:, :, :3], R, out=poses[:, :, :3])

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
+from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import close
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import as_numbers, at_least, choose, column, every, largest, some, square

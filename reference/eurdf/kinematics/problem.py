@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
+from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.evaluate import evaluator, few_tree, many_tree
 from eurdf.kinematics.loop import LoopGroup, independent_groups, merged, moving_velocities

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
+from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import assembled, close, start
 from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.exceptions import NotClosable

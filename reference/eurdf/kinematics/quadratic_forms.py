@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eurdf.kinematics.array import Matrix, Vector
+from eurdf.array import Matrix, Vector
 
 #: A form, or a value of it at a unit vector, counts as zero up to this: above the errors of differences and of
 #: configurations that are closed to 1e-6.

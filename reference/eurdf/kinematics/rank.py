@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.linalg import _umath_linalg
 
-from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
+from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.tolerances import CERTAIN, FLOOR, MISSED, NOTHING, ZERO
 
 # Eigenvalues of A Aᵀ below this fraction of the largest are zero.

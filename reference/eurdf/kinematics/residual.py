@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eurdf.kinematics.array import Matrix, Vector
+from eurdf.array import Matrix, Vector
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.evaluate import Evaluator, State, evaluator
 from eurdf.kinematics.finite import finite

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from eurdf.array import Vector
 from eurdf.closures.coupling import Couplings
-from eurdf.kinematics.array import Vector
 from eurdf.kinematics.loop import find_loops, joints_of_loops
 from eurdf.mechanism.constraint import Coupling
 from eurdf.pinocchio.ancestry import Ancestry

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from eurdf.array import Matrix, Vector
 from eurdf.kinematics.applied_force import AppliedForce, External
-from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import assemble, start
 from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.exceptions import NotClosable, SimulationDiverged, StepTooLongWarning
@@ -18,6 +18,7 @@ from eurdf.kinematics.finite import overflow_refused
 from eurdf.kinematics.forward_solver import ForwardSolver
 from eurdf.kinematics.independence import norm
 from eurdf.kinematics.tangent_space import TangentSpaces
+from eurdf.kinematics.tolerances import DIVERGED
 from eurdf.pinocchio.arguments import checked_array
 
 if TYPE_CHECKING:
@@ -26,9 +27,6 @@ if TYPE_CHECKING:
 #: Motor torques (nu,) at a time (s), a configuration (nq,) and a velocity (nv,).
 Control = Callable[[float, Vector, Vector], Vector]
 
-
-# Velocities above this, rad/s or m/s, count as divergence.
-_FASTEST = 1e9
 
 # Energy error, relative to the energy exchanged, above which the step is too long, and that of the step suggested.
 _TOO_LONG, _SHORT_ENOUGH = 1e-2, 1e-3
@@ -172,7 +170,7 @@ class _Motion:
 
     def _rates(self, t: float, begin: Vector, q: Vector, v: Vector, moved: bool) -> tuple[Vector, Vector, float]:
         """Rates of x and v at q = begin ⊕ x, and the power of what is applied; x is 0 unless ``moved``."""
-        if not (norm(v) < _FASTEST and norm(q) < math.inf):
+        if not (norm(v) < DIVERGED and norm(q) < math.inf):
             raise SimulationDiverged(t, self._step)
         u = None
         if self._control is not None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices, Vector
+from eurdf.array import Indices, Vector
 from eurdf.pinocchio.arguments import checked_array
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices, Matrix, Vector
+from eurdf.array import Indices, Matrix, Vector
 from eurdf.kinematics.assembly import close
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.problem import Problem

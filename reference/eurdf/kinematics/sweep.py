@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from eurdf.kinematics.array import Mask, Matrix, Vector
+from eurdf.array import Mask, Matrix, Vector
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.branch import Branch, Point
 from eurdf.kinematics.exceptions import NotClosable

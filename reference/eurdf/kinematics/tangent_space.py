@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices, Matrix, Vector
+from eurdf.array import Indices, Matrix, Vector
 from eurdf.kinematics.finite import finite
 from eurdf.kinematics.loop import LoopGroup, independent_groups
 from eurdf.kinematics.rank import are_finite, inverses, least_solution, numerical_ranks

@@ -5,10 +5,11 @@ Scaled residuals, steps and motions are dimensionless: angles in rad, lengths in
 
 from __future__ import annotations
 
+from eurdf.closures import CLOSED as CLOSED
+
 # How far loops are open: rows of the residual, m or rad.
 
-#: A closure that is open by no more than this counts as closed (EU-CLO-005).
-CLOSED = 1e-6
+# `CLOSED`: A closure that is open by no more than this counts as closed (EU-CLO-005).
 #: A residual of this norm, in m and rad and dimensionless, is of closed loops for certain: how far a closure is open
 #: differs from its rows by a factor below 10.
 WELL_CLOSED = 0.1 * CLOSED
@@ -75,6 +76,18 @@ DEAD = 0.01
 SAME = 1e-6
 #: A unit motion moves a joint if it does so by more than this.
 MOVES = 1e-6
+
+# Dynamics.
+
+#: Residuals (m, rad), and the norm of their rates relative to 1 plus that of v, up to which closures count as closed
+#: for forces. Such a residual changes the acceleration as much as what Pinocchio's solver leaves out.
+CLOSED_FOR_FORCES = 1e-9
+#: Accepted error of Pinocchio's solver in either equation, relative to the largest term.
+FORCES_SOLVED = 1e-9
+#: An inertia below this, relative to the largest one of a free motion, counts as zero.
+MASSLESS = 1e-14
+#: Velocities above this, rad/s or m/s, count as divergence of a simulation.
+DIVERGED = 1e9
 
 # Ranks, relative to the largest singular value or to the norm of a dimensionless matrix.
 

@@ -216,16 +216,13 @@ class _Pairs(_Curved):
     turns = 2
 
     def integrate(self, q: Matrix, v: Matrix) -> Matrix:
-        """See `_Curved`."""
         return _complex_product(q, np.concatenate((np.cos(v), np.sin(v)), axis=-1))
 
     def difference(self, q: Matrix, other: Matrix) -> Matrix:
-        """See `_Curved`."""
         turn = _complex_product(_conjugate(q), other)
         return np.asarray(np.arctan2(turn[..., 1:], turn[..., :1]))
 
     def integrate_derivative(self, v: Matrix) -> Matrix:
-        """See `_Curved`."""
         return np.ones((*v.shape, 1))
 
     difference_derivative = integrate_derivative
@@ -235,19 +232,15 @@ class _Balls(_Curved):
     """Unit quaternions, x, y, z, w."""
 
     def integrate(self, q: Matrix, v: Matrix) -> Matrix:
-        """See `_Curved`."""
         return se3.quaternion_product(q, se3.quaternion_exp(v))
 
     def difference(self, q: Matrix, other: Matrix) -> Matrix:
-        """See `_Curved`."""
         return se3.quaternion_log(se3.quaternion_product(q * [-1.0, -1.0, -1.0, 1.0], other))
 
     def integrate_derivative(self, v: Matrix) -> Matrix:
-        """See `_Curved`."""
         return se3.exp6_derivative(np.concatenate((np.zeros_like(v), v), axis=-1))[..., 3:, 3:]
 
     def difference_derivative(self, v: Matrix) -> Matrix:
-        """See `_Curved`."""
         return se3.log3_derivative(v)
 
 
@@ -265,23 +258,19 @@ class _Poses(_Curved):
         return np.concatenate((position, se3.quaternion_product(q[..., 3:], se3.quaternion_exp(v[..., 3:]))), axis=-1)
 
     def integrate(self, q: Matrix, v: Matrix) -> Matrix:
-        """See `_Curved`."""
         R, p = self.pose(q)
         v = self._twist(v)
         return self.coordinates(q, v, p + turned(R, se3.exp6(v)[1]))
 
     def difference(self, q: Matrix, other: Matrix) -> Matrix:
-        """See `_Curved`."""
         (R, p), (R_other, p_other) = self.pose(q), self.pose(other)
         back = transposed(R)
         return se3.log6(back @ R_other, turned(back, p_other - p))[..., self.moving]
 
     def integrate_derivative(self, v: Matrix) -> Matrix:
-        """See `_Curved`."""
         return self._block(se3.exp6_derivative(self._twist(v)))
 
     def difference_derivative(self, v: Matrix) -> Matrix:
-        """See `_Curved`."""
         return self._block(se3.log6_derivative(self._twist(v)))
 
     def _twist(self, v: Matrix) -> Matrix:
@@ -299,14 +288,12 @@ class _Planes(_Poses):
     turns, moving = 2, np.array([0, 1, 5])
 
     def pose(self, q: Matrix) -> tuple[Matrix, Matrix]:
-        """See `_Poses`."""
         R = np.zeros((*q.shape[:-1], 3, 3))
         R[..., 0, 0] = R[..., 1, 1] = q[..., 2]
         R[..., 1, 0], R[..., 0, 1], R[..., 2, 2] = q[..., 3], -q[..., 3], 1.0
         return R, np.concatenate((q[..., :2], np.zeros_like(q[..., :1])), axis=-1)
 
     def coordinates(self, q: Matrix, v: Matrix, position: Matrix) -> Matrix:
-        """See `_Poses`."""
         turn = np.concatenate((np.cos(v[..., 5:]), np.sin(v[..., 5:])), axis=-1)
         return np.concatenate((position[..., :2], _complex_product(q[..., 2:], turn)), axis=-1)
 

@@ -86,7 +86,7 @@ def _has_no_range(joint: UrdfJoint, made: Joint | None) -> bool:
     return joint.type.is_ranged and made is not None and made.type.is_ranged and made.lacks_range
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False, repr=False)
 class Joints:
     """The joints of the mechanism in the making.
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any, Literal, TypeVar
+from typing import Any, Literal, NamedTuple, TypeVar
 
 from eurdf.collection import find_robot
 from eurdf.diagnostics import Diagnostics, FileError, Place
@@ -36,8 +36,7 @@ _NO_XACRO = "only a .xacro file accepts arguments; give one as the robot or as i
 _MimicErrors = Literal["refused", "kept", "ignored"]
 
 
-@dataclass(frozen=True, slots=True)
-class ReadRobot:
+class ReadRobot(NamedTuple):
     """The files of a robot as read, and what they describe.
 
     Attributes:

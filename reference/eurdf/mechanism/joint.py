@@ -34,8 +34,7 @@ class Motion(NamedTuple):
 _BALL = Motion(None, turns=True, advance=0.0)
 
 
-@dataclass(frozen=True, slots=True)
-class Mimic:
+class Mimic(NamedTuple):
     """q = multiplier · q_joint + offset, in rad or m."""
 
     joint: str
@@ -167,7 +166,7 @@ class Joint:
         Its child body is at ``placement * transform(c) * offset`` in its parent.
 
         Args:
-            coordinates: As files have them (`JointType.coordinates`): rad, m, quaternions x, y, z, w, brought to unit
+            coordinates: As files have them: rad, m, quaternions x, y, z, w, brought to unit
                 length.
 
         Raises:

@@ -11,7 +11,7 @@ import copyreg
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 from eurdf.mechanism.body import Body, Frame
 from eurdf.mechanism.constraint import Closure, Constraint, Coupling
@@ -37,8 +37,7 @@ def _read_only(content: dict[Any, Any]) -> MappingProxyType[Any, Any]:
 copyreg.pickle(MappingProxyType, lambda mapping: (_read_only, (mapping.copy(),)))
 
 
-@dataclass(frozen=True, slots=True)
-class Motor:
+class Motor(NamedTuple):
     """What a description states of a motor beside its gear, which is a property of the joint.
 
     Attributes:

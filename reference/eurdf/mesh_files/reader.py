@@ -9,9 +9,8 @@ import os
 import posixpath
 import re
 from collections.abc import Callable, Iterator, MutableMapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, NamedTuple
 from urllib.parse import unquote, unquote_to_bytes
 
 from eurdf.mesh_files.folders import Folders
@@ -56,8 +55,7 @@ class RefusedFile(Exception):  # noqa: N818 - named like InvalidRobot
     """A mesh file, or a file that it names, is not read; the text says why."""
 
 
-@dataclass(frozen=True, slots=True)
-class MeshFile:
+class MeshFile(NamedTuple):
     """The content of a mesh file, and of the files that it names.
 
     Attributes:

@@ -98,8 +98,8 @@ def configuration_vector(
     return q
 
 
-def own_coordinates(mechanism: Mechanism, model: pin.Model, q: Vector) -> dict[str, tuple[float, ...]]:
-    """The coordinates, as files have them, of every joint that has coordinates of its own, by its name.
+def joint_coordinates(mechanism: Mechanism, model: pin.Model, q: Vector) -> dict[str, tuple[float, ...]]:
+    """The coordinates, as files have them, of every joint that is not fixed, by its name.
 
     It is the inverse of `configuration_vector`.
 
@@ -110,37 +110,19 @@ def own_coordinates(mechanism: Mechanism, model: pin.Model, q: Vector) -> dict[s
 
     Returns:
         In the order of the mechanism's joints, ``root_joint`` first where the root floats. An angle that Pinocchio has
-        as (cos, sin) is from -pi to pi.
+        as (cos, sin) is from -pi to pi. The coordinate of a joint that mimics another follows from that one's.
 
     Raises:
         ValueError: q does not have the shape (nq,), or is not finite.
     """
     numbers = checked_array("q", q, (model.nq,)).tolist()
-    found: dict[str, tuple[float, ...]] = {}
-    if mechanism.root == "floating":
-        found[ROOT_JOINT] = tuple(numbers[:7])
+    own: dict[str, tuple[float, ...]] = {}
     for name, slot in slots(mechanism).items():
-        own = numbers[slot.idx_q : slot.idx_q + slot.nq]
+        values = numbers[slot.idx_q : slot.idx_q + slot.nq]
         if slot.nq > len(slot.joint.type.coordinates):
-            own[-2:] = [math.atan2(own[-1], own[-2])]
-        found[name] = tuple(own)
-    return found
-
-
-def joint_coordinates(mechanism: Mechanism, model: pin.Model, q: Vector) -> dict[str, tuple[float, ...]]:
-    """The coordinates, as files have them, of every joint that is not fixed, by its name.
-
-    Args:
-        mechanism: The mechanism.
-        model: The result of `build_model`.
-        q: Configuration, of shape (nq,).
-
-    Returns:
-        Those of `own_coordinates`, and for each joint that mimics another the coordinate that follows from that one's;
-        in the order of the mechanism's joints, ``root_joint`` first where the root floats.
-    """
-    own = own_coordinates(mechanism, model, q)
-    found = {ROOT_JOINT: own[ROOT_JOINT]} if mechanism.root == "floating" else {}
+            values[-2:] = [math.atan2(values[-1], values[-2])]
+        own[name] = tuple(values)
+    found = {ROOT_JOINT: tuple(numbers[:7])} if mechanism.root == "floating" else {}
     mimics = following(mechanism).mimics
     for joint in mechanism.joints:
         if joint.name in own:

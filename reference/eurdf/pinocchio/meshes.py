@@ -7,7 +7,6 @@ import os
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
@@ -41,8 +40,7 @@ PATIENCE = 60
 _PROGRAM = Path(__file__).with_name("mesh_process.py")
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Mesh:
+class Mesh(NamedTuple):
     """The triangles of a file.
 
     Attributes:

@@ -12,9 +12,9 @@ import pinocchio as pin
 from eurdf.array import Vector
 from eurdf.diagnostics import Diagnostic
 from eurdf.mechanism.constraint import Constraint
-from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.pinocchio.actuation import Actuation, build_actuation
-from eurdf.pinocchio.configuration import Slot, configuration_vector, joint_coordinates, own_coordinates, slots
+from eurdf.pinocchio.configuration import Slot, configuration_vector, joint_coordinates, slots
 from eurdf.pinocchio.constraint import build_constraint_models
 from eurdf.pinocchio.geometry import MeshCache, Resolve, build_geometry, meshes_of
 from eurdf.pinocchio.meshes import Mesh
@@ -177,7 +177,8 @@ class Robot:
         Raises:
             ValueError: q does not have the shape (nq,), or is not finite.
         """
-        return own_coordinates(self.mechanism, self.model, q)
+        every = self.joint_coordinates(q)
+        return {name: own for name, own in every.items() if name in self.slots or name == ROOT_JOINT}
 
     def joint_coordinates(self, q: Vector) -> dict[str, tuple[float, ...]]:
         """The same of every joint that is not fixed: also of those that mimic another, which follow from that one's.

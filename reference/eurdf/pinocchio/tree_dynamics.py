@@ -6,7 +6,7 @@ the number of joints, and nv² numbers where the mass matrix is asked for.
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -37,7 +37,7 @@ class TreeDynamics:
         """
         if not len(self.model.mimicking_joints):
             M = pin.crba(self.model, self.data, q)  # its upper triangle is valid
-            return np.asarray(np.where(self._upper, M, M.T) @ motions)
+            return np.asarray(np.where(_upper(self.model.nv), M, M.T) @ motions)
         still = np.zeros(self.model.nv)
         gravity = self.inverse_dynamics(q, still, still)
         columns = [self.inverse_dynamics(q, still, a) - gravity for a in motions.T]
@@ -65,10 +65,11 @@ class TreeDynamics:
             return TreeRecursion(self.model, self._springs)._energy_of_gravity(q)
         return float(pin.computePotentialEnergy(self.model, self.data, q))
 
-    @cached_property
-    def _upper(self) -> Mask:
-        """Which entries of a matrix (nv, nv) are on or above the diagonal."""
-        return np.triu(np.ones((self.model.nv, self.model.nv), dtype=bool))
+
+@lru_cache(maxsize=8)
+def _upper(n: int) -> Mask:
+    """Which entries of a matrix (n, n) are on or above the diagonal."""
+    return np.triu(np.ones((n, n), dtype=bool))
 
 
 class TreeRecursion(TreeDynamics):

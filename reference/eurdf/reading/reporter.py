@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
 from lxml import etree
 
@@ -15,8 +15,7 @@ from eurdf.reading.yaml_reader import YamlDocument
 Element = etree._Element
 
 
-@dataclass(frozen=True, slots=True)
-class YamlReporter:
+class YamlReporter(NamedTuple):
     """Adds diagnostics on a YAML file.
 
     Attributes:
@@ -32,8 +31,7 @@ class YamlReporter:
         self.diagnostics.report(code, message, partial(self.document.place, pointer, key), hint)
 
 
-@dataclass(frozen=True, slots=True)
-class XmlReporter:
+class XmlReporter(NamedTuple):
     """Adds diagnostics on an XML file.
 
     Attributes:

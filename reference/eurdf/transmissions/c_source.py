@@ -12,8 +12,8 @@ from pathlib import Path
 from string import Template
 from typing import TYPE_CHECKING
 
+from eurdf.array import Vector
 from eurdf.closures import MODULES
-from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import SPREADS
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.loop import find_loops

@@ -11,9 +11,8 @@ import numpy as np
 from eurdf.array import Matrix, Vector
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.dynamics import mass_matrix
-from eurdf.kinematics.equation_of_motion import MASSLESS
 from eurdf.kinematics.finite import finite, overflow_refused
-from eurdf.kinematics.tolerances import FLOOR
+from eurdf.kinematics.tolerances import FLOOR, MASSLESS
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.pinocchio.robot import build_robot

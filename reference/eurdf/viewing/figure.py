@@ -57,7 +57,6 @@ class Figure:
         self._root = self._api.add_frame(root, show_axes=False, position=origin)
         self._placed = placed
         self.shown = {**LAYERS, "skeleton": not scene.has_visuals}
-        self._texts: list[str] = []
         self._bodies = [
             # Names of links can be anything; those of nodes are paths.
             self._api.add_frame(f"{root}/body{number}", show_axes=False)

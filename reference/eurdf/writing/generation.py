@@ -93,7 +93,7 @@ def generate(
         reference = None if any(closure.type is None for closure in found.closures) else schema(chosen)
         number = VERSION2_1 if chosen == "2.1" else VERSION2_0
         head, *rest = _version1(said) if chosen == "1" else _version2(said, merges, root, urdf_path, number)
-        text = text_of([replace(head, above=() if reference is None else (modeline(reference),)), *rest])
+        text = text_of([head._replace(above=() if reference is None else (modeline(reference),)), *rest])
         mechanism, diagnostics = reread(text, urdf, "the description")
         return Generation(text, chosen, said, merges, mechanism, diagnostics, _mate_notes(mates, chosen))
 

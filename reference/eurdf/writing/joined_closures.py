@@ -9,11 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from eurdf.array import Matrix
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.hinge import HingeClosure
 from eurdf.closures.point import PointClosure
 from eurdf.diagnostics import enumerated
-from eurdf.kinematics.array import Matrix
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import RIGID, Closure
 from eurdf.mechanism.pose import Pose, Vector3, direction
@@ -28,7 +28,7 @@ _RELATIVE = 1e-4
 _SHORTEST = 1e-6
 
 #: A unit vector that is nearer than this to an axis of its frame is that axis: the rest is rounding.
-_ROUNDED = 1e-12
+_ON_AXIS = 1e-12
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,4 +203,4 @@ def _axis(frame: Pose, end: Vector3) -> Vector3:
     """The unit vector in a frame from its origin to a point that is given where the frame is."""
     x, y, z = direction(frame.inverse().act(end))
     nearest: Vector3 = (float(round(x)), float(round(y)), float(round(z)))
-    return nearest if math.dist((x, y, z), nearest) < _ROUNDED else (x, y, z)
+    return nearest if math.dist((x, y, z), nearest) < _ON_AXIS else (x, y, z)

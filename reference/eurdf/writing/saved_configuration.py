@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
+from eurdf.array import Vector
 from eurdf.diagnostics import Diagnostics
 from eurdf.exceptions import EurdfError
-from eurdf.kinematics.array import Vector
 from eurdf.kinematics.residual import residual
 from eurdf.linking.link import reread
 from eurdf.linking.robot_files import ReadRobot

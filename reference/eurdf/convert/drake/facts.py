@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from eurdf.convert.common_losses import CONVERSION, impossible_inertia, unequal
+from eurdf.convert.conventions import LEAST
 from eurdf.convert.losses import Motor, approximate, by_writer, dropped, exact
 from eurdf.convert.urdf.facts import EXACT as URDF_EXACT
 from eurdf.convert.urdf.facts import URDF_ROWS
@@ -14,9 +15,6 @@ from eurdf.mechanism.joint import Joint
 #: Stiffness of a coupling, N/m or N·m/rad: Drake has no rigid ones of three joints, and softens what is stiffer than
 #: its time step allows.
 STIFFNESS = 1e12
-
-#: kg and kg·m² that links without mass get where Drake needs some: far below any of a robot.
-LEAST = 1e-13
 
 #: The closures that are written.
 CLOSURES = ("3d", "6d", "hinge")

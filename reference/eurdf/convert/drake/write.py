@@ -17,9 +17,9 @@ from lxml import etree
 
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.hinge import HingeClosure
-from eurdf.convert.conventions import point_on
+from eurdf.convert.conventions import LEAST, point_on
 from eurdf.convert.coordinates import Coordinates
-from eurdf.convert.drake.facts import CLOSURES, EXACT, LEAST, ROWS, STIFFNESS, can_have_actuator, has_one_acceleration
+from eurdf.convert.drake.facts import CLOSURES, EXACT, ROWS, STIFFNESS, can_have_actuator, has_one_acceleration
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format
 from eurdf.convert.inertia import accepted_inertia, has_inertia
 from eurdf.convert.losses import Losses

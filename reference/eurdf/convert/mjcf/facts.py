@@ -16,14 +16,11 @@ from eurdf.convert.common_losses import (
     no_configuration,
     unequal,
 )
+from eurdf.convert.conventions import LEAST
 from eurdf.convert.losses import approximate, by_writer, dropped, exact
 from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
-
-#: kg and kg·m² that a moving body without inertia gets: ten times the larger of MuJoCo's bounds, and far below any of a
-#: robot.
-LEAST = 1e-13
 
 #: Time step, s. The equalities below are as stiff as it allows: MuJoCo keeps their time constant at two steps or more.
 TIMESTEP = 0.001

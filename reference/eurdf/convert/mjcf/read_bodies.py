@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from eurdf.convert.conventions import LEAST
 from eurdf.convert.mjcf.compiled import Element
 from eurdf.convert.mjcf.read_state import WORLD, MjcfReading, flat, pose_from, vector
 from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.pose import Pose
 from eurdf.mesh_files.reader import RefusedFile
-
-#: Mass (kg) and moments (kg·m²) up to this are those of a link without inertia, which MuJoCo does not allow to move.
-LEAST = 1e-13
 
 _DEFAULT_RGBA = (0.5, 0.5, 0.5, 1.0)
 

@@ -15,7 +15,7 @@ from pathlib import PurePosixPath
 from lxml import etree
 
 from eurdf.closures.hinge import HingeClosure
-from eurdf.convert.conventions import neighbours, point_on, position_gain
+from eurdf.convert.conventions import LEAST, neighbours, point_on, position_gain
 from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format
 from eurdf.convert.inertia import accepted_inertia, along_principal_axes, has_inertia
@@ -121,7 +121,7 @@ class _MjcfWriter:
         name = self.joints.new(ROOT_JOINT)
         etree.SubElement(element, "freejoint", name=name)
         self.parts.append(part_of(root_joint(""), (name,), ()))
-        self._content(body, element, facts.LEAST)
+        self._content(body, element, LEAST)
 
     def _body(self, joint: Joint, body: Body) -> None:
         host, pose = self.hosts[joint.parent]
@@ -145,7 +145,7 @@ class _MjcfWriter:
         ratios = ((step.velocities[0], step.lead or 1.0, 0.0) for step in found.values())
         mimic = self.mimics.get(joint.name)
         self.parts.append(part_of(joint, tuple(found), ratios, mimic, turn=joint.offset.quaternion))
-        self._content(body, element, facts.LEAST)
+        self._content(body, element, LEAST)
 
     def _fixed(self, body: Body, host: etree._Element, pose: Pose) -> None:
         """A link that is fixed to its host: a body, or a site if it has no mass."""
@@ -232,7 +232,7 @@ class _MjcfWriter:
         MuJoCo itself excludes a body and its parent, unless the parent is fixed to the world.
         """
         hosts = {body: element.get("name", _WORLD) for body, (element, _) in self.hosts.items()}
-        for one, other in dict.fromkeys((hosts[a], hosts[b]) for a, b in neighbours(self.mechanism, facts.LEAST)):
+        for one, other in dict.fromkeys((hosts[a], hosts[b]) for a, b in neighbours(self.mechanism, LEAST)):
             etree.SubElement(self.contact, "exclude", body1=one, body2=other)
 
     # -- joints -----------------------------------------------------------------------------------------------------

@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from eurdf.convert.common_losses import ACCELERATION, BEYOND_LIMITS, COMMON, NAMED_FILE, impossible_inertia
+from eurdf.convert.conventions import LIGHT
 from eurdf.convert.losses import LossKind, approximate, by_writer, dropped, exact
 from eurdf.convert.steps import is_skew
 from eurdf.mechanism.joint import Joint
 
 VERSION = "1.11"
-
-#: kg and kg·m² that a link without inertia gets: physics engines refuse 0.
-LEAST = 1e-9
 
 #: The type of joint of SDFormat that a closure is.
 CLOSURES = {"3d": "ball", "6d": "fixed", "hinge": "continuous"}
@@ -25,7 +23,7 @@ EXACT = (
 
 
 def _in_series(concept: str, title: str, only: str = "", where: Callable[[Joint], bool] | None = None) -> LossKind:
-    error = f"{LEAST:g} kg and kg·m² for each link between them in the mass matrix"
+    error = f"{LIGHT:g} kg and kg·m² for each link between them in the mass matrix"
     return approximate(
         concept, title, "use Export.coordinates", error=error, only=only, where=where or (lambda joint: True)
     )
@@ -102,10 +100,10 @@ ROWS = (
     dropped("control range", "is left out", "limit controls in the controller"),
     approximate(
         "link without mass",
-        f"gets {LEAST:g} kg and kg·m²: physics engines refuse 0",
+        f"gets {LIGHT:g} kg and kg·m²: physics engines refuse 0",
         "give the link its mass",
         code="export-massless-link",
-        error=f"{LEAST:g} kg and kg·m² in the mass matrix",
+        error=f"{LIGHT:g} kg and kg·m² in the mass matrix",
     ),
     impossible_inertia("SDFormat asks for"),
     dropped("texture", "is left out; the color is kept", "add a material"),

@@ -11,12 +11,12 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 from lxml import etree
 
+from eurdf.closures import CLOSED
 from eurdf.closures.hinge import HingeClosure
-from eurdf.convert.conventions import opening_of
+from eurdf.convert.conventions import LIGHT, opening_of
 from eurdf.convert.coordinates import Coordinates, homogeneous
 from eurdf.convert.exceptions import CannotExport
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format, coordinates_at
@@ -25,7 +25,7 @@ from eurdf.convert.losses import Losses
 from eurdf.convert.meshes import MeshFiles
 from eurdf.convert.names import UniqueNames
 from eurdf.convert.parts import Part, part_of
-from eurdf.convert.sdf.facts import CLOSURES, EXACT, LEAST, ROWS, VERSION
+from eurdf.convert.sdf.facts import CLOSURES, EXACT, ROWS, VERSION
 from eurdf.convert.steps import in_series, turn_type
 from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.constraint import Closure, Coupling
@@ -34,9 +34,6 @@ from eurdf.mechanism.joint_types import ROTARY, JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, root_joint
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.writing.xml_text import file_content, representable, rpy_of
-
-#: Largest opening, m or rad, of a loop that counts as closed (EU-CLO-005).
-CLOSED = 1e-6
 
 _WORLD = "world"
 
@@ -137,7 +134,7 @@ class _SdfWriter:
 
     def _link(self, body: Body, link: etree._Element, parent: str, placed: Pose) -> None:
         _pose(link, placed, parent)
-        _inertial(link, accepted_inertia(body, self.losses, LEAST))
+        _inertial(link, accepted_inertia(body, self.losses, LIGHT))
         for use, shapes in (("visual", body.visuals), ("collision", body.collisions)):
             for number, shape in enumerate(shapes):
                 self._shape(link, use, f"{use}_{number}", shape)
@@ -185,7 +182,10 @@ class _SdfWriter:
                 self._link(body, link, parent, pose * joint.offset)
             else:
                 _pose(link, pose, parent)
-                _inertial(link, Inertia(LEAST, IDENTITY, (LEAST, 0.0, 0.0, LEAST, 0.0, LEAST)))
+                _inertial(
+                    link,
+                    Inertia(LIGHT, IDENTITY, (LIGHT, 0.0, 0.0, LIGHT, 0.0, LIGHT)),
+                )
             kind = step.joint.type
             if kind in ROTARY:
                 kind = turn_type(step.joint)
@@ -207,7 +207,7 @@ class _SdfWriter:
         if joint.type.is_fixed:
             return
         if mimic := self.mimics.get(joint.name):
-            mimic = replace(mimic, offset=mimic.offset - at[0])
+            mimic = mimic._replace(offset=mimic.offset - at[0])
         zero = () if at == joint.type.neutral else at
         ratios = ((index, 1.0, -value) for index, value in enumerate(at))
         self.parts.append(part_of(joint, names, ratios, mimic, zero=zero))

@@ -11,11 +11,9 @@ from eurdf.convert.common_losses import (
     impossible_inertia,
     no_configuration,
 )
+from eurdf.convert.conventions import LIGHT
 from eurdf.convert.losses import approximate, by_writer, dropped, exact
 from eurdf.convert.steps import is_skew
-
-#: kg and kg·m² that a moving body without inertia gets: far below any of a robot, far above 0 in single precision.
-LEAST = 1e-9
 
 #: kg·m² that a principal moment of any body has at least.
 LEAST_MOMENT = 1e-12
@@ -54,10 +52,10 @@ ROWS = (
     ),
     approximate(
         "universal joint",
-        f"becomes two joints with a body of {LEAST:g} kg and kg·m² between them, as its axes are not perpendicular",
+        f"becomes two joints with a body of {LIGHT:g} kg and kg·m² between them, as its axes are not perpendicular",
         "use a simulator with reduced coordinates, to which light bodies do no harm",
         code="export-skew-universal-joint",
-        error=f"{LEAST:g} kg and kg·m² in the mass matrix",
+        error=f"{LIGHT:g} kg and kg·m² in the mass matrix",
         only="axes not perpendicular",
         where=is_skew,
     ),
@@ -187,10 +185,10 @@ ROWS = (
     ),
     approximate(
         "link without mass",
-        f"moves without inertia, and USD takes 0 for unknown: gets {LEAST:g} kg and kg·m²",
+        f"moves without inertia, and USD takes 0 for unknown: gets {LIGHT:g} kg and kg·m²",
         "give the link its mass, or merge its joints into one of a type with several axes",
         code="export-massless-link",
-        error=f"{LEAST:g} kg and kg·m² in the mass matrix",
+        error=f"{LIGHT:g} kg and kg·m² in the mass matrix",
         only="links that move",
     ),
     exact(

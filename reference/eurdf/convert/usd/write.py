@@ -15,7 +15,7 @@ from itertools import combinations, permutations
 import numpy as np
 
 from eurdf.closures.hinge import HingeClosure
-from eurdf.convert.conventions import neighbours, position_gain
+from eurdf.convert.conventions import LIGHT, neighbours, position_gain
 from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format, coordinates_at
 from eurdf.convert.inertia import about_centre, accepted_inertia, has_inertia
@@ -24,7 +24,7 @@ from eurdf.convert.meshes import MeshFiles
 from eurdf.convert.names import UniqueNames
 from eurdf.convert.parts import UPRIGHT, Part, part_of
 from eurdf.convert.steps import in_series
-from eurdf.convert.usd.facts import CLOSURES, DAMPING_TIME, EXACT, LEAST, LEAST_MOMENT, ROWS
+from eurdf.convert.usd.facts import CLOSURES, DAMPING_TIME, EXACT, LEAST_MOMENT, ROWS
 from eurdf.convert.usd.joints import KINDS, WHOLE, Freedom, axis_and_frame, freedoms
 from eurdf.diagnostics.extras import install_command
 from eurdf.exceptions import MissingExtra
@@ -121,11 +121,11 @@ class _UsdWriter:
         path = self.stage.body(self.bodies.new(body.name), pose, body.name)
         self.hosts[body.name], self.poses[body.name] = (path, IDENTITY), pose
         mass = 0.0 if body.inertia is None else body.inertia.mass
-        if 0.0 <= mass < LEAST and body is self.mechanism.bodies[0] and self.mechanism.root == "fixed":
+        if 0.0 <= mass < LIGHT and body is self.mechanism.bodies[0] and self.mechanism.root == "fixed":
             self.losses.add("export-massless-base", body.name)
             self.stage.mass(path, 1.0, (0.0, 0.0, 0.0), np.eye(3))
         else:
-            inertia = accepted_inertia(body, self.losses, LEAST, LEAST_MOMENT)
+            inertia = accepted_inertia(body, self.losses, LIGHT, LEAST_MOMENT)
             self.stage.mass(path, inertia.mass, inertia.pose.xyz, about_centre(inertia))
         return path
 
@@ -158,7 +158,7 @@ class _UsdWriter:
                 child = self._rigid_body(body, pose)
             else:
                 child = self.stage.body(self.bodies.new(f"{name}_body"), pose)
-                self.stage.mass(child, LEAST, (0.0, 0.0, 0.0), LEAST * np.eye(3))
+                self.stage.mass(child, LIGHT, (0.0, 0.0, 0.0), LIGHT * np.eye(3))
             kind, (axis, orientation) = KINDS.get(step.joint.type, "d6"), axis_and_frame(step.joint)
             turn = Pose(quaternion=orientation)
             ends = (host, at * placement * turn), (child, offset.inverse() * turn)
@@ -301,7 +301,7 @@ class _UsdWriter:
         """Exclude contacts between bodies that a joint connects, except where a USD joint already excludes them."""
         mechanism = self.mechanism
         hosts = {name: path for name, (path, _) in self.hosts.items()}
-        pairs = [(hosts[a], hosts[b]) for a, b in neighbours(mechanism, LEAST)]
+        pairs = [(hosts[a], hosts[b]) for a, b in neighbours(mechanism, LIGHT)]
         groups: dict[str, list[str]] = {}
         for name, root in rigid_roots(mechanism.bodies[0].name, mechanism.joints).items():
             groups.setdefault(root, []).append(name)

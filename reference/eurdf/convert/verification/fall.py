@@ -18,7 +18,7 @@ from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.robot import Robot
 
 #: Loops that are named.
-_MOST_SHOWN = 4
+_MOST_NAMED = 4
 
 #: An opening above this is reported, m or rad.
 OPENS = 5e-3
@@ -272,5 +272,5 @@ def _has_limits(robot: Robot, name: str) -> bool:
 
 def listed(found: Sequence[str]) -> str:
     """The first of them, and how many more there are."""
-    more = len(found) - _MOST_SHOWN
-    return ", ".join(found[:_MOST_SHOWN]) + (f", and {more} more" if more > 0 else "")
+    more = len(found) - _MOST_NAMED
+    return ", ".join(found[:_MOST_NAMED]) + (f", and {more} more" if more > 0 else "")
