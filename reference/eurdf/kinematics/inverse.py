@@ -11,7 +11,7 @@ import numpy as np
 from pinocchio import SE3
 
 from eurdf.array import Vector
-from eurdf.kinematics.assembly import assembled, start
+from eurdf.kinematics.assembly import assembled, measured, start
 from eurdf.kinematics.blocks import checked_rows, shape_of
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.frame_jacobian import frames_of
@@ -20,7 +20,6 @@ from eurdf.kinematics.named import Named
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.position_limit import JointAtLimit, chosen_limits
 from eurdf.kinematics.problem import Problem
-from eurdf.kinematics.residual import all_openings
 from eurdf.kinematics.tolerances import (
     RESTARTS,
     SOLVED,
@@ -158,11 +157,13 @@ def inverse_kinematics(
         if found.reason[0] == "closures open":  # the joints whose limits keep the loops open
             clipped = q if chosen is None else chosen.clip(q)
             at_limits = assembled(problem, clipped, SOLVED, RESTARTS, chosen).at_limits
+        with np.errstate(over="ignore", invalid="ignore"):
+            _, is_open = measured(problem, found.q)
     return InverseKinematics(
         q=found.q[0],
         converged=found.reason[0] is None,
         errors=tuple(map(FrameError, checked, found.position[0].tolist(), found.angle[0].tolist())),
-        open=all_openings(robot, found.q[0]),
+        open=is_open,
         iterations=int(found.iterations[0]),
         reason=found.reason[0],
         at_limits=at_limits,

@@ -21,7 +21,7 @@ from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import (
     Numbers,
-    alone,
+    as_numbers,
     at_least,
     certain_inverse,
     choose,
@@ -50,7 +50,6 @@ from eurdf.kinematics.tolerances import (
     SOLVED,
 )
 from eurdf.mechanism.joint import LIMIT_TOLERANCE
-from eurdf.pinocchio.tree_few import as_slice
 
 if TYPE_CHECKING:
     pass
@@ -139,11 +138,14 @@ class _Search:
             self._position[:, index] = goal.position
             self._rotation[:, index] = np.eye(3) if goal.rotation is None else goal.rotation
         # Rows of the errors in the order of the frames: those of its position, then those of its rotation.
-        used = np.repeat(np.array([[True, is_pose] for is_pose in task.poses], dtype=bool).ravel(), 3)
-        bound = task.tolerance / np.array([self._spaces.length, 1.0])
-        self._near = np.concatenate([bound[: 1 + is_pose] for is_pose in (False, *task.poses)])[1:] ** 2
-        self._rows, self._turns = len(used), any(task.poses)
-        self._used = as_slice(np.flatnonzero(used))
+        near = task.tolerance / self._spaces.length, task.tolerance
+        self._near = np.array([bound for is_pose in task.poses for bound in near[: 1 + is_pose]]) ** 2
+        self._turns, self._rows = any(task.poses), 6 * len(task.poses)
+        # Of the rows of a position and a rotation for each frame those that count.
+        self._used: Indices | slice = slice(None)
+        if not all(task.poses):
+            counts = [each for is_pose in task.poses for each in (True, is_pose) for _ in range(3)]
+            self._used = np.flatnonzero(counts)
         self._iterations = np.zeros(count, dtype=np.intp)
         self._begun: list[tuple[Indices, Matrix]] = []  # elements and where descents of them began
         self._farthest: dict[int, tuple[int, int, float]] = {}
@@ -159,6 +161,8 @@ class _Search:
         if np.count_nonzero(done):
             done[done] = self._problem.closes(start[done], CLOSED)
         going = np.flatnonzero(~done)
+        if not len(going):
+            return Found(best, *self._distances(errors), self._iterations, reason, at_limits)
         first = self._close(clipped[going], RESTARTS)
         best[going] = first.q
         is_open = going[~first.closes]
@@ -227,7 +231,7 @@ class _Search:
             self._iterations[which[on]] += 1
             closed = self._close(self._moved(q, v))
             e_there, at = self._error(closed.q, which[on])
-            closes, reached = alone(closed.closes), square(e_there)
+            closes, reached = as_numbers(closed.closes), square(e_there)
             gain = choose(closes, (cost - reached) / expected, 0.0)
             idle = choose(closes & (reached < (1.0 - idle_below) * cost), 0, idle + 1)
             accepted = gain > LEAST_SHARE
@@ -359,10 +363,13 @@ class _Search:
     def _error(self, q: Matrix, which: Indices) -> tuple[Matrix, Any]:
         """Stacked errors (b, k) of some elements, in characteristic lengths and rad, and the frames there."""
         at = self._task.frames.at(q)
+        position, rotation = self._position, self._rotation
+        if len(which) < len(position):
+            position, rotation = position[which], rotation[which]
         errors = np.empty((len(q), len(self._task.poses), 6))
-        errors[:, :, :3] = (at.position - self._position[which]) / self._spaces.length
+        errors[:, :, :3] = (at.position - position) / self._spaces.length
         if self._turns:
-            errors[:, :, 3:] = at.turn_from(self._rotation[which])
+            errors[:, :, 3:] = at.turn_from(rotation)
         return errors.reshape(len(q), self._rows)[:, self._used], at
 
     def _jacobian(self, at: Any, e: Matrix) -> Matrix:

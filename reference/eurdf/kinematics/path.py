@@ -9,7 +9,7 @@ import numpy as np
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import close
 from eurdf.kinematics.problem import Problem
-from eurdf.kinematics.rank import alone, at_least, choose, column, every, largest, some, square
+from eurdf.kinematics.rank import as_numbers, at_least, choose, column, every, largest, some, square
 from eurdf.kinematics.tolerances import (
     FASTEST,
     LEAST_CORRECTION,
@@ -91,7 +91,7 @@ def follow_given(
         here = q[on]
         v = _followed(problem, here, driven[on], free)
         motion = v / scale
-        done, h, fastest = alone(done), alone(h), largest(motion)
+        done, h, fastest = as_numbers(done), as_numbers(h), largest(motion)
         while some(far := (fastest * h > LONGEST_MOTION) & (h > shortest)):
             h = choose(far, 0.5 * h, h)
         to, at = done + h, ends[on]

@@ -22,9 +22,9 @@ _ROUNDING_OF_SQUARES = 1e-15
 
 
 # -- numbers, one for each element ------------------------------------------------------------------------------------
-# The control of the steps of many elements takes arrays (B,), that of a single one takes NumPy's scalars: the same
-# expressions take a tenth of the time with these. What follows makes such numbers, and is what differs.
 
+#: What controls the steps of a solver: an array (B,) for many elements, a scalar for a single one. The expressions are
+#: the same; NumPy takes a tenth of the time for scalars. Only the functions below distinguish the two.
 Numbers = Any
 
 
@@ -52,29 +52,29 @@ def numbers(count: int, value: float) -> Numbers:
 
 
 def every(mask: Numbers) -> bool:
-    """Whether it is so for every element."""
+    """Whether a mask is true of every element."""
     return np.count_nonzero(mask) == len(mask) if isinstance(mask, np.ndarray) else bool(mask)
 
 
 def some(mask: Numbers) -> bool:
-    """Whether it is so for an element."""
+    """Whether a mask is true of at least one element."""
     return bool(np.count_nonzero(mask) if isinstance(mask, np.ndarray) else mask)
 
 
 def choose(mask: Numbers, one: Any, other: Any) -> Numbers:
-    """A number where it is so, another where it is not."""
+    """One number for the elements of a mask, the other for the rest."""
     if isinstance(mask, np.ndarray):
         return np.where(mask, one, other)
     return one if mask else other
 
 
-def alone(values: Vector | Mask) -> Numbers:
-    """An array (B,) as such numbers."""
+def as_numbers(values: Vector | Mask) -> Numbers:
+    """The numbers of an array (B,)."""
     return values[0] if len(values) == 1 else values
 
 
 def column(number: Numbers) -> Numbers:
-    """Numbers that rows (B, n) can be multiplied by."""
+    """The same numbers, as factors of rows (B, n)."""
     return number[:, None] if isinstance(number, np.ndarray) else number
 
 
@@ -178,7 +178,7 @@ def certain_inverse(gram: Matrix, norm: Vector) -> tuple[Matrix, Mask]:
     """
     inverse = inverses(gram)
     trace = total(diagonals(inverse))
-    norm = alone(norm)
+    norm = as_numbers(norm)
     return inverse, np.array((trace > 0.0) & (CERTAIN * CERTAIN * norm * norm * trace < 1.0), ndmin=1)
 
 
