@@ -188,6 +188,8 @@ def test_random_mechanism_is_the_same_in_poses_and_closures(
     to: str, seed: int, root: Any, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     robot = with_limits(some_robot(seed, root), np.random.default_rng(seed))
+    pairs = [frozenset(end.body for end in each.anchors) for each in robot.mechanism.closures]
+    assume(len(set(pairs)) == len(pairs))  # points of the same two bodies are joined to one closure
     export, imported = round_trip(robot, to, tmp_path_factory.mktemp("files"))
     # URDF alone does not say whether the root floats: a listed loss.
     mechanism = replace(imported.mechanism, root=root)
