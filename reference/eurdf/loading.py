@@ -31,6 +31,9 @@ from eurdf.reading.robot_source import RobotSource
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
+# A tuple: a union would be made in each call.
+_SOURCES = (str, bytes, os.PathLike)
+
 _Rest = ParamSpec("_Rest")
 _Result = TypeVar("_Result")
 
@@ -155,7 +158,7 @@ def as_robot(given: Robot | RobotSource, *, geometry: bool = False) -> Robot:
     Raises:
         RobotNotFound, InvalidRobot, CannotExpand, MissingExtra: See `load`.
     """
-    return load(given, geometry=geometry) if isinstance(given, str | bytes | os.PathLike) else given
+    return load(given, geometry=geometry) if isinstance(given, _SOURCES) else given
 
 
 def of_any_robot(

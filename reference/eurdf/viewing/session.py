@@ -16,13 +16,13 @@ from eurdf.kinematics.analysis import Analysis, analyze
 from eurdf.kinematics.assembly import Assembly, assemble, start
 from eurdf.kinematics.branch import Branch, Point
 from eurdf.kinematics.inverse import inverse_kinematics
+from eurdf.kinematics.named import Named, configuration_of
 from eurdf.kinematics.path import Elements, follow
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.residual import residual
 from eurdf.kinematics.sweep import sweep
 from eurdf.kinematics.tolerances import CLOSED, DEAD, START
 from eurdf.mechanism.mechanism import ROOT_JOINT
-from eurdf.pinocchio.arguments import checked_array
 from eurdf.transmissions.selection import selection
 from eurdf.viewing.sliders import LONGEST, NAMES, ROTATION, Slider, motions, sliders_of, values_at
 from eurdf.viewing.spring_rest import SpringRest
@@ -82,7 +82,7 @@ class Session:
         sliders: What the user can move: the coordinates of the actuators; of all joints if there are no actuators.
     """
 
-    def __init__(self, robot: Robot, q: Vector | None = None) -> None:
+    def __init__(self, robot: Robot, q: Named | None = None) -> None:
         """Start at q; by default at ``assembled``, or at a closed configuration that is found.
 
         Raises:
@@ -151,13 +151,13 @@ class Session:
             stopped = replace(stopped, value=self.value(index))
         return stopped or stop
 
-    def show(self, q: Vector) -> None:
+    def show(self, q: Named) -> None:
         """Go to a configuration, closed or not.
 
         Raises:
             ValueError: ``q`` does not have the shape (nq,), or is not finite.
         """
-        self.q = np.array(checked_array("q", q, (self.robot.tree.nq,)))
+        self.q = np.array(configuration_of(self.robot, q))
 
     def reset(self) -> None:
         """Go to the first configuration."""

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eurdf.array import Vector
+from eurdf.kinematics.named import Named
 from eurdf.viewing.figure import Figure
 from eurdf.viewing.files import RobotOnDisk
 from eurdf.viewing.scene import Placed, Scene
@@ -32,7 +33,7 @@ class ShownRobot:
     """
 
     def __init__(
-        self, server: viser.ViserServer, worker: Worker, robot: Robot, q: Vector | None, node: str, origin: Vector
+        self, server: viser.ViserServer, worker: Worker, robot: Robot, q: Named | None, node: str, origin: Vector
     ) -> None:
         self._server, self._worker = server, worker
         self._node, self._origin, self._versions = node, origin, 0
@@ -50,7 +51,7 @@ class ShownRobot:
         """The configuration (nq,) that is shown."""
         return np.array(self.session.q)
 
-    def show(self, q: Vector) -> None:
+    def show(self, q: Named) -> None:
         """Show a configuration.
 
         Args:

@@ -13,6 +13,7 @@ import numpy as np
 
 from eurdf.array import Vector
 from eurdf.errors import EurdfError
+from eurdf.kinematics.named import Named
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.pinocchio.robot import Robot
 from eurdf.reading.robot_source import RobotSource
@@ -31,7 +32,7 @@ class Viewer:
     The first robot has sliders and the other controls of the page. In a notebook, the viewer shows itself.
     """
 
-    def __init__(self, robot: Robot, files: RobotOnDisk | None, host: str, port: int | None, q: Vector | None) -> None:
+    def __init__(self, robot: Robot, files: RobotOnDisk | None, host: str, port: int | None, q: Named | None) -> None:
         self._server = start_server(host, port, robot.mechanism.name)
         self._worker = Worker(self._report)
         self._robots = 0
@@ -61,7 +62,7 @@ class Viewer:
         """The configuration (nq,) of the first robot that is shown."""
         return self._first.q
 
-    def show(self, q: Vector) -> None:
+    def show(self, q: Named) -> None:
         """Show a configuration of the first robot; see `ShownRobot.show`."""
         self._first.show(q)
 
@@ -82,7 +83,7 @@ class Viewer:
         """
         self._panel.play(read_trajectory(Path(file).read_text(encoding="utf-8"), self.robot))
 
-    def add(self, robot: Robot, q: Vector | None = None, *, xyz: Sequence[float] = (0.0, 0.0, 0.0)) -> ShownRobot:
+    def add(self, robot: Robot, q: Named | None = None, *, xyz: Sequence[float] = (0.0, 0.0, 0.0)) -> ShownRobot:
         """Add a robot to the scene, without controls.
 
         Args:
@@ -136,7 +137,7 @@ class Viewer:
         """The page itself, in a notebook."""
         return f'<iframe src="{html.escape(self.url)}" width="100%" height="600" style="border: 0"></iframe>'
 
-    def _shown(self, robot: Robot, q: Vector | None, origin: Vector) -> ShownRobot:
+    def _shown(self, robot: Robot, q: Named | None, origin: Vector) -> ShownRobot:
         self._robots += 1
         return ShownRobot(self._server, self._worker, robot, q, f"/robot{self._robots}", origin)
 
@@ -163,7 +164,7 @@ class Viewer:
 
 def view(
     robot: RobotSource | Robot,
-    q: Vector | None = None,
+    q: Named | None = None,
     *,
     host: str = LOOPBACK,
     port: int | None = None,
