@@ -16,10 +16,10 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import pinocchio as pin
 from scipy.optimize import fmin_slsqp
 
 import eurdf
-import pinocchio as pin
 from benchmarks.interleaved import timed
 from benchmarks.load import ROOT, robots
 from eurdf.kinematics.assembly import assemble

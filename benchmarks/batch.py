@@ -11,9 +11,9 @@ import time
 from collections.abc import Callable, Iterator
 
 import numpy as np
+import pinocchio as pin
 
 import eurdf
-import pinocchio as pin
 from benchmarks.robots import ROBOTS, chains, robot_called
 from benchmarks.table import Table, duration, ratio
 

@@ -1,4 +1,4 @@
-"""`eurdf.residual_and_jacobian` against Pinocchio's own Jacobians, and `eurdf.dq_dq_actuated` against the toolbox.
+"""`eurdf.residual_and_jacobian` against Pinocchio, and `eurdf.kinematics.dq_dq_actuated` against the toolbox.
 
 Pinocchio computes neither log₆ of the closures nor its derivative; with both in Python, it is the second peer. The
 toolbox of Batto, De Matteïs and Mansard, 2025, takes the pseudoinverse of the columns of K that are not actuated. All
@@ -37,7 +37,7 @@ def _row(name: str) -> tuple[str, ...]:
         partial(eurdf.residual_and_jacobian, robot, q),
         partial(newton.constraint_jacobian_alone, q),
         partial(newton.closures, q),
-        partial(eurdf.dq_dq_actuated, robot, q),
+        partial(eurdf.kinematics.dq_dq_actuated, robot, q),
         partial(newton.dq_dq_actuated, q),
     )
     K, alone, with_log6, D, formula = least_times(calls, 200)

@@ -20,9 +20,9 @@ from typing import Any
 import mujoco
 import numpy as np
 import numpy.typing as npt
+import pinocchio as pin
 
 import eurdf
-import pinocchio as pin
 from benchmarks.interleaved import least_times, peak_memory
 from benchmarks.mujoco_model import move, mujoco_model
 from benchmarks.robots import CHAINS, ROBOTS, chain, chains, robot_called
@@ -104,7 +104,7 @@ def _rows(name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
     given = states(robot)
     motions, driven, moved = [], [], []
     for q, v in given:
-        passive, a = eurdf.spring_force(robot, q), eurdf.forward_dynamics(robot, q, v, u).a
+        passive, a = eurdf.springs.spring_force(robot, q), eurdf.forward_dynamics(robot, q, v, u).a
         motions.append((robot, q, v, a))
         driven.append((q, v, u, passive))
         moved.append((q, v, a, passive))

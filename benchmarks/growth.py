@@ -13,9 +13,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 
 import eurdf
-import pinocchio as pin
 from benchmarks.loops import four_bars
 from eurdf.linking.robot_files import read_robot
 from eurdf.mechanism.constraint import Closure

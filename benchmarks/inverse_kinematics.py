@@ -12,9 +12,9 @@ from collections.abc import Iterator
 from functools import partial
 
 import numpy as np
+import pinocchio as pin
 
 import eurdf
-import pinocchio as pin
 from benchmarks.interleaved import least_times
 from benchmarks.nearby import motors_nearby
 from benchmarks.plain_newton import NotConverged, PlainNewton
@@ -56,5 +56,5 @@ def _row(name: str) -> tuple[str, ...]:
 def most_mobile_link(robot: eurdf.Robot, q: np.ndarray) -> str:
     """The link that the actuators move best in position."""
     links = [body.name for body in robot.mechanism.bodies if not body.virtual]
-    jacobians = [eurdf.actuated_jacobian(robot, q, name)[:3] for name in links]
+    jacobians = [eurdf.actuated_jacobian(robot, name, q)[:3] for name in links]
     return links[int(np.argmax([np.linalg.svd(J, compute_uv=False)[-1] for J in jacobians]))]

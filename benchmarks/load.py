@@ -24,8 +24,9 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 
-import eurdf
 import pinocchio as pin
+
+import eurdf
 from benchmarks.growth import write_loops
 from benchmarks.robots import CHAINS, chain, chains
 from benchmarks.table import Table, duration, ratio

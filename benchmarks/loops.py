@@ -11,9 +11,9 @@ from __future__ import annotations
 from functools import partial
 
 import numpy as np
+import pinocchio as pin
 
 import eurdf
-import pinocchio as pin
 from benchmarks.interleaved import peak_memory, timed
 from eurdf.closures.point import PointClosure
 from eurdf.mechanism.body import Anchor, Body

@@ -8,9 +8,9 @@ from xml.etree import ElementTree as ET
 import mujoco
 import numpy as np
 import numpy.typing as npt
+import pinocchio as pin
 
 import eurdf
-import pinocchio as pin
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
@@ -70,7 +70,7 @@ def move(robot: eurdf.Robot, model: mujoco.MjModel, data: mujoco.MjData, q: Vect
         AssertionError: A body is elsewhere than in the robot.
     """
     mujoco.mj_resetData(model, data)
-    for name, values in robot.coordinates(q).items():
+    for name, values in robot.joint_positions(q).items():
         if name == ROOT_JOINT:
             x, y, z, *quaternion = values
             joint = data.joint(f"{name}/0")

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import pinocchio as pin
 
 import eurdf
-import pinocchio as pin
 
 Vector = npt.NDArray[np.float64]
 Matrix = npt.NDArray[np.float64]

@@ -19,12 +19,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 from lxml import etree
 from yaml import CSafeLoader
 from yaml.events import AliasEvent, MappingStartEvent, ScalarEvent, SequenceStartEvent
 
 import eurdf
-import pinocchio as pin
 from benchmarks.interleaved import least_times
 from benchmarks.load import ROOT, robots
 from benchmarks.table import Table, duration, ratio

@@ -38,7 +38,7 @@ def _row(name: str) -> tuple[str, ...]:
     move(robot, model, data, q, v)
     simulate = partial(eurdf.simulate, robot, q, v, duration=STEPS * STEP, step=STEP)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", eurdf.StepTooLongWarning)
+        warnings.simplefilter("ignore", eurdf.errors.StepTooLongWarning)
         motion = simulate()
         times = least_times((simulate, partial(mujoco.mj_step, model, data, STEPS)), 10)
     ours, peer = (taken / STEPS for taken in times)

@@ -58,8 +58,8 @@ def main() -> None:
     print(f"{'robot':20} {'step':>6} {'r and K':>9} {'Python':>9} {'ratio':>6} {'C':>9}")
     for name, joints in _ROBOTS.items():
         robot = eurdf.load(name, geometry=False)
-        prepared = eurdf.prepare_transmission(robot, joints)
-        start = np.concatenate([robot.coordinates(prepared.q)[joint] for joint in joints])
+        prepared = eurdf.transmissions.prepare_transmission(robot, joints)
+        start = np.concatenate([robot.joint_positions(prepared.q)[joint] for joint in joints])
         for step in _STEPS:
             calls = (_evaluated(robot, prepared.q), _moving(prepared, start, step))
             K, called = (1e6 * time for time in least_times(calls, 200))
@@ -71,13 +71,13 @@ def _evaluated(robot: eurdf.Robot, q: np.ndarray) -> Callable[[], object]:
     return lambda: eurdf.residual_and_jacobian(robot, q)
 
 
-def _moving(prepared: eurdf.PreparedTransmission, start: np.ndarray, step: float) -> Callable[[], object]:
+def _moving(prepared: eurdf.transmissions.PreparedTransmission, start: np.ndarray, step: float) -> Callable[[], object]:
     count = itertools.count()
     phases = np.arange(len(start))
     return lambda: prepared.at_joints(start + step * np.sin(next(count) + phases))
 
 
-def _c_time(prepared: eurdf.PreparedTransmission, start: np.ndarray, step: float) -> float:
+def _c_time(prepared: eurdf.transmissions.PreparedTransmission, start: np.ndarray, step: float) -> float:
     """Seconds a call."""
     with tempfile.TemporaryDirectory() as folder:
         prepared.c_source("t").write(folder)

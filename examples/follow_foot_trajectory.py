@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+import pinocchio as pin
 
 import eurdf
-import pinocchio as pin
 
 Array = npt.NDArray[np.float64]
 

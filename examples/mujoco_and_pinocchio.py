@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import mujoco
 import numpy as np
+import pinocchio as pin
 
 import eurdf
-import pinocchio as pin
 
 
 class Compared(NamedTuple):

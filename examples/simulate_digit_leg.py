@@ -33,7 +33,7 @@ class Held(NamedTuple):
         energy_error: What the energy differs by from what the motors put into it, at most, J.
     """
 
-    motion: eurdf.Simulation
+    motion: eurdf.results.Simulation
     sag: Array
     opening: float
     energy: Array
@@ -48,8 +48,9 @@ def main() -> Held:
 
     def hold(t: float, q: Array, v: Array) -> Array:
         at, _ = eurdf.split_configuration(robot, q)
-        rate, _ = eurdf.split_velocity(robot, v)
-        return STIFFNESS * (held_at - at) - DAMPING * rate
+        rate, _ = eurdf.kinematics.split_velocity(robot, v)
+        torque: Array = STIFFNESS * (held_at - at) - DAMPING * rate
+        return torque
 
     motion = eurdf.simulate(robot, start, duration=DURATION, step=STEP, control=hold)
 

@@ -16,10 +16,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+import pinocchio as pin
 from scipy.spatial import ConvexHull
 
 import eurdf
-import pinocchio as pin
 
 Array = npt.NDArray[np.float64]
 
@@ -96,7 +96,7 @@ def squat() -> Squat:
         model.gravity.linear = np.array([0.0, 0.0, -GRAVITY - upwards[k]])
         external = {"foot": ground_reaction(robot, q[k], v[k], a[k])}
         # The motors have no hold on the rods, which may spin about their own lines.
-        achievable.append(eurdf.achievable_acceleration(robot, q[k], v[k], a[k], external=external))
+        achievable.append(eurdf.kinematics.achievable_acceleration(robot, q[k], v[k], a[k], external=external))
         u.append(eurdf.inverse_dynamics(robot, q[k], v[k], achievable[k], external=external).u)
         ground.append(external["foot"])
     return Squat(robot, t, lowering, upwards, q, v, np.array(achievable), np.array(u), np.array(ground))

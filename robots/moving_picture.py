@@ -9,9 +9,9 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 
 import eurdf
-import pinocchio as pin
 from eurdf.array import Vector
 from eurdf.viewing.picture import Drawn, Image, View, drawn, seen, with_palette
 
@@ -86,7 +86,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     try:
         save_moving_picture(moving_picture(eurdf.load(_ROBOT)), options.output)
-    except eurdf.MissingExtra as missing:
+    except eurdf.errors.MissingExtra as missing:
         print(missing, file=sys.stderr)
         return 2
     return 0

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 
 import eurdf
 from eurdf.collection import collection_folder, collection_names
+from eurdf.errors import RobotNotFound
 from eurdf.viewing.graph import save_graph
 from eurdf.viewing.picture import VIEWS, picture, save_picture
 
@@ -30,12 +31,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for robot in robots:
         try:
             if robot not in collection_names():
-                raise eurdf.RobotNotFound(robot, "it is not in the collection; `eurdf picture` draws other robots")
+                raise RobotNotFound(robot, "it is not in the collection; `eurdf picture` draws other robots")
             loaded = eurdf.load(robot)
             save_graph(loaded.mechanism, folder / robot / "graph.svg")
             save_picture(picture(loaded), folder / robot / "picture.png")
             save_picture(picture(loaded, VIEWS[1:2], loops=True), folder / robot / "loops.png")
-        except eurdf.MissingExtra as missing:
+        except eurdf.errors.MissingExtra as missing:
             print(missing, file=sys.stderr)
             return 2
         except (eurdf.EurdfError, ValueError, OSError) as error:

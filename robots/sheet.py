@@ -43,7 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     try:
         save_picture(sheet(eurdf.collection_names()), options.output)
-    except eurdf.MissingExtra as missing:
+    except eurdf.errors.MissingExtra as missing:
         print(missing, file=sys.stderr)
         return 2
     return 0

@@ -305,12 +305,12 @@ def test_solution_within_limits_is_not_reported(advice, monkeypatch) -> None:
     robot = eurdf.load("four_bar", geometry=False)
     closed = eurdf.forward_kinematics(robot, {"motor_crank": 2.0})
 
-    def found(robot: eurdf.Robot, q0: object = None, limits: bool = False) -> eurdf.Assembly:
+    def found(robot: eurdf.Robot, q0: object = None, limits: bool = False) -> eurdf.results.Assembly:
         q = np.array([0.0, 1.0, 0.0, 0.0, 1.0]) if limits else closed
-        opening = eurdf.Opening("rocker_pin", 0.1 if limits else 0.0, 0.0)
-        return eurdf.Assembly(q, 0.1 if limits else 0.0, not limits, not limits, 1, (opening,))
+        opening = eurdf.results.Opening("rocker_pin", 0.1 if limits else 0.0, 0.0)
+        return eurdf.results.Assembly(q, 0.1 if limits else 0.0, not limits, not limits, 1, (opening,))
 
-    (angle,) = robot.coordinates(closed)["free_rocker"]
+    (angle,) = robot.joint_positions(closed)["free_rocker"]
     monkeypatch.setattr(module, "assemble", found)
     assert codes(advice("four_bar", without_configurations, rocker(angle - 0.01, angle + 0.01))) == []
 

@@ -11,12 +11,12 @@ from typing import Any
 
 import mujoco
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import eurdf
-import pinocchio as pin
 from eurdf.closures import REGISTRY
 from eurdf.closures.distance import DistanceClosure
 from eurdf.closures.frame import FrameClosure
@@ -132,7 +132,7 @@ pairs = pytest.mark.parametrize(("build", "twin"), PAIRS.values(), ids=PAIRS.key
 def state(robot: Robot, angle: float, speed: float) -> tuple[Any, Any]:
     """The closed configuration with j0 at an angle, on the branch of the assembled one, and its velocity."""
     q = eurdf.forward_kinematics(robot, {"j0": angle}, start(robot))
-    return q, eurdf.dq_dq_actuated(robot, q)[:, 0] * speed
+    return q, eurdf.kinematics.dq_dq_actuated(robot, q)[:, 0] * speed
 
 
 def start(robot: Robot) -> Any:
@@ -160,7 +160,7 @@ SHARED = {"hinge": ("j0", "j1", "j2"), "distance": ("j0", "j2"), "coupling": ("j
 def far_from_half_a_turn(robot: Robot, q: Any) -> bool:
     """Where two frames, or two axes, are half a turn apart, the rotation between them has no derivative."""
     closures = {closure.name for closure in robot.mechanism.closures}
-    found = eurdf.closure_openings(robot, q)
+    found = eurdf.kinematics.closure_openings(robot, q)
     return all(opening.angle < np.pi - 0.2 for opening in found if opening.name in closures)
 
 
@@ -228,7 +228,7 @@ def test_opposite_hinge_axes_are_half_a_turn_apart() -> None:
     r, K = eurdf.residual_and_jacobian(linkage, np.zeros(1))
     assert np.linalg.norm(r) == pytest.approx(np.pi)
     assert np.isfinite(K).all()
-    (opening,) = eurdf.closure_openings(linkage, np.zeros(1))
+    (opening,) = eurdf.kinematics.closure_openings(linkage, np.zeros(1))
     assert (opening.position, opening.angle) == (0.0, pytest.approx(np.pi))
 
 
@@ -348,7 +348,7 @@ def test_new_kinds_are_assembled_projected_and_reached(build: Callable[[], Robot
     target = pin.SE3(robot.data.oMf[model.getFrameId(frame)])
     found = eurdf.inverse_kinematics(robot, {frame: target}, start(robot), limits=False)
     assert found.converged
-    assert np.linalg.norm(eurdf.differential_inverse_kinematics(robot, q, frame, np.ones(6)).v) > 1e-3
+    assert np.linalg.norm(eurdf.differential_inverse_kinematics(robot, frame, q, np.ones(6)).v) > 1e-3
 
 
 @of_each_kind
@@ -383,7 +383,7 @@ def test_coupling_of_large_coefficients_closes_as_one_of_small() -> None:
         robot = coupling()
         law = Coupling("belt", (("j1", 2.0 * size), ("j0", -1.0 * size)), 0.4 * size)
         robot = constrained(robot, law)
-        (opening,) = eurdf.closure_openings(robot, np.zeros(2))
+        (opening,) = eurdf.kinematics.closure_openings(robot, np.zeros(2))
         assert (opening.position, opening.angle) == (0.0, pytest.approx(0.2))
         assert eurdf.assemble(robot).closes
         analysis = eurdf.analyze(robot)
@@ -409,7 +409,7 @@ def test_coupled_joints_are_in_one_group_without_a_loop() -> None:
 def test_constraint_models_name_the_constraint_that_has_none(build: Callable[[], Robot]) -> None:
     robot = build()
     (constraint,) = robot.constraints
-    with pytest.raises(eurdf.NoConstraintModel, match=f"'{constraint.name}'") as raised:
+    with pytest.raises(eurdf.errors.NoConstraintModel, match=f"'{constraint.name}'") as raised:
         _, _, *_ = robot
     assert (raised.value.constraint, raised.value.type) == (constraint.name, constraint.type)
 

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from lxml import etree
 
 import eurdf
-import pinocchio as pin
 from support.places import DATA, ROBOTS
 
 NUMBER = re.compile(r'(?<=["\s])-?\d+\.?\d*(e-?\d+)?(?=["\s])')
@@ -25,11 +25,11 @@ FUNCTIONS: dict[str, Callable[[Any, Any, Any], Any]] = {
     "forward": lambda robot, q, v: eurdf.forward_dynamics(robot, q, v),
     "damped": lambda robot, q, v: eurdf.forward_dynamics(robot, q, 0.0 * v, dissipation=True, gains=(100.0, 20.0)),
     "inverse": lambda robot, q, v: eurdf.inverse_dynamics(robot, q, 0.0 * v, 0.0 * v),
-    "achievable": lambda robot, q, v: eurdf.achievable_acceleration(robot, q, 0.0 * v, 0.0 * v),
+    "achievable": lambda robot, q, v: eurdf.kinematics.achievable_acceleration(robot, q, 0.0 * v, 0.0 * v),
     "mass matrix": lambda robot, q, v: eurdf.mass_matrix(robot, q),
     "velocity": lambda robot, q, v: eurdf.project_velocity(robot, q, v),
     "acceleration": lambda robot, q, v: eurdf.project_acceleration(robot, q, v, v),
-    "derivative": lambda robot, q, v: eurdf.dq_dq_actuated(robot, q),
+    "derivative": lambda robot, q, v: eurdf.kinematics.dq_dq_actuated(robot, q),
     "step": lambda robot, q, v: eurdf.simulate(robot, q, v, duration=0.002),
 }
 
@@ -118,7 +118,7 @@ def test_robot_with_numbers_at_the_bounds_has_finite_quantities(stem: str) -> No
 def test_overflow_of_given_velocity_is_named(size: float) -> None:
     robot = eurdf.load("four_bar", geometry=False)
     q = robot.configurations["assembled"]
-    with pytest.raises(eurdf.NumericalOverflow, match="would not be finite"):
+    with pytest.raises(eurdf.errors.NumericalOverflow, match="would not be finite"):
         eurdf.forward_dynamics(robot, q, np.full(robot.model.nv, size))
 
 
@@ -133,13 +133,13 @@ def test_mobility_of_a_joint_that_follows_1e15_times_prints_nothing(tmp_path: Pa
     assert eurdf.analyze(eurdf.load(tmp_path)).closes
 
 
-@pytest.mark.parametrize("function", [eurdf.residual, eurdf.residual_and_jacobian, eurdf.closure_openings])
+@pytest.mark.parametrize("function", [eurdf.residual, eurdf.residual_and_jacobian, eurdf.kinematics.closure_openings])
 @pytest.mark.parametrize("size", [1e155, -1e155, 1e308])
 def test_residual_at_coordinates_that_overflow_is_an_error(function: Callable[..., Any], size: float) -> None:
     robot = eurdf.load("digit_leg", geometry=False)
     q = np.array(robot.configurations["assembled"])
     q[robot.model.joints[robot.model.getJointId("ball_rod1_start")].idx_q + 2] = size
-    with pytest.raises(eurdf.NumericalOverflow):
+    with pytest.raises(eurdf.errors.NumericalOverflow):
         function(robot, q)
 
 
@@ -149,5 +149,5 @@ def test_overflow_in_a_batch_names_the_configuration(function: Callable[..., Any
     robot = eurdf.load("digit_leg", geometry=False)
     q = np.tile(robot.configurations["assembled"], (3, 1))
     q[1, robot.model.joints[robot.model.getJointId("ball_rod1_start")].idx_q + 2] = size
-    with pytest.raises(eurdf.NumericalOverflow, match=r"q\[1\]"):
+    with pytest.raises(eurdf.errors.NumericalOverflow, match=r"q\[1\]"):
         function(robot, q)

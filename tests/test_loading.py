@@ -12,12 +12,12 @@ from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-import pinocchio as pin
 from support.described import body
 from support.places import DATA, ROBOTS
 from support.plain_urdf import Root, inertial, joint_element, link_element, pinocchios_own, robot, trees
@@ -98,7 +98,7 @@ def test_eurdf_yaml_is_preferred_among_several(tmp_path: Path, name: str) -> Non
     (tmp_path / "config.yaml").write_text("rate: 100\n", encoding="utf-8")
     assert len(eurdf.load(tmp_path).constraint_models) == 1
     (tmp_path / "arm.eurdf.yaml").write_text("closed_loop: []\n", encoding="utf-8")
-    with pytest.raises(eurdf.RobotNotFound, match="name one of them"):
+    with pytest.raises(eurdf.errors.RobotNotFound, match="name one of them"):
         eurdf.load(tmp_path)
 
 
@@ -108,7 +108,7 @@ def test_empty_or_ambiguous_folder_is_not_guessed(tmp_path: Path) -> None:
     several = _write(_write(tmp_path / "several", URDF, YAML, name="one"), URDF, YAML, name="two")
     for folder, said in ((empty, "no URDF"), (several, "one.yaml, two.yaml")):
         for function in (eurdf.load, eurdf.check):
-            with pytest.raises(eurdf.RobotNotFound, match=said):
+            with pytest.raises(eurdf.errors.RobotNotFound, match=said):
                 function(folder)
 
 
@@ -118,7 +118,7 @@ def test_empty_or_ambiguous_folder_is_not_guessed(tmp_path: Path) -> None:
 def test_unknown_name_is_not_found(path: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     for function in (eurdf.load, eurdf.check):
-        with pytest.raises(eurdf.RobotNotFound) as caught:
+        with pytest.raises(eurdf.errors.RobotNotFound) as caught:
             function(path)
         assert isinstance(caught.value, FileNotFoundError)
         assert caught.value.path == path
@@ -145,7 +145,7 @@ def test_other_urdf_can_be_given(tmp_path: Path) -> None:
     assert not eurdf.check(folder).ok
     assert eurdf.check(folder, urdf=other).ok
     assert eurdf.load(folder, urdf=str(other)).actuation.joints == ("j",)
-    with pytest.raises(eurdf.RobotNotFound, match="is a URDF itself"):
+    with pytest.raises(eurdf.errors.RobotNotFound, match="is a URDF itself"):
         eurdf.load(other, urdf=other)
 
 
@@ -197,7 +197,7 @@ def test_no_geometry_is_loaded_or_checked_on_request() -> None:
 
 def test_positional_arguments_match_interface(tmp_path: Path) -> None:
     folder = _write(tmp_path, URDF, YAML)
-    loaded = eurdf.load(folder, folder / "robot.urdf", "floating", False)
+    loaded = eurdf.load(folder, folder / "robot.urdf", root="floating", geometry=False)
     assert (loaded.model.nv, loaded.visual_model) == (7, None)
 
 

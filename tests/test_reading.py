@@ -11,12 +11,12 @@ from collections.abc import KeysView
 from pathlib import Path
 from typing import Any
 
+import pinocchio as pin
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import eurdf
-import pinocchio as pin
 from benchmarks.fuzz.robots import case_of, seeds
 from eurdf.diagnostics import Diagnostics, Place, did_you_mean
 from eurdf.diagnostics.diagnostic import LISTED, LONGEST

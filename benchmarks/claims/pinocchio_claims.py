@@ -7,6 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pinocchio as pin
+
 from benchmarks.claims.captured import captured
 from benchmarks.claims.expectation import expect
 from benchmarks.claims.four_bar import BALL_JOINT, LOOPS, MASS, mjcf, with_elements, with_two_parents

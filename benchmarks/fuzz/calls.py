@@ -48,7 +48,9 @@ def call_of(chance: random.Random) -> dict[str, Any]:
 @cache
 def functions() -> dict[str, Callable[..., Any]]:
     """The public functions whose first parameter is a robot, by name."""
-    found = {name: getattr(eurdf, name) for name in dir(eurdf) if inspect.isfunction(getattr(eurdf, name))}
+    modules = (eurdf, eurdf.kinematics, eurdf.springs, eurdf.transmissions)
+    found = {name: getattr(module, name) for module in modules for name in dir(module)}
+    found = {name: each for name, each in found.items() if inspect.isfunction(each) and not name.startswith("_")}
     return {name: each for name, each in found.items() if next(iter(inspect.signature(each).parameters), "") == "robot"}
 
 

@@ -99,7 +99,7 @@ def try_import(path: Path, format_: str, *, clock: Callable[[], None] = lambda: 
     clock()
     try:
         found = eurdf.import_robot(path, format=format_)
-    except eurdf.CannotImport as refusal:
+    except eurdf.errors.CannotImport as refusal:
         reason = str(refusal)
     else:
         reason = ""

@@ -103,9 +103,9 @@ def try_robot(path: Path, *, analyse: bool, clock: Callable[[], None] = lambda: 
         Exception: One that should not have left the package.
     """
     import numpy as np
+    import pinocchio as pin
 
     import eurdf
-    import pinocchio as pin
     from eurdf.diagnostics import REGISTRY
     from eurdf.diagnostics.registry import REFUSED_PHASES
     from eurdf.diagnostics.report import reports_to_json

@@ -5,14 +5,19 @@ Each function takes and returns arrays whose first axis has B elements, and equa
 bounded, since elements are worked on in blocks; blocks can go to threads, or to any `concurrent.futures.Executor`.
 """
 
+from __future__ import annotations
+
+from eurdf.kinematics import batch
 from eurdf.kinematics.batch import ActuatedJacobian as ActuatedJacobian
 from eurdf.kinematics.batch import ForwardKinematics as ForwardKinematics
 from eurdf.kinematics.batch import ForwardKinematicsReason as ForwardKinematicsReason
 from eurdf.kinematics.batch import InverseKinematics as InverseKinematics
 from eurdf.kinematics.batch import Projection as Projection
-from eurdf.kinematics.batch import actuated_jacobian as actuated_jacobian
-from eurdf.kinematics.batch import forward_kinematics as forward_kinematics
-from eurdf.kinematics.batch import inverse_kinematics as inverse_kinematics
-from eurdf.kinematics.batch import project_configuration as project_configuration
-from eurdf.kinematics.batch import residual as residual
-from eurdf.kinematics.batch import residual_and_jacobian as residual_and_jacobian
+from eurdf.loading import of_any_robot as _of_any_robot
+
+actuated_jacobian = _of_any_robot(batch.actuated_jacobian)
+forward_kinematics = _of_any_robot(batch.forward_kinematics)
+inverse_kinematics = _of_any_robot(batch.inverse_kinematics)
+project_configuration = _of_any_robot(batch.project_configuration)
+residual = _of_any_robot(batch.residual)
+residual_and_jacobian = _of_any_robot(batch.residual_and_jacobian)

@@ -1,14 +1,16 @@
 """`eurdf.load` and `eurdf.check`: from files to a robot ready for Pinocchio, or to everything that is wrong with them.
 
-The module is not named after one of them: importing it would put it in the place of the function.
+`of_any_robot` makes a function of a robot one that also takes what `load` takes. The module is not named after one of
+them: importing it would put it in the place of the function.
 """
 
 from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
-from typing import TYPE_CHECKING
+from functools import partial, wraps
+from inspect import currentframe, signature
+from typing import TYPE_CHECKING, Concatenate, ParamSpec, TypeVar
 
 from eurdf.advice.angles import advise_on_angles
 from eurdf.advice.lengths import advise_on_lengths
@@ -16,7 +18,7 @@ from eurdf.advice.loops import closure_diagnostics
 from eurdf.advice.quaternions import advise_on_quaternions
 from eurdf.diagnostics import Diagnostic, Diagnostics, Severity, quoted
 from eurdf.diagnostics.report import Report
-from eurdf.exceptions import InvalidRobot
+from eurdf.errors import InvalidRobot
 from eurdf.format.urdf.data import Urdf
 from eurdf.linking.mesh_files import FoundFiles, find_meshes, place_of_file
 from eurdf.linking.mimics import warn_of_ignored_mimics
@@ -29,13 +31,16 @@ from eurdf.reading.robot_source import RobotSource
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
+_Rest = ParamSpec("_Rest")
+_Result = TypeVar("_Result")
+
 
 def load(
     path: RobotSource,
     urdf: RobotSource | None = None,
+    *,
     root: Root | None = None,
     geometry: bool = True,
-    *,
     mimic: bool = True,
     check_loops: bool = False,
     strict: bool = False,
@@ -142,6 +147,40 @@ def _diagnostics(read: ReadRobot, of_meshes: Sequence[Diagnostic], loops: bool, 
     """All diagnostics of a robot that was loaded, in the order of `eurdf.check`."""
     of_loops = closure_diagnostics(read, robot) if loops else ()
     return (*read.diagnostics, *inertia_diagnostics(read), *of_meshes, *of_loops)
+
+
+def as_robot(given: Robot | RobotSource, *, geometry: bool = False) -> Robot:
+    """The robot that a caller gave, or the one that `load` makes of the path, text or name that was given.
+
+    Raises:
+        RobotNotFound, InvalidRobot, CannotExpand, MissingExtra: See `load`.
+    """
+    return load(given, geometry=geometry) if isinstance(given, str | bytes | os.PathLike) else given
+
+
+def of_any_robot(
+    function: Callable[Concatenate[Robot, _Rest], _Result], *, geometry: bool = False
+) -> Callable[Concatenate[Robot | RobotSource, _Rest], _Result]:
+    """A function whose first argument, the robot, may also be given as `load` takes it.
+
+    Args:
+        function: The function of a `Robot`.
+        geometry: Whether it needs the shapes of the robot.
+
+    Returns:
+        The function, as one of the module that calls this, in which it must have the same name to be pickled.
+    """
+
+    @wraps(function)
+    def of_any(robot: Robot | RobotSource, *args: _Rest.args, **options: _Rest.kwargs) -> _Result:
+        return function(as_robot(robot, geometry=geometry), *args, **options)
+
+    first, *others = signature(function).parameters.values()
+    accepted = first.replace(annotation="Robot | RobotSource")
+    of_any.__signature__ = signature(function).replace(parameters=[accepted, *others])  # type: ignore[attr-defined]
+    caller = currentframe()
+    of_any.__module__ = caller.f_back.f_globals["__name__"] if caller and caller.f_back else of_any.__module__
+    return of_any  # type: ignore[return-value] # it can also be given as robot=
 
 
 def check(

@@ -19,5 +19,5 @@ def assembled_at(drawing: Drawing, held: Mapping[str, float]) -> dict[str, float
     q = robot.configuration({})
     for step in range(1, _STEPS + 1):
         part: dict[str, tuple[float, ...]] = {name: (value * step / _STEPS,) for name, value in held.items()}
-        q = eurdf.assemble(robot, robot.configuration(robot.coordinates(q) | part), hold=tuple(held)).q
-    return {name: found if len(found) > 1 else found[0] for name, found in robot.coordinates(q).items()}
+        q = eurdf.assemble(robot, robot.configuration(robot.joint_positions(q) | part), hold=tuple(held)).q
+    return {name: found if len(found) > 1 else found[0] for name, found in robot.joint_positions(q).items()}

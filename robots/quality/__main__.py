@@ -41,7 +41,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     try:
         candidates = [Candidate.find(robot) for robot in options.robots or eurdf.collection_names()]
-    except eurdf.RobotNotFound as reason:
+    except eurdf.errors.RobotNotFound as reason:
         print(reason, file=sys.stderr)
         return 2
     verdicts = [judge(candidate) for candidate in candidates]

@@ -33,7 +33,7 @@ class Candidate:
         files = find_robot(path)
         found = files.description or files.urdf
         if not isinstance(found, Path):
-            raise eurdf.RobotNotFound(str(path), f"'{path}' is not a file; give the folder of a robot")
+            raise eurdf.errors.RobotNotFound(str(path), f"'{path}' is not a file; give the folder of a robot")
         return cls(found.resolve())
 
     @property

@@ -12,9 +12,9 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 
 import eurdf
-import pinocchio as pin
 from eurdf.array import Vector
 from eurdf.closures.distance import DistanceClosure
 from eurdf.closures.hinge import HingeClosure

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pinocchio as pin
 
 import eurdf
-import pinocchio as pin
 from eurdf.array import Matrix
 from eurdf.kinematics.sweep import MotionPath, Sweep
 from robots.quality.candidate import Candidate

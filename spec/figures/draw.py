@@ -12,9 +12,9 @@ from pathlib import Path
 from xml.sax.saxutils import escape
 
 import numpy as np
+import pinocchio as pin
 
 import eurdf
-import pinocchio as pin
 
 FIGURES = Path(__file__).resolve().parent
 TUTORIAL = FIGURES.parent / "examples" / "tutorial"

@@ -6,6 +6,7 @@ import importlib
 import inspect
 import re
 from collections.abc import Mapping
+from functools import cache
 from typing import Any, ClassVar
 
 from docutils import nodes
@@ -18,16 +19,20 @@ from sphinx.util.docutils import SphinxDirective, SphinxRole
 from sphinx.util.inspect import stringify_signature
 from sphinx.util.typing import stringify_annotation
 
+import eurdf
 from eurdf.diagnostics import REGISTRY
 from spec.site.domain import reference_to
 
 PACKAGE = "eurdf"
 
+#: The public modules, except that of batches.
+DOORS = ("results", "errors", "kinematics", "springs", "transmissions", "convert", "viewing")
+
 # Marks the reference of a name in backticks.
 _QUOTED = "eu-quoted"
 
 #: Types that the first page explains, and those of other packages.
-EXPLAINED = frozenset({"ArrayLike", "Executor", "Matrix", "Path", "Vector", "os.PathLike"})
+EXPLAINED = frozenset({"ArrayLike", "Executor", "Matrix", "Named", "Path", "RobotSource", "Vector", "os.PathLike"})
 
 # A name in an annotation that may be an alias.
 _ALIAS = re.compile(r"(?<![\w.'\"])[A-Z]\w*\b(?![.'\"])")
@@ -46,16 +51,19 @@ _CLAUSE = re.compile(r"(?<![`\w-])EU-[A-Z]{3}-[0-9]{3}(?!`)")
 
 
 class ApiDirective(SphinxDirective):
-    """``{api}``: public functions and classes, one name per line; ``:of: eurdf.batch`` names another module."""
+    """``{api}``: public functions and classes, one name per line; ``:of: eurdf.batch`` names another module.
+
+    ``:home:`` makes this place the one that links to the module lead to.
+    """
 
     has_content = True
-    option_spec: ClassVar = {"of": directives.unchanged_required}
+    option_spec: ClassVar = {"of": directives.unchanged_required, "home": directives.flag}
 
     def run(self) -> list[Node]:
         """Their documentation."""
         module = self.options.get("of", PACKAGE)
         entries = [f"{_directive_of(module, name)}:: {module}.{name}" for name in "\n".join(self.content).split()]
-        scope = f".. py:{'currentmodule' if module == PACKAGE else 'module'}:: {module}\n"
+        scope = f".. py:{'module' if 'home' in self.options else 'currentmodule'}:: {module}\n"
         lines = ["```{eval-rst}", scope, *(f".. {entry}\n" for entry in entries), "```"]
         return self.parse_text_to_nodes("\n".join(lines), offset=self.content_offset)
 
@@ -101,7 +109,7 @@ def _signature(
     if what not in ("function", "method") or not inspect.isfunction(value):
         return None
     signature = inspect.signature(value)
-    names = inspect.getmodule(value).__dict__
+    names = inspect.getmodule(inspect.unwrap(value)).__dict__
     parameters = [
         each.replace(annotation=_spelled_out(each.annotation, names)) for each in signature.parameters.values()
     ]
@@ -185,6 +193,24 @@ def _unresolved(app: Sphinx, env: BuildEnvironment, node: pending_xref, text: El
     return None if is_public_name else text
 
 
+def _qualify(app: Sphinx, document: nodes.document) -> None:
+    """Complete public names with their modules: docstrings have them without."""
+    for node in document.findall(pending_xref):
+        first = str(node["reftarget"]).partition(".")[0]
+        if node["refdomain"] == "py" and first in _modules():
+            of_batches = node.get("py:module") == eurdf.batch.__name__ and hasattr(eurdf.batch, first)
+            node["reftarget"] = f"{eurdf.batch.__name__ if of_batches else _modules()[first]}.{node['reftarget']}"
+            node.attributes.pop("refspecific", None)
+
+
+@cache
+def _modules() -> dict[str, str]:
+    """The module of each public name, except those of batches, which are also names for one robot."""
+    modules = (eurdf, *(getattr(eurdf, each) for each in DOORS))
+    found = ((name, getattr(each, name), each.__name__) for each in reversed(modules) for name in dir(each))
+    return {name: module for name, value, module in found if str(getattr(value, "__module__", "")).startswith(PACKAGE)}
+
+
 def setup(app: Sphinx) -> None:
     """Add the directive and the role, and connect to autodoc."""
     app.setup_extension("sphinx.ext.autodoc")
@@ -197,4 +223,5 @@ def setup(app: Sphinx) -> None:
     app.connect("autodoc-skip-member", _skipped)
     app.connect("doctree-read", _typeset)
     app.connect("doctree-read", _link_names)
+    app.connect("doctree-read", _qualify)
     app.connect("missing-reference", _unresolved)

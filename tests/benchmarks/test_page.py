@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 
 import eurdf
-import pinocchio as pin
 from benchmarks import page
 from benchmarks.__main__ import MEASUREMENTS
 from benchmarks.interleaved import least_times

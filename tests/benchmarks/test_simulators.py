@@ -6,10 +6,10 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from benchmarks.simulators.exported_robot import ROBOTS, plain_robot
 from benchmarks.simulators.run import Refused, Run, energy_changes, worst_opening
 from benchmarks.simulators.table import cells, with_table

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import pinocchio as pin
 from eurdf.closures import se3
 
 seeds = st.integers(0, 2**32 - 1)

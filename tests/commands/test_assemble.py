@@ -89,7 +89,7 @@ def test_json_matches_schema_and_has_all_coordinates(name: str, run: Run) -> Non
     jsonschema.Draft202012Validator(output_schemas()["assemble.schema.json"]).validate(found)
     robot = eurdf.load(name, geometry=False)
     shown = {joint["name"]: tuple(one["value"] for one in joint["coordinates"]) for joint in found["joints"]}
-    assert shown == robot.coordinates(robot.configurations["assembled"])
+    assert shown == robot.joint_positions(robot.configurations["assembled"])
     assert (found["start"], found["closes"], found["file"], found["written"]) == ("assembled", True, None, False)
 
 
@@ -188,7 +188,7 @@ def test_limits_are_respected_if_possible(folder: Path, run: Run) -> None:
     file = bench(folder, urdf=narrow)
     assert run("assemble", "robot.yaml", "--write")[0] == 0
     robot = eurdf.load(file, geometry=False)
-    (pivot,) = robot.coordinates(robot.configurations["assembled"])["pivot"]
+    (pivot,) = robot.joint_positions(robot.configurations["assembled"])["pivot"]
     assert 0.05 - 1e-9 <= pivot <= 0.3 + 1e-9
     assert largest_row(file) <= 1e-12
     assert eurdf.check(file).ok
@@ -220,7 +220,7 @@ def test_joint_outside_loops_is_written_within_its_limits(folder: Path, run: Run
     assert "beyond their limits: 'grip' at 0 m (limits 0.05 to 0.2)" in err
     assert run("assemble", "robot.yaml", "--write")[0] == 0
     robot = eurdf.load(file, geometry=False)
-    assert robot.coordinates(robot.configurations["assembled"])["grip"] == (0.05,)
+    assert robot.joint_positions(robot.configurations["assembled"])["grip"] == (0.05,)
     assert eurdf.check(file).ok
 
 

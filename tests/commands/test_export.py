@@ -71,7 +71,7 @@ def test_strict_refuses_losses(folder: Path, capsys: pytest.CaptureFixture[str])
     assert "export-soft-3d" in out
     assert "nothing was written: --strict refuses losses" in err
     assert not list(folder.iterdir())
-    with pytest.raises(eurdf.CannotExport) as refused:
+    with pytest.raises(eurdf.errors.CannotExport) as refused:
         eurdf.export("four_bar", "mjcf", strict=True)
     assert refused.value.losses
 

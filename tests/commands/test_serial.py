@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import pinocchio as pin
 import pytest
 
-import pinocchio as pin
 from eurdf.commands.main import main
 
 G1 = ["unitree_g1_ankle", "--joints", "free_pitch", "free_roll"]

@@ -36,12 +36,15 @@ def test_json_has_the_transmission_at_a_pose(capsys: pytest.CaptureFixture[str],
     pose.write_text('{"free_pitch": -0.5, "free_roll": [0.1]}', encoding="utf-8")
     found = validated(ran(capsys, *G1, "--at", str(pose), "--json")[0])
     robot = eurdf.load("unitree_g1_ankle", geometry=False)
-    values, q, _ = eurdf.actuator_values(robot, {"free_pitch": -0.5, "free_roll": 0.1})
+    values, q, _ = eurdf.transmissions.actuator_values(robot, {"free_pitch": -0.5, "free_roll": 0.1})
     (at,) = found["poses"]
     assert at["joints"] == pytest.approx([-0.5, 0.1])
     assert at["motors"] == pytest.approx(list(values.values()), abs=1e-8)
     np.testing.assert_allclose(at["G"], eurdf.transmission(robot, JOINTS, q).G, atol=1e-7)
-    limits, inertia = eurdf.serial_limits(robot, JOINTS, q), eurdf.reflected_inertia(robot, JOINTS, q)
+    limits, inertia = (
+        eurdf.transmissions.serial_limits(robot, JOINTS, q),
+        eurdf.transmissions.reflected_inertia(robot, JOINTS, q),
+    )
     np.testing.assert_allclose(at["limits"]["torque"], limits.torque_axes, rtol=1e-6)
     np.testing.assert_allclose(at["limits"]["velocity_box"], limits.velocity_box, rtol=1e-6)
     np.testing.assert_allclose(at["inertia"]["linkage"], inertia.linkage, rtol=1e-6, atol=1e-12)
@@ -60,7 +63,7 @@ def test_grid_finds_what_is_reached(capsys: pytest.CaptureFixture[str], tmp_path
     inside = [row for row in rows if row["reached"] == "1"]
     assert 0 < len(inside) < len(rows) == 25
     for row in inside[::4]:
-        found = eurdf.actuator_values(robot, {joint: float(row[joint]) for joint in JOINTS})
+        found = eurdf.transmissions.actuator_values(robot, {joint: float(row[joint]) for joint in JOINTS})
         assert float(row["motor_a"]) == pytest.approx(found.values["motor_a"], abs=1e-8)
         assert found.beyond == ()
         G = eurdf.transmission(robot, JOINTS, found.q).G

@@ -28,7 +28,7 @@ def with_tool(name: str, lower: float, upper: float) -> Robot:
     return build_robot(added, geometry=False)
 
 
-def in_mujoco(export: eurdf.Export) -> tuple[str, mujoco.MjModel, mujoco.MjData]:
+def in_mujoco(export: eurdf.convert.Export) -> tuple[str, mujoco.MjModel, mujoco.MjData]:
     """Name of the first keyframe, and the model there."""
     model = mujoco.MjModel.from_xml_string(export.main.decode())
     data = mujoco.MjData(model)

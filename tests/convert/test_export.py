@@ -7,12 +7,12 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-import pinocchio as pin
 from eurdf.convert.formats import EXPORTS
 from eurdf.convert.verification.read_model import without_armature
 from eurdf.mechanism.joint_types import JointType
@@ -22,7 +22,7 @@ from support.exported import near, random_robot, witness
 from support.plain_urdf import inertial, joint_element, link_element
 from support.plain_urdf import robot as robot_element
 
-#: Formats whose reader moves a robot. That of USD has no dynamics: its tests are in `test_export_usd`.
+#: Formats whose reader moves a robot. That of USD has no dynamics: its tests are in `usd/test_write`.
 MOVED = [to for to in EXPORTS if to != "usd"]
 #: Largest error of M, relative: in SDFormat, links between the joints that a joint becomes have 1e-9 kg and kg·m².
 MASS = {"sdf": 1e-6}

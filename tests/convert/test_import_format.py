@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from lxml import etree
 
 import eurdf
-import pinocchio as pin
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.hinge import HingeClosure
 from eurdf.closures.point import PointClosure
@@ -32,13 +32,13 @@ def robot(content: str, attributes: str = "") -> str:
     return f'<robot name="r"{attributes}>{LINKS}{JOINTS}{content}</robot>'
 
 
-def imported(folder: Path, text: str, format_: str | None = None) -> eurdf.Import:
+def imported(folder: Path, text: str, format_: str | None = None) -> eurdf.convert.Import:
     path = folder / "robot.urdf"
     path.write_text(text)
     return eurdf.import_robot(path, format=format_)
 
 
-def codes(found: eurdf.Import) -> set[str]:
+def codes(found: eurdf.convert.Import) -> set[str]:
     return {loss.code for loss in found.losses}
 
 
@@ -80,7 +80,7 @@ def turned_loops(text: bytes, axis: int) -> bytes:
     return etree.tostring(root)
 
 
-def mobility(found: eurdf.Import) -> int | None:
+def mobility(found: eurdf.convert.Import) -> int | None:
     return eurdf.analyze(build_robot(found.mechanism, geometry=False)).mobility
 
 
@@ -100,7 +100,9 @@ def test_loop_joint_without_axis_has_the_one_that_moves(name: str, axis: int, tm
 
 def test_loop_joint_with_several_possible_axes_is_refused(tmp_path: Path) -> None:
     text = eurdf.export("double_wishbone", "loop-joint").main
-    with pytest.raises(eurdf.CannotImport, match=r"robot\.urdf:\d+: the loop joint 'upper_bush' .* add the axis"):
+    with pytest.raises(
+        eurdf.errors.CannotImport, match=r"robot\.urdf:\d+: the loop joint 'upper_bush' .* add the axis"
+    ):
         imported(tmp_path, turned_loops(text, 0).decode())
 
 
@@ -113,7 +115,7 @@ def test_loop_joint_that_shows_no_axis_is_refused(place: str, slides: bool, why:
     if slides:
         text = text.replace("continuous", "prismatic")
         text = text.replace(TURN, f'{TURN}<limit lower="-1" upper="1" effort="1" velocity="1"/>')
-    with pytest.raises(eurdf.CannotImport, match=why):
+    with pytest.raises(eurdf.errors.CannotImport, match=why):
         imported(tmp_path, text)
 
 
@@ -173,7 +175,7 @@ def test_other_elements_and_loops_are_losses(tmp_path: Path) -> None:
 )
 def test_bad_element_is_refused_with_file_and_line(tmp_path: Path, content: str, message: str) -> None:
     text = robot(content, ' xmlns:drake="http://drake.mit.edu"')
-    with pytest.raises(eurdf.CannotImport) as refused:
+    with pytest.raises(eurdf.errors.CannotImport) as refused:
         imported(tmp_path, text)
     assert message in str(refused.value)
     assert "\n" not in str(refused.value)
@@ -190,7 +192,7 @@ def test_attribute_of_a_later_version_is_a_loss(tmp_path: Path) -> None:
 
 
 def test_entities_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(eurdf.CannotImport, match=r"robot\.urdf:1"):
+    with pytest.raises(eurdf.errors.CannotImport, match=r"robot\.urdf:1"):
         imported(tmp_path, '<!DOCTYPE r [<!ENTITY e SYSTEM "file:///etc/passwd">]><robot name="r">&e;</robot>')
 
 

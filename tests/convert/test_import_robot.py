@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import eurdf
-import pinocchio as pin
 from eurdf.closures.hinge import HingeClosure
 from eurdf.convert.losses import Effect
 from eurdf.convert.parts import Part
@@ -29,7 +29,7 @@ from support.exported import random_robot, values_of_parts
 from support.same_mechanism import unlike
 
 
-def round_trip(robot: Robot | str, to: str, folder: Path) -> tuple[eurdf.Export, eurdf.Import]:
+def round_trip(robot: Robot | str, to: str, folder: Path) -> tuple[eurdf.convert.Export, eurdf.convert.Import]:
     export = eurdf.export(robot, to)
     main, *_ = export.write(folder)
     return export, eurdf.import_robot(main, format=to)
@@ -151,7 +151,7 @@ def test_robot_of_the_collection_comes_back_from_mjcf(name: str, tmp_path: Path)
             assert joint.properties.effort == mine.properties.effort
 
 
-def there(export: eurdf.Export, found: Robot, q: Any) -> Any:
+def there(export: eurdf.convert.Export, found: Robot, q: Any) -> Any:
     """The configuration of the imported robot that is q of the exported one: by the names of the joints of the file."""
     coordinates: dict[str, list[float]] = {}
     for part, mine in zip(export.coordinates.parts, values_of_parts(export.coordinates, q), strict=True):
@@ -211,7 +211,7 @@ def test_robot_of_the_collection_closes_and_moves_as_before(to: str, name: str, 
     assert len(found.mechanism.closures) == len(robot.mechanism.closures)
     q = robot.configurations["assembled"]
     known = {*found.slots, ROOT_JOINT}
-    same = {name: each for name, each in robot.coordinates(q).items() if name in known}
+    same = {name: each for name, each in robot.joint_positions(q).items() if name in known}
     closed = found.configuration(same) if to == "mjcf" else there(export, found, q)
     assert np.abs(eurdf.residual(found, closed)).max() < 1e-6
     assert eurdf.analyze(found, closed).mobility == eurdf.analyze(robot, q).mobility
@@ -246,7 +246,7 @@ LOST_BY = {
 }
 
 
-def assert_same_properties(robot: Robot, found: Robot, export: eurdf.Export) -> None:
+def assert_same_properties(robot: Robot, found: Robot, export: eurdf.convert.Export) -> None:
     """Limits, damping, friction and armature of each axis that is a joint with one axis, unless a loss names them."""
     lost = {(loss.name, word) for loss in export.losses for word in loss.code.removeprefix("export-").split("-")}
     lost |= {(loss.name, loss.code.removeprefix("export-")) for loss in export.losses}
@@ -267,7 +267,7 @@ def assert_same_properties(robot: Robot, found: Robot, export: eurdf.Export) -> 
     assert compared
 
 
-def assert_same_robot(robot: Robot, found: Robot, export: eurdf.Export, seed: int) -> None:
+def assert_same_robot(robot: Robot, found: Robot, export: eurdf.convert.Export, seed: int) -> None:
     """Poses of bodies, openings of the closures that both have, and M, at a configuration where loops are open."""
     random = np.random.default_rng(seed)
     assembled = robot.configurations["assembled"]
@@ -280,8 +280,8 @@ def assert_same_robot(robot: Robot, found: Robot, export: eurdf.Export, seed: in
         np.testing.assert_allclose(other.homogeneous, one.homogeneous, atol=1e-9, err_msg=body.name)
     assert_same_mass_matrix(robot, q, found, q2)
     lost = {loss.name for loss in export.losses if loss.effect is Effect.DROPPED}
-    theirs = {each.name: each for each in eurdf.closure_openings(found, q2)}
-    for opening, closure in zip(eurdf.closure_openings(robot, q), robot.constraints, strict=True):
+    theirs = {each.name: each for each in eurdf.kinematics.closure_openings(found, q2)}
+    for opening, closure in zip(eurdf.kinematics.closure_openings(robot, q), robot.constraints, strict=True):
         if closure.name in lost or closure.type == "coupling":
             continue
         other = theirs.pop(closure.name)

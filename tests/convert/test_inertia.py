@@ -7,12 +7,12 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import eurdf
-import pinocchio as pin
 from eurdf.convert.inertia import about_centre
 from eurdf.convert.verification.read_model import without_armature
 from eurdf.mechanism.body import Body, Inertia
@@ -52,7 +52,7 @@ def single(shape: tuple[float, ...], scale: float, turn: tuple[float, ...], mass
     return build_robot(Mechanism("single", "2.1", "floating", (Body("body", inertia),), ()), geometry=False)
 
 
-def in_reader(robot: Robot, export: eurdf.Export) -> tuple[float, Any]:
+def in_reader(robot: Robot, export: eurdf.convert.Export) -> tuple[float, Any]:
     """Mass, and rotational inertia (3, 3) about the centre of mass along the axes of the body."""
     if export.format == "mjcf":
         body = InMuJoCo(robot, export).model.body("body")
@@ -110,7 +110,7 @@ def test_reader_has_our_inertia_but_for_losses(
 
 @pytest.mark.parametrize("to", ["mjcf", "drake", "sdf", "usd"])
 def test_negative_mass_is_refused(to: str) -> None:
-    with pytest.raises(eurdf.CannotExport, match=r"link .body. has the mass -1\.5 kg"):
+    with pytest.raises(eurdf.errors.CannotExport, match=r"link .body. has the mass -1\.5 kg"):
         eurdf.export(robot_element(link_element("body", inertial(-1.5))), to, root="floating")
 
 

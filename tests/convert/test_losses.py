@@ -290,7 +290,7 @@ def _package(folder: Path) -> Path:
     return urdf
 
 
-def _losses(export: eurdf.Export) -> set[tuple[str, str]]:
+def _losses(export: eurdf.convert.Export) -> set[tuple[str, str]]:
     return {(loss.code, Path(loss.name).name) for loss in export.losses if loss.concept == "mesh"}
 
 

@@ -16,7 +16,7 @@ from eurdf.commands.main import main
 from eurdf.commands.output import output_schemas
 from eurdf.convert.formats import EXPORTS
 from eurdf.convert.verification import verify as module
-from eurdf.exceptions import MissingExtra
+from eurdf.errors import MissingExtra
 from eurdf.mechanism.body import Inertia
 from eurdf.pinocchio.robot import Robot, build_robot
 from support.exported import hanging, random_robot
@@ -33,7 +33,7 @@ def installed(to: str) -> None:
         pytest.importorskip(PACKAGES[to], exc_type=ImportError)
 
 
-def findings(export: eurdf.Export, **options: Any) -> str:
+def findings(export: eurdf.convert.Export, **options: Any) -> str:
     return "\n".join(map(str, export.verify(**options).findings))
 
 
@@ -50,7 +50,7 @@ def test_file_of_every_joint_and_closure_is_read_back(to: str) -> None:
         assert found.mass[0] == pytest.approx(found.mass[1], rel=1e-5)
 
 
-def assert_stays_closed(export: eurdf.Export) -> None:
+def assert_stays_closed(export: eurdf.convert.Export) -> None:
     """At the start, and in the fall if the reader simulates it."""
     found = export.verify()
     assert found.findings == ()

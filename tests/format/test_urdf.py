@@ -6,10 +6,10 @@ import itertools
 from collections.abc import Iterator
 from pathlib import Path
 
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from support.plain_urdf import inertial, joint_element, link_element, pinocchio_reads, robot
 
 #: Pinocchio reads this one in silence, as no rotation.

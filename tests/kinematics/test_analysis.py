@@ -7,12 +7,12 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-import pinocchio as pin
 from eurdf.commands.robot_info import robot_info
 from eurdf.kinematics.analysis import analyze
 from eurdf.kinematics.loop_analysis import sparse_basis

@@ -10,12 +10,12 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-import pinocchio as pin
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.residual import residual
 from eurdf.mechanism.constraint import Closure

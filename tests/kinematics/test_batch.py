@@ -11,12 +11,12 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-import pinocchio as pin
 from eurdf.collection import collection_names
 from eurdf.kinematics.evaluate import many_tree
 from eurdf.pinocchio.robot import Robot, build_robot
@@ -88,15 +88,15 @@ def same_forward_kinematics(robot: Robot, values: Any, q0: Any) -> Any:
         if batch.converged[index]:
             np.testing.assert_allclose(q, eurdf.forward_kinematics(robot, own, start), atol=EQUAL)
         else:
-            with pytest.raises(eurdf.NotClosable):
+            with pytest.raises(eurdf.errors.NotClosable):
                 eurdf.forward_kinematics(robot, own, start)
     return batch
 
 
 def same_projection(robot: Robot, q: Any, weights: Any = None) -> None:
-    found = eurdf.batch.project_configuration(robot, q, weights)
+    found = eurdf.batch.project_configuration(robot, q, weights=weights)
     for own, place, residual in zip(found.q, q, found.residual, strict=True):
-        np.testing.assert_allclose(own, eurdf.project_configuration(robot, place, weights), atol=EQUAL)
+        np.testing.assert_allclose(own, eurdf.project_configuration(robot, place, weights=weights), atol=EQUAL)
         assert residual == pytest.approx(np.linalg.norm(eurdf.residual(robot, own)), abs=EQUAL)
     assert found.converged.all()
 
@@ -104,9 +104,9 @@ def same_projection(robot: Robot, q: Any, weights: Any = None) -> None:
 def same_jacobian(robot: Robot, q: Any, weights: Any) -> None:
     frame = robot.mechanism.bodies[-1].name
     for reference in (pin.LOCAL, pin.WORLD, pin.LOCAL_WORLD_ALIGNED):
-        found = eurdf.batch.actuated_jacobian(robot, q, frame, reference, weights)
+        found = eurdf.batch.actuated_jacobian(robot, frame, q, reference=reference, weights=weights)
         for J, own in zip(found.jacobian, q, strict=True):
-            single = eurdf.actuated_jacobian(robot, own, frame, reference, weights)
+            single = eurdf.actuated_jacobian(robot, frame, own, reference=reference, weights=weights)
             np.testing.assert_allclose(J, single, atol=EQUAL * np.abs(single).max())
         assert found.converged.all()
 
@@ -226,7 +226,7 @@ def four_bar(
     robot = load(text, f"actuators: [{actuator}]\nclosures: [{{name: pin, type: 3d, frames: [{ends}]}}]\n")
     if assembled is None:
         return robot
-    closed = robot.coordinates(eurdf.assemble(robot, np.array(assembled)).q)
+    closed = robot.joint_positions(eurdf.assemble(robot, np.array(assembled)).q)
     return build_robot(replace(robot.mechanism, configurations={"assembled": closed}), geometry=False)
 
 
@@ -245,11 +245,11 @@ def test_element_that_cannot_be_reached_says_why_and_leaves_others_alone() -> No
 def test_jacobian_of_dependent_actuators_says_so() -> None:
     robot = four_bar(2.5, 2.5, 2.0, "crank_pin, rocker_pin")
     q = eurdf.assemble(robot, np.array([1.0, -0.5, 1.7])).q
-    found = eurdf.batch.actuated_jacobian(robot, q[None], "rocker")
+    found = eurdf.batch.actuated_jacobian(robot, "rocker", q[None])
     assert (found.converged.tolist(), found.reason) == ([False], ("dependent actuators",))
     assert np.isnan(found.jacobian).all()
-    with pytest.raises(eurdf.DependentActuators):
-        eurdf.actuated_jacobian(robot, q, "rocker")
+    with pytest.raises(eurdf.errors.DependentActuators):
+        eurdf.actuated_jacobian(robot, "rocker", q)
 
 
 def test_numbers_that_overflow_leave_others_alone() -> None:

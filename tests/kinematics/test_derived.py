@@ -24,8 +24,8 @@ def answers(robot: eurdf.Robot, seed: int) -> list[Any]:
     return [
         q,
         *eurdf.residual_and_jacobian(robot, apart),
-        eurdf.assemble(robot, apart, robot.actuation.joints[0]).q,
-        eurdf.dq_dq_actuated(robot, q),
+        eurdf.assemble(robot, apart, hold=robot.actuation.joints[0]).q,
+        eurdf.kinematics.dq_dq_actuated(robot, q),
         eurdf.inverse_kinematics(robot, {robot.mechanism.bodies[-1].name: np.zeros(3)}, apart, restarts=0).q,
     ]
 

@@ -6,12 +6,12 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-import pinocchio as pin
 from eurdf.closures.hinge import HingeClosure
 from eurdf.kinematics import forward_solver
 from eurdf.kinematics.derived import borrowed
@@ -87,7 +87,7 @@ def test_two_points_of_a_hinge_give_its_accelerations(name: str) -> None:
         q, v = state(robot, seed)
         tau = np.random.default_rng(seed).normal(size=robot.model.nv)
         found = eurdf.forward_dynamics(robot, q, v, tau=tau).a
-        a, _ = by_pinocchio(robot, q, v, tau + eurdf.spring_force(robot, q))
+        a, _ = by_pinocchio(robot, q, v, tau + eurdf.springs.spring_force(robot, q))
         np.testing.assert_allclose(found, a, atol=1e-8 * np.abs(a).max())
 
 

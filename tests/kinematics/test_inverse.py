@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import nnls
 
-import pinocchio as pin
 from eurdf.kinematics.assembly import assemble, start
 from eurdf.kinematics.bounded_step import bounded_step
 from eurdf.kinematics.forward import forward_kinematics
@@ -154,7 +154,7 @@ def test_unreachable_target_ends_nearest_in_bounded_steps(name: str) -> None:
     assert error.position > 1.0
     assert error.position == pytest.approx(np.linalg.norm(at - target))
     # No motion of the motors brings it nearer: what the frame can do, if anything, is across the line to the target.
-    J = actuated_jacobian(robot, answer.q, frame, pin.LOCAL_WORLD_ALIGNED)[:3]
+    J = actuated_jacobian(robot, frame, answer.q, reference=pin.LOCAL_WORLD_ALIGNED)[:3]
     assert np.abs(J.T @ (at - target)).max() <= 1e-3 * error.position
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.kinematics import dynamics
 from eurdf.kinematics.equation_of_motion import EquationOfMotion
 from eurdf.kinematics.inverse_solver import InverseSolver
@@ -36,7 +36,7 @@ def test_both_ways_give_same_torques(name: str, decompositions: list[Any], monke
     q = eurdf.assemble(robot, tree.integrate(first, random.uniform(-0.05, 0.05, tree.nv))).q
     v = eurdf.project_velocity(robot, q, random.uniform(-1.0, 1.0, tree.nv))
     a, tau = eurdf.project_acceleration(robot, q, v, random.uniform(-1.0, 1.0, tree.nv)), random.normal(size=tree.nv)
-    a = eurdf.achievable_acceleration(robot, q, v, a, tau=tau)
+    a = eurdf.kinematics.achievable_acceleration(robot, q, v, a, tau=tau)
     decompositions.clear()
     one = eurdf.inverse_dynamics(robot, q, v, a, tau=tau)
     assert not decompositions
@@ -89,7 +89,7 @@ def test_tolerance_decides_on_small_uncontrolled_motion() -> None:
     spin *= 1e-6 * (1.0 + np.abs(a).max()) / np.abs(spin).max()
     for share in (1e-3, 0.3, 0.9):
         np.testing.assert_allclose(eurdf.inverse_dynamics(robot, q, still, a + share * spin).u, u, atol=1e-6)
-    with pytest.raises(eurdf.UnderactuatedMotion):
+    with pytest.raises(eurdf.errors.UnderactuatedMotion):
         eurdf.inverse_dynamics(robot, q, still, a + 1.1 * spin)
 
 

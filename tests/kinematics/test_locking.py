@@ -10,15 +10,15 @@ from typing import Any
 
 import coal
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-import pinocchio as pin
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.point import PointClosure
-from eurdf.kinematics.exceptions import CannotLock, LockedOpen
+from eurdf.errors import CannotLock, LockedOpen
 from eurdf.kinematics.locked_mechanism import lock_joints
 from eurdf.kinematics.locking import LockedRobot, lock
 from eurdf.kinematics.residual import residual, residual_and_jacobian

@@ -7,10 +7,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.commands.robot_info import robot_info
 from eurdf.format.urdf.read import JOINT_LIMIT
 from eurdf.kinematics.evaluate import frames
@@ -81,7 +81,7 @@ def test_kinematics_of_hundred_four_bars_needs_small_data_only(tmp_path: Path, m
     frame = loaded.mechanism.bodies[-1].name
     target = frames(loaded, [frame], few=True).at(there[None]).position[0, 0]
     assert eurdf.inverse_kinematics(loaded, {frame: np.array(target)}, q).converged
-    eurdf.actuated_jacobian(loaded, there, frame)
+    eurdf.actuated_jacobian(loaded, frame, there)
     assert max(made) <= 60
 
 

@@ -54,7 +54,7 @@ def test_decomposition_decides_where_units_differ_much(size: float) -> None:
     robot = slider_crank(size=size)
     assert Problem(robot, (0,)).derivative(np.zeros((1, 4)))[1][0] == (size == 1.0)
     expected = by_least_squares(robot, np.zeros(4))
-    np.testing.assert_allclose(eurdf.dq_dq_actuated(robot, np.zeros(4)), expected, rtol=1e-8, atol=1e-12)
+    np.testing.assert_allclose(eurdf.kinematics.dq_dq_actuated(robot, np.zeros(4)), expected, rtol=1e-8, atol=1e-12)
 
 
 @pytest.mark.parametrize(("lift", "certain"), [(0.0, False), (1e-6, False), (1e-3, True)])

@@ -6,12 +6,11 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
-import pinocchio as pin
-from eurdf.exceptions import EurdfError
+from eurdf.errors import EurdfError, NotClosable
 from eurdf.kinematics.assembly import assemble
-from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.project import project_acceleration, project_configuration, project_velocity
 from eurdf.kinematics.residual import acceleration_drift, residual, residual_and_jacobian
 from support.actuated import ROBOTS, closed_near, robot_called
@@ -102,10 +101,10 @@ def test_projected_velocity_is_nearest_consistent_one(name: str) -> None:
     for weights in (None, random.uniform(0.5, 2.0, nv), some_metric(nv, random)):
         W = np.eye(nv) if weights is None else np.diag(weights) if weights.ndim == 1 else weights
         v = random.normal(size=nv)
-        projected = project_velocity(robot, q, v, weights)
+        projected = project_velocity(robot, q, v, weights=weights)
         np.testing.assert_allclose(K @ projected, 0.0, atol=1e-6)  # numbers in published files are rounded
         np.testing.assert_allclose(free.T @ W @ (projected - v), 0.0, atol=1e-6)
-        np.testing.assert_allclose(project_velocity(robot, q, projected, weights), projected, atol=1e-9)
+        np.testing.assert_allclose(project_velocity(robot, q, projected, weights=weights), projected, atol=1e-9)
 
 
 @pytest.mark.parametrize("name", ["four-bar in 6d", "spherical four-bar", "Stewart", "digit_leg", "four_bar"])
@@ -119,10 +118,10 @@ def test_projected_acceleration_is_nearest_consistent_one(name: str) -> None:
     for weights in (None, some_metric(nv, random)):
         W = np.eye(nv) if weights is None else weights
         a = random.normal(size=nv)
-        projected = project_acceleration(robot, q, v, a, weights)
+        projected = project_acceleration(robot, q, v, a, weights=weights)
         np.testing.assert_allclose(K @ projected + drift, 0.0, atol=1e-8)
         np.testing.assert_allclose(null_space(K).T @ W @ (projected - a), 0.0, atol=1e-7)
-        np.testing.assert_allclose(project_acceleration(robot, q, v, projected, weights), projected, atol=1e-8)
+        np.testing.assert_allclose(project_acceleration(robot, q, v, projected, weights=weights), projected, atol=1e-8)
 
 
 def test_mass_matrix_metric_gives_constrained_acceleration() -> None:
@@ -141,7 +140,7 @@ def test_mass_matrix_metric_gives_constrained_acceleration() -> None:
     KKT = np.block([[M, -(rows @ K).T], [rows @ K, np.zeros((len(rows), len(rows)))]])
     drift = acceleration_drift(robot, q, v)
     solved = np.linalg.solve(KKT, np.concatenate([tau - pin.nle(model, data, q, v), -rows @ drift]))
-    np.testing.assert_allclose(project_acceleration(robot, q, v, free, M), solved[:3], rtol=1e-8, atol=1e-8)
+    np.testing.assert_allclose(project_acceleration(robot, q, v, free, weights=M), solved[:3], rtol=1e-8, atol=1e-8)
 
 
 @pytest.mark.parametrize("name", ["four-bar in 6d", "Stewart", "digit_leg"])
@@ -172,7 +171,7 @@ def test_projected_configuration_is_closed_and_nearest(name: str, weighted: bool
         x = pin.difference(model, q, to)
         return float(np.sqrt(x @ W @ x))
 
-    projected = project_configuration(robot, q, W if weighted else None)
+    projected = project_configuration(robot, q, weights=W if weighted else None)
     assert np.abs(residual(robot, projected)).max() <= 1e-10
     assert pin.isNormalized(model, projected, 1e-12)
     assert 1e-3 < distance(projected) <= distance(closed) + 1e-9
@@ -202,7 +201,7 @@ def test_nearest_circle_point_is_on_ray_to_centre() -> None:
     linkage = Linkage(model, [closure(model, bar, translation(1.0, 0.0, 0.0), y, pin.SE3.Identity(), "3d")])
     # Turning the bar costs nearly nothing: what is left is the distance of the pin from the circle.
     for start in (0.0, 1.5, 2.5):
-        projected = project_configuration(linkage, np.array([start, 3.0, 4.0]), np.array([1e-9, 1.0, 1.0]))
+        projected = project_configuration(linkage, np.array([start, 3.0, 4.0]), weights=np.array([1e-9, 1.0, 1.0]))
         np.testing.assert_allclose(projected[1:], [0.6, 0.8], atol=1e-6)
         np.testing.assert_allclose(projected[0], np.arctan2(0.8, 0.6), atol=1e-6)
 
@@ -232,7 +231,7 @@ def test_projection_without_loops_is_identity() -> None:
     linkage = Linkage(n_bar(4).model)
     q, v, a = np.arange(4.0), np.arange(4.0) + 1.0, np.arange(4.0) - 2.0
     np.testing.assert_array_equal(project_configuration(linkage, q), q)
-    np.testing.assert_allclose(project_velocity(linkage, q, v, np.array([1.0, 2.0, 3.0, 4.0])), v, atol=1e-12)
+    np.testing.assert_allclose(project_velocity(linkage, q, v, weights=np.array([1.0, 2.0, 3.0, 4.0])), v, atol=1e-12)
     np.testing.assert_allclose(project_acceleration(linkage, q, v, a), a, atol=1e-12)
 
 
@@ -245,7 +244,7 @@ def test_invalid_metric_or_velocity_is_refused() -> None:
         (np.full(3, np.nan), "finite"),
     ):
         with pytest.raises(ValueError, match=reason):
-            project_velocity(robot, q, v, weights)
+            project_velocity(robot, q, v, weights=weights)
     with pytest.raises(ValueError, match=r"v has the shape \(5,\); expected \(3,\)"):
         project_velocity(robot, q, q)
     with pytest.raises(ValueError, match=r"a has the shape \(2,\); expected \(3,\)"):

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import eurdf
-import pinocchio as pin
 from eurdf.kinematics.analysis import analyze
 from eurdf.kinematics.evaluate import evaluator, few_tree, many_tree
 from eurdf.kinematics.residual import closure_openings, openings_once, residual, residual_and_jacobian

@@ -6,11 +6,11 @@ import warnings
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
-from eurdf.kinematics.exceptions import StepTooLongWarning
+from eurdf.errors import StepTooLongWarning
 from eurdf.kinematics.project import project_velocity
 from eurdf.kinematics.simulation import simulate
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import pinocchio as pin
 from eurdf.kinematics.split import merge_configuration, merge_velocity, split_configuration, split_velocity
 from support.actuated import actuated, robot_called
 from support.linkage import Linkage

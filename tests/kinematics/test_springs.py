@@ -26,7 +26,7 @@ def linkage(bars: int, springs: Mapping[str, str], **options: Any) -> Any:
 
 
 def coordinate(robot: Any, q: Any, joint: str) -> float:
-    return float(robot.coordinates(q)[joint][0])
+    return float(robot.joint_positions(q)[joint][0])
 
 
 def least(function: Callable[[float], float], low: float, high: float) -> float:
@@ -59,14 +59,14 @@ def test_springs_that_cannot_all_rest_are_in_equilibrium() -> None:
     rigid = linkage(5, {})
     angle = least(energy, -0.3, 0.4)
     assert coordinate(robot, q, "j2") == pytest.approx(angle, abs=1e-6)
-    assert eurdf.spring_energy(robot, q) == pytest.approx(energy(angle), rel=1e-9)
-    assert eurdf.spring_energy(robot, q) > 1e-3
+    assert eurdf.springs.spring_energy(robot, q) == pytest.approx(energy(angle), rel=1e-9)
+    assert eurdf.springs.spring_energy(robot, q) > 1e-3
     # No force of the springs is left along the free motion; the other forces are those of the loop and of the motor.
     actuated = np.array([1.0, 0.0, 0.0, 0.0])
     _, K = eurdf.residual_and_jacobian(robot, q)
     rows = np.vstack([K, actuated])
-    left = np.linalg.lstsq(rows.T, eurdf.spring_force(robot, q), rcond=None)[0]
-    np.testing.assert_allclose(rows.T @ left, eurdf.spring_force(robot, q), atol=1e-8)
+    left = np.linalg.lstsq(rows.T, eurdf.springs.spring_force(robot, q), rcond=None)[0]
+    np.testing.assert_allclose(rows.T @ left, eurdf.springs.spring_force(robot, q), atol=1e-8)
 
 
 def test_equilibrium_does_not_depend_on_the_start() -> None:
@@ -130,7 +130,7 @@ def test_springs_that_loops_let_rest_are_kept_at_rest(name: str, monkeypatch: py
     found = eurdf.batch.forward_kinematics(robot, values, q0)
     assert found.converged.all()
     for value, q in zip(values, found.q, strict=True):
-        assert eurdf.spring_energy(robot, q) == 0.0
+        assert eurdf.springs.spring_energy(robot, q) == 0.0
         assert np.abs(eurdf.residual(robot, q)).max() < 1e-10
         np.testing.assert_allclose(eurdf.forward_kinematics(robot, value, q0), q, atol=1e-9)
 
@@ -164,7 +164,7 @@ def test_spring_of_a_mimic_joint_that_stands_still_acts_on_nothing() -> None:
     )
     q = eurdf.forward_kinematics(robot, {})
     assert coordinate(robot, q, "leader") == 0.0
-    assert eurdf.spring_energy(robot, q) == pytest.approx(0.14)
+    assert eurdf.springs.spring_energy(robot, q) == pytest.approx(0.14)
 
 
 def test_rod_that_spins_does_not_delay_the_springs(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -177,5 +177,5 @@ def test_rod_that_spins_does_not_delay_the_springs(monkeypatch: pytest.MonkeyPat
     for module in ("path", "springs"):
         monkeypatch.setattr(f"eurdf.kinematics.{module}.close", counted)
     q = eurdf.forward_kinematics(robot, [0.05] * 5)
-    assert eurdf.spring_energy(robot, q) == pytest.approx(0.0, abs=1e-12)
+    assert eurdf.springs.spring_energy(robot, q) == pytest.approx(0.0, abs=1e-12)
     assert len(steps) < 20

@@ -7,10 +7,10 @@ import re
 from dataclasses import replace
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import build_robot
 from robots.builder import Cylinder, Drawing, Motor, ball, revolute, write
@@ -251,5 +251,5 @@ def test_robot_that_cannot_close_is_refused(tmp_path):
     (closure,) = robot.mechanism.closures
     far = replace(closure, a=replace(closure.a, pose=Pose((9.0, 0.0, 0.0))))
     robot = build_robot(replace(robot.mechanism, closures=(far,)), geometry=False)
-    with pytest.raises(eurdf.NotClosable):
+    with pytest.raises(eurdf.errors.NotClosable):
         eurdf.sweep(robot, "crank")

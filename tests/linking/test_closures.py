@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.commands.main import main
 from eurdf.mechanism.constraint import RIGID, Compliance, Coupling
 from support.described import body, revolute

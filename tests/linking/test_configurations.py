@@ -7,12 +7,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import eurdf
-import pinocchio as pin
 from eurdf.mechanism.mechanism import Root
 from eurdf.pinocchio.configuration import configuration_vector
 from eurdf.pinocchio.robot import Robot, build_robot
@@ -91,7 +91,7 @@ def test_coordinates_invert_configurations(data: st.DataObject, seed: int, root:
     mechanism = replace(by_hand.tree_of_all_types(np.random.default_rng(seed)), root=root)
     robot = build_robot(mechanism, geometry=False)
     q = some_configuration(robot, data)
-    coordinates = robot.coordinates(q)
+    coordinates = robot.joint_positions(q)
     assert ("root_joint" in coordinates) == (root == "floating")
     for joint in mechanism.joints:
         assert len(coordinates.get(joint.name, ())) == len(joint.type.coordinates)
@@ -105,7 +105,7 @@ def test_coordinates_invert_configurations(data: st.DataObject, seed: int, root:
 def test_coordinates_name_mimic_joints_only_if_free(data: st.DataObject, root: Root, mimic: bool) -> None:
     robot = eurdf.load(WORKBENCH, root=root, geometry=False, mimic=mimic)
     q = some_configuration(robot, data)
-    coordinates = robot.coordinates(q)
+    coordinates = robot.joint_positions(q)
     assert ("follow" in coordinates) != mimic
     back = configuration_vector(robot.mechanism, robot.model, coordinates)
     np.testing.assert_allclose(back, q, rtol=0.0, atol=1e-12)
@@ -115,7 +115,7 @@ def test_coordinates_name_mimic_joints_only_if_free(data: st.DataObject, root: R
 def test_wrong_shape_is_refused(shape: tuple[int, ...]) -> None:
     robot = eurdf.load(WORKBENCH, geometry=False)
     with pytest.raises(ValueError, match="q has the shape"):
-        robot.coordinates(np.zeros(shape))
+        robot.joint_positions(np.zeros(shape))
 
 
 def test_message_shows_digits_that_are_beyond_the_bound(tmp_path: Path) -> None:

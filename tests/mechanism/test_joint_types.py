@@ -6,11 +6,11 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import pinocchio as pin
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import IDENTITY, Pose

@@ -11,18 +11,18 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
+from support.public import public_functions
 
 #: Annotations of parameters that are arrays, or mappings to arrays.
-ARRAY = re.compile(r"\b(Vector|Matrix|ArrayLike|External|Mapping\[str, Any\]|tuple\[float)")
+ARRAY = re.compile(r"\b(Named|Vector|Matrix|ArrayLike|External|Mapping\[str, Any\]|tuple\[float)")
 
 #: A valid call of each public function, and of each method of a robot, that takes an array.
 CALLS: dict[str, dict[str, Any]] = {
-    "Robot.coordinates": {"q": "q"},
-    "Robot.joint_coordinates": {"q": "q"},
+    "Robot.joint_positions": {"q": "q"},
     "achievable_acceleration": {"q": "q", "v": "v", "a": "v", "tau": "v", "external": {"coupler": 6}},
     "actuated_jacobian": {"q": "q", "frame": "coupler", "weights": "v"},
     "analyze": {"q": "q"},
@@ -124,10 +124,8 @@ def array(parameter: str, given: Any) -> Any:
 
 def functions() -> dict[str, Callable[..., Any]]:
     """The public functions, those for batches, and the methods of a robot."""
-    found = {name: getattr(eurdf, name) for name in eurdf.__all__ if inspect.isfunction(getattr(eurdf, name))}
     methods = inspect.getmembers(eurdf.Robot, inspect.isfunction)
-    found |= {f"batch.{name}": each for name, each in inspect.getmembers(eurdf.batch, inspect.isfunction)}
-    return found | {f"Robot.{name}": method for name, method in methods if not name.startswith("_")}
+    return public_functions() | {f"Robot.{name}": method for name, method in methods if not name.startswith("_")}
 
 
 def call(name: str, arguments: Mapping[str, Any]) -> Any:
@@ -159,9 +157,9 @@ def test_every_function_that_takes_an_array_is_tested() -> None:
 def test_valid_call_succeeds(name: str) -> None:
     try:
         answer = call(name, valid(name))
-        if isinstance(answer, eurdf.Viewer):
+        if isinstance(answer, eurdf.viewing.Viewer):
             answer.close()
-    except (eurdf.UnderactuatedMotion, eurdf.InconsistentMotion):
+    except (eurdf.errors.UnderactuatedMotion, eurdf.errors.InconsistentMotion):
         assert name in ("inverse_dynamics", "achievable_acceleration")
 
 
@@ -199,7 +197,7 @@ def test_wrong_array_is_a_value_error(name: str, parameter: str) -> None:
     expected = rf"^{named}[ \[].*expected .*\({good.shape[-1]},\)" if of_one else rf"^{parameter}\b"
     for what, bad in wrong(good).items():
         if (parameter, what) not in RIGHT:
-            with pytest.raises(ValueError, match=expected):
+            with pytest.raises(ValueError, match=rf"^{named}" if what == "mapping" else expected):
                 pytest.fail(
                     f"{name} accepts {what}: {call(name, {**valid(name), parameter: {key: bad} if key else bad})}"
                 )
@@ -255,16 +253,17 @@ for target in (np.ones(3), pin.SE3.Random()):
     found = eurdf.inverse_kinematics(robot, {{{link!r}: target}}, none)
     assert not found.converged
 for function, *arguments in [
-    (eurdf.achievable_acceleration, none, none, none), (eurdf.actuated_jacobian, none, {link!r}), (eurdf.analyze, none),
-    (eurdf.assemble, none), (eurdf.closure_openings, none),
-    (eurdf.differential_inverse_kinematics, none, {link!r}, np.ones(6)), (eurdf.dq_dq_actuated, none),
+    (eurdf.kinematics.achievable_acceleration, none, none, none), (eurdf.actuated_jacobian, {link!r}, none),
+    (eurdf.analyze, none),
+    (eurdf.assemble, none), (eurdf.kinematics.closure_openings, none),
+    (eurdf.differential_inverse_kinematics, {link!r}, none, np.ones(6)), (eurdf.kinematics.dq_dq_actuated, none),
     (eurdf.forward_dynamics, none, none, none), (eurdf.forward_kinematics, none), (eurdf.forward_kinematics, {{}}),
     (eurdf.inverse_dynamics, none, none, none), (eurdf.lock, []), (eurdf.mass_matrix, none),
-    (eurdf.merge_configuration, none, none), (eurdf.merge_velocity, none, none),
+    (eurdf.merge_configuration, none, none), (eurdf.kinematics.merge_velocity, none, none),
     (eurdf.project_acceleration, none, none, none), (eurdf.project_configuration, none),
     (eurdf.project_velocity, none, none), (eurdf.residual, none),
     (eurdf.residual_and_jacobian, none),
-    (eurdf.split_configuration, none), (eurdf.split_velocity, none),
+    (eurdf.split_configuration, none), (eurdf.kinematics.split_velocity, none),
 ]:
     function(robot, *arguments)
 eurdf.simulate(robot, none, duration=0.01)
@@ -288,3 +287,53 @@ def test_simulation_has_finite_times(duration: float, step: float) -> None:
     q = np.array(robot().configurations["assembled"])
     with pytest.raises(ValueError, match="duration must be finite and at least 0 s, and step finite and above 0 s"):
         eurdf.simulate(robot(), q, duration=duration, step=step)
+
+
+def test_named_values_make_the_vectors() -> None:
+    loaded = eurdf.load("four_bar", root="floating", geometry=False)
+    q = loaded.configurations["assembled"]
+    named = loaded.joint_positions(q)
+    rate = {"motor_crank": 0.3, "root_joint": [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]}
+    v = np.zeros(loaded.model.nv)
+    v[:6], v[loaded.slots["motor_crank"].idx_v] = rate["root_joint"], 0.3
+    np.testing.assert_allclose(eurdf.residual(loaded, named), eurdf.residual(loaded, q), atol=1e-12)
+    np.testing.assert_allclose(eurdf.kinematics.split_velocity(loaded, rate)[0], [0.3])
+    for u in ({"motor_crank": 2.0}, {}):
+        found = eurdf.forward_dynamics(loaded, named, rate, u, tau={"motor_crank": 1.0}).a
+        tau = np.zeros(loaded.model.nv)
+        tau[loaded.slots["motor_crank"].idx_v] = 1.0
+        np.testing.assert_allclose(found, eurdf.forward_dynamics(loaded, q, v, [2.0] if u else [0.0], tau=tau).a)
+    moved = eurdf.simulate(loaded, named, rate, duration=2e-3, control=lambda t, q, v: {"motor_crank": 2.0})
+    same = eurdf.simulate(loaded, q, v, duration=2e-3, control=lambda t, q, v: np.array([2.0]))
+    np.testing.assert_allclose(moved.q, same.q, atol=1e-12)
+    ankle = eurdf.transmission("unitree_g1_ankle", ["free_pitch", "free_roll"])
+    np.testing.assert_allclose(ankle.motor_torque({"free_roll": 5.0}), ankle.motor_torque([0.0, 5.0]))
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"motor_cranc": 1.0}, r"'motor_cranc'.*did you mean 'motor_crank'\?"),
+        ({"motor_crank": [1.0, 2.0]}, r"u\['motor_crank'\] has the shape \(2,\)"),
+        ({"motor_crank": np.nan}, r"u\['motor_crank'\] is nan"),
+    ],
+)
+def test_wrong_named_value_is_named(given: Any, message: str) -> None:
+    q, v = robot().configurations["assembled"], np.zeros(robot().model.nv)
+    with pytest.raises(ValueError, match=message):
+        eurdf.forward_dynamics(robot(), q, v, given)
+    with pytest.raises(ValueError, match=r"'motor_cranc'.*did you mean"):
+        eurdf.forward_dynamics(robot(), q, {"motor_cranc": 1.0})
+    with pytest.raises(ValueError, match=r"'motor_cranc'.*did you mean"):
+        eurdf.assemble(robot(), {"motor_cranc": 1.0})
+
+
+@pytest.mark.parametrize("name", [name for name in CALLS if not name.startswith(("Robot.", "plot"))])
+def test_robot_is_also_given_by_its_name(name: str) -> None:
+    function = functions()[name]
+    assert "RobotSource" in str(inspect.signature(function).parameters["robot"].annotation)
+    if name in ("residual", "batch.residual", "analyze", "spring_energy", "closure_openings", "lock", "transmission"):
+        of_robot, of_name = (repr(function(each, **valid(name))) for each in (robot(), "four_bar"))
+        assert of_name == of_robot
+    with pytest.raises(eurdf.errors.RobotNotFound):
+        function("four_baar", **valid(name))

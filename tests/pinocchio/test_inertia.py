@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pinocchio as pin
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import pinocchio as pin
 from eurdf.mechanism.joint import JointProperties
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.configuration import configuration_vector

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import pinocchio as pin
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType

@@ -7,11 +7,11 @@ import re
 from dataclasses import replace
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-import pinocchio as pin
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.point import PointClosure
 from eurdf.mechanism.body import Anchor, Body, Frame

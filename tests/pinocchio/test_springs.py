@@ -79,7 +79,7 @@ def test_accelerations_are_those_of_mujoco(tmp_path: Path) -> None:
         mujoco.mj_forward(witness, data)
         a = eurdf.forward_dynamics(robot, q, v).a
         np.testing.assert_allclose(a, data.qacc, rtol=1e-8, atol=1e-8)
-        np.testing.assert_allclose(eurdf.spring_force(robot, q), data.qfrc_spring, rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(eurdf.springs.spring_force(robot, q), data.qfrc_spring, rtol=1e-12, atol=1e-12)
         found = eurdf.inverse_dynamics(actuated(robot), q, v, a).u
         np.testing.assert_allclose(found, np.zeros(4), atol=1e-9)
 
@@ -96,13 +96,13 @@ def test_force_is_minus_the_gradient_of_the_energy() -> None:
     step = 1e-4
     slopes = [
         (
-            eurdf.spring_energy(robot, robot.tree.integrate(q, step * unit))
-            - eurdf.spring_energy(robot, robot.tree.integrate(q, -step * unit))
+            eurdf.springs.spring_energy(robot, robot.tree.integrate(q, step * unit))
+            - eurdf.springs.spring_energy(robot, robot.tree.integrate(q, -step * unit))
         )
         / (2 * step)
         for unit in np.eye(robot.model.nv)
     ]
-    np.testing.assert_allclose(eurdf.spring_force(robot, q), -np.array(slopes), atol=1e-8)
+    np.testing.assert_allclose(eurdf.springs.spring_force(robot, q), -np.array(slopes), atol=1e-8)
     assert np.abs(slopes).max() > 0.1
 
 
@@ -114,7 +114,7 @@ def test_spring_in_a_loop_acts_as_a_force_at_its_joint() -> None:
     at = robot.model.joints[robot.model.getJointId("motor_crank")]
     tau = np.zeros(robot.model.nv)
     tau[at.idx_v] = -3.0 * (q[at.idx_q] - 0.4)
-    there = configuration_vector(plain.mechanism, plain.model, robot.coordinates(q))
+    there = configuration_vector(plain.mechanism, plain.model, robot.joint_positions(q))
     found, expected = eurdf.forward_dynamics(robot, q, v), eurdf.forward_dynamics(plain, there, v, tau=tau)
     np.testing.assert_allclose(found.a, expected.a, rtol=1e-10)
     np.testing.assert_allclose(np.concatenate(found.forces), np.concatenate(expected.forces), rtol=1e-8, atol=1e-10)
@@ -152,7 +152,10 @@ def test_loop_with_springs_keeps_its_energy() -> None:
     plain = eurdf.load("four_bar", geometry=False)
     other = quiet(plain, eurdf.assemble(plain).q, duration=0.1, step=2.5e-4)
     assert (
-        abs(plain.coordinates(other.q[-1])["motor_crank"][0] - robot.coordinates(motion.q[-1])["motor_crank"][0]) > 0.01
+        abs(
+            plain.joint_positions(other.q[-1])["motor_crank"][0] - robot.joint_positions(motion.q[-1])["motor_crank"][0]
+        )
+        > 0.01
     )
 
 
@@ -166,9 +169,9 @@ def test_continuous_joint_with_a_spring_counts_its_turns(tmp_path: Path) -> None
     assert (robot.model.nq, rigid.model.nq) == (4, 5)
     assert len(rigid.tree.springs) == 0
     q = np.array([0.0, 0.0, 4.0 * math.pi, 0.0])
-    np.testing.assert_allclose(eurdf.spring_force(robot, q), [0.0, 0.0, -4.0 * (4.0 * math.pi - 1.0), 0.0])
+    np.testing.assert_allclose(eurdf.springs.spring_force(robot, q), [0.0, 0.0, -4.0 * (4.0 * math.pi - 1.0), 0.0])
     assert robot.model.upperPositionLimit[2] == math.inf
-    assert robot.coordinates(q)["spin"] == (4.0 * math.pi,)
+    assert robot.joint_positions(q)["spin"] == (4.0 * math.pi,)
 
 
 # -- mimic joints ----------------------------------------------------------------------------------------------------
@@ -211,8 +214,10 @@ def test_mimic_joints_load_their_leader_as_if_they_were_free_and_led(tmp_path: P
     for _ in range(5):
         x, v, a = random.uniform(-1.0, 1.0, (3, 2))
         q = G @ x + o
-        np.testing.assert_allclose(eurdf.spring_force(robot, x), G.T @ eurdf.spring_force(free, q), rtol=1e-12)
-        assert eurdf.spring_energy(robot, x) == pytest.approx(eurdf.spring_energy(free, q), rel=1e-12)
+        np.testing.assert_allclose(
+            eurdf.springs.spring_force(robot, x), G.T @ eurdf.springs.spring_force(free, q), rtol=1e-12
+        )
+        assert eurdf.springs.spring_energy(robot, x) == pytest.approx(eurdf.springs.spring_energy(free, q), rel=1e-12)
         np.testing.assert_allclose(
             eurdf.mass_matrix(robot, x), G.T @ eurdf.mass_matrix(free, q) @ G, rtol=1e-10, atol=1e-12
         )
@@ -238,7 +243,7 @@ def test_mimic_joint_with_a_spring_counts_turns_of_its_leader(tmp_path: Path) ->
     path.write_text(urdf(joints), encoding="utf-8")
     robot = sprung(path, {"one": (3.0, 0.5)})
     assert robot.model.nq == 1
-    np.testing.assert_allclose(eurdf.spring_force(robot, np.array([7.0])), [-2.0 * 3.0 * (14.0 - 0.5)])
+    np.testing.assert_allclose(eurdf.springs.spring_force(robot, np.array([7.0])), [-2.0 * 3.0 * (14.0 - 0.5)])
 
 
 def test_bare_urdf_leaves_the_damping_of_mimic_joints_to_pinocchio(tmp_path: Path) -> None:
@@ -250,7 +255,7 @@ def test_bare_urdf_leaves_the_damping_of_mimic_joints_to_pinocchio(tmp_path: Pat
     assert eurdf.load(tmp_path, geometry=False).model.damping[0] == pytest.approx(damping[1])
 
 
-@pytest.mark.parametrize("function", [eurdf.spring_force, eurdf.spring_energy])
+@pytest.mark.parametrize("function", [eurdf.springs.spring_force, eurdf.springs.spring_energy])
 def test_wrong_configuration_is_refused(function: Any) -> None:
     robot = sprung("four_bar", {"motor_crank": (3.0, 0.4)})
     with pytest.raises(ValueError, match="q"):

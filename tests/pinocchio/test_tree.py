@@ -7,23 +7,23 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.kinematics.frame_jacobian import frame_jacobian
 from support.places import ROBOTS
 
 #: What must not need Pinocchio's model, for a robot with an actuator 'motor_crank' and a link 'coupler'.
 ANSWERS: dict[str, Callable[[Any, Any], Any]] = {
-    "actuated_jacobian": lambda robot, q: eurdf.actuated_jacobian(robot, q, "coupler", pin.WORLD),
+    "actuated_jacobian": lambda robot, q: eurdf.actuated_jacobian(robot, "coupler", q, reference=pin.WORLD),
     "analyze": lambda robot, q: eurdf.analyze(robot, q).loops[0].motions,
-    "assemble": lambda robot, q: eurdf.assemble(robot, q + 0.1, "motor_crank", limits=True).q,
-    "closure_openings": lambda robot, q: eurdf.closure_openings(robot, q + 0.1)[0].position,
+    "assemble": lambda robot, q: eurdf.assemble(robot, q + 0.1, hold="motor_crank", limits=True).q,
+    "closure_openings": lambda robot, q: eurdf.kinematics.closure_openings(robot, q + 0.1)[0].position,
     "differential_inverse_kinematics": lambda robot, q: (
-        eurdf.differential_inverse_kinematics(robot, q, "coupler", np.ones(6)).v
+        eurdf.differential_inverse_kinematics(robot, "coupler", q, np.ones(6)).v
     ),
-    "dq_dq_actuated": eurdf.dq_dq_actuated,
+    "dq_dq_actuated": eurdf.kinematics.dq_dq_actuated,
     "forward_kinematics": lambda robot, q: eurdf.forward_kinematics(robot, q[robot.actuation.idx_q] + 0.1, q),
     "inverse_kinematics": lambda robot, q: eurdf.inverse_kinematics(robot, {"coupler": [0.1, 0.0, 0.3]}, q).q,
     "project_acceleration": lambda robot, q: eurdf.project_acceleration(robot, q, np.ones(3), np.ones(3)),
@@ -67,10 +67,10 @@ def test_frame_jacobian_equals_pinocchio(name: str, reference: Any) -> None:
 def test_unknown_reference_is_refused() -> None:
     robot = eurdf.load(ROBOTS / "four_bar", geometry=False)
     with pytest.raises(ValueError, match=r"^reference is 'world'; expected pin\.LOCAL, "):
-        eurdf.actuated_jacobian(robot, robot.tree.neutral(), "coupler", "world")
+        eurdf.actuated_jacobian(robot, "coupler", robot.tree.neutral(), reference="world")
 
 
 def test_configuration_and_coordinates_are_inverse() -> None:
     robot = eurdf.load(ROBOTS / "digit_2legs", geometry=False)
     q = eurdf.assemble(robot).q
-    np.testing.assert_allclose(robot.configuration(robot.coordinates(q)), q, rtol=0.0, atol=1e-12)
+    np.testing.assert_allclose(robot.configuration(robot.joint_positions(q)), q, rtol=0.0, atol=1e-12)

@@ -8,10 +8,10 @@ from typing import Any
 
 import mujoco
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.pinocchio import constrained_dynamics, tree
 from eurdf.pinocchio.springs import NO_SPRINGS
 from eurdf.pinocchio.tree_dynamics import TreeRecursion

@@ -86,7 +86,7 @@ def test_every_command_says_what_to_do_with_other_formats(
 def test_folder_names_the_file_of_another_format(tmp_path: Path) -> None:
     (tmp_path / "package.xml").write_text("<package/>")
     (tmp_path / "robot.usda").write_text("#usda 1.0\n")
-    with pytest.raises(eurdf.RobotNotFound, match=r"no URDF, but 'robot\.usda'; name the file"):
+    with pytest.raises(eurdf.errors.RobotNotFound, match=r"no URDF, but 'robot\.usda'; name the file"):
         eurdf.check(tmp_path)
 
 
@@ -96,7 +96,7 @@ def test_import_refuses_what_needs_no_import(tmp_path: Path) -> None:
         ("robot.urdf", robot(JOINT), "URDF without loops of another dialect; use it as it is"),
     ):
         (tmp_path / name).write_bytes(content)
-        with pytest.raises(eurdf.CannotImport, match=words):
+        with pytest.raises(eurdf.errors.CannotImport, match=words):
             eurdf.import_robot(tmp_path / name)
 
 

@@ -109,13 +109,13 @@ def test_too_long_text_is_refused() -> None:
 
 
 def test_urdf_is_not_a_description() -> None:
-    with pytest.raises(eurdf.RobotNotFound, match="is a URDF itself"):
+    with pytest.raises(eurdf.errors.RobotNotFound, match="is a URDF itself"):
         eurdf.check(URDF, URDF)
 
 
 def test_urdf_beside_folder_without_description_is_used(folder: Path) -> None:
     (folder / "robot.urdf").write_text(URDF, encoding="utf-8")
-    with pytest.raises(eurdf.RobotNotFound, match="no YAML file to use with"):
+    with pytest.raises(eurdf.errors.RobotNotFound, match="no YAML file to use with"):
         eurdf.check(folder, "other.urdf")
 
 
@@ -250,7 +250,7 @@ def test_missing_path_suggests_a_similar_one(folder: Path, path: str, near: str 
     (leg / "arm.yml").write_text(DESCRIPTION, encoding="utf-8")
     (leg / "notes.txt").touch()
     assert near_path(path, eurdf.collection_names()) == near
-    with pytest.raises(eurdf.RobotNotFound) as caught:
+    with pytest.raises(eurdf.errors.RobotNotFound) as caught:
         eurdf.check(path)
     said = str(caught.value)
     assert said.endswith(f"did you mean '{near}'?" if near else "`eurdf robots` lists the collection")
@@ -269,7 +269,7 @@ def test_nearest_file_ending_is_suggested(folder: Path) -> None:
 
 def test_empty_path_is_not_working_directory(folder: Path) -> None:
     (folder / "robot.urdf").write_text(URDF, encoding="utf-8")
-    with pytest.raises(eurdf.RobotNotFound, match="is empty"):
+    with pytest.raises(eurdf.errors.RobotNotFound, match="is empty"):
         eurdf.check("")
 
 
@@ -367,7 +367,7 @@ def test_empty_path_is_not_the_working_directory(folder: Path, given_to: str) ->
     (folder / "robot.urdf").write_text(URDF, encoding="utf-8")
     (folder / "robot.yaml").write_text(DESCRIPTION, encoding="utf-8")
     for function in (eurdf.check, eurdf.load):
-        with pytest.raises(eurdf.RobotNotFound, match="is empty"):
+        with pytest.raises(eurdf.errors.RobotNotFound, match="is empty"):
             function(**{"path": "robot.yaml", given_to: ""})
     argv = ["check", ""] if given_to == "path" else ["check", "robot.yaml", "--urdf", ""]
     assert eurdf_with("", *argv).returncode == 2

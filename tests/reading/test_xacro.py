@@ -83,7 +83,7 @@ def test_every_command_expands_the_xacro_that_a_description_names(
         assert f'mass value="{masses}' in (folder / "out" / "robot.urdf").read_text(encoding="utf-8")
         assert main(["migrate", "arm.yaml", *arguments]) == 0
         assert eurdf.load("arm.yaml", xacro_args=dict.fromkeys(["mass"], masses)).actuation.joints == ("shoulder",)
-    with pytest.raises(eurdf.CannotExpand, match="did you mean 'mass'"):
+    with pytest.raises(eurdf.errors.CannotExpand, match="did you mean 'mass'"):
         eurdf.check("arm.yaml", xacro_args={"mas": "5"})
 
 
@@ -204,7 +204,7 @@ def test_xacro_error_is_refused_in_one_line(
 ) -> None:
     (folder / "wrong.xacro").write_text(robot_with(content), encoding="utf-8")
     for function in (eurdf.load, eurdf.check):
-        with pytest.raises(eurdf.CannotExpand, match=r"'wrong\.xacro'") as caught:
+        with pytest.raises(eurdf.errors.CannotExpand, match=r"'wrong\.xacro'") as caught:
             function("wrong.xacro")
         assert said in str(caught.value)
     assert main(["check", "wrong.xacro"]) == 2
@@ -217,12 +217,12 @@ def test_xacro_error_is_refused_in_one_line(
 def test_file_with_error_is_named(folder: Path) -> None:
     (folder / "legs.xacro").write_text(robot_with('<link name="${lenght}"/>'), encoding="utf-8")
     (folder / "robot.xacro").write_text(robot_with('<xacro:include filename="legs.xacro"/>'), encoding="utf-8")
-    with pytest.raises(eurdf.CannotExpand, match=r"lenght.*in 'legs\.xacro'"):
+    with pytest.raises(eurdf.errors.CannotExpand, match=r"lenght.*in 'legs\.xacro'"):
         eurdf.check("robot.xacro")
 
 
 def test_unknown_argument_is_refused() -> None:
-    with pytest.raises(eurdf.CannotExpand, match=r"no argument 'mas'.*did you mean 'mass'"):
+    with pytest.raises(eurdf.errors.CannotExpand, match=r"no argument 'mas'.*did you mean 'mass'"):
         eurdf.load("arm.urdf.xacro", xacro_args={"mas": "5"})
 
 
@@ -230,7 +230,7 @@ def test_arguments_without_xacro_are_refused(folder: Path) -> None:
     (folder / "robot.urdf").write_text('<robot name="r"><link name="base"/></robot>', encoding="utf-8")
     (folder / "robot.yaml").write_text('extended_urdf: "2.0"\n', encoding="utf-8")
     for path in ("robot.urdf", "robot.yaml", '<robot name="r"><link name="base"/></robot>'):
-        with pytest.raises(eurdf.CannotExpand, match=r"only a \.xacro file accepts arguments"):
+        with pytest.raises(eurdf.errors.CannotExpand, match=r"only a \.xacro file accepts arguments"):
             eurdf.check(path, xacro_args={"mass": "1"})
 
 
@@ -274,7 +274,7 @@ def test_missing_extra_shows_install_command(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(xacro, "find_spec", lambda name: None)
-    with pytest.raises(eurdf.MissingExtra) as caught:
+    with pytest.raises(eurdf.errors.MissingExtra) as caught:
         eurdf.load("arm.urdf.xacro")
     assert caught.value.extra == "xacro"
     assert main(["check", "arm.urdf.xacro"]) == 2
@@ -300,7 +300,7 @@ def test_failed_process_gives_its_reason(
 ) -> None:
     (folder / "program.py").write_text(program, encoding="utf-8")
     monkeypatch.setattr(xacro, "_PROGRAM", folder / "program.py")
-    with pytest.raises(eurdf.CannotExpand, match=f"{reason}$"):
+    with pytest.raises(eurdf.errors.CannotExpand, match=f"{reason}$"):
         eurdf.check("arm.urdf.xacro")
 
 
@@ -309,7 +309,7 @@ def test_expansion_is_bounded_in_time_and_size(folder: Path, monkeypatch: pytest
     text = robot_with(f'<xacro:macro name="m0"><link name="l"/></xacro:macro>{doubled}<xacro:m40/>')
     (folder / "bomb.xacro").write_text(text, encoding="utf-8")
     monkeypatch.setattr(xacro, "TIME_LIMIT", 1.0)
-    with pytest.raises(eurdf.CannotExpand, match="longer than 1 s"):
+    with pytest.raises(eurdf.errors.CannotExpand, match="longer than 1 s"):
         eurdf.check("bomb.xacro")
     monkeypatch.undo()
     monkeypatch.setattr(xacro, "FILE_LIMIT", 100)

@@ -25,12 +25,12 @@ from eurdf.closures.se3 import velocity_of_origin
 from eurdf.commands.output import output_schemas, to_json
 from eurdf.commands.robot_info import robot_info
 from eurdf.convert.formats import EXPORTS
+from eurdf.errors import NoConstraintModel
 from eurdf.format.schema import json_schema
 from eurdf.kinematics.evaluate import frames
 from eurdf.kinematics.residual import acceleration_drift
 from eurdf.mechanism.constraint import Unit, key
 from eurdf.mechanism.same_model import differences
-from eurdf.pinocchio.constraint import NoConstraintModel
 from eurdf.pinocchio.robot import Robot, build_robot
 from eurdf.writing.description import describe_mechanism
 

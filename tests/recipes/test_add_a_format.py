@@ -15,8 +15,8 @@ import pytest
 
 import eurdf
 from eurdf.commands.main import main
-from eurdf.convert.exceptions import CannotExport
 from eurdf.convert.table import details, overview
+from eurdf.errors import CannotExport
 from support.changed_package import run_with
 
 ROBOTS = Path(__file__).parents[2] / "robots"

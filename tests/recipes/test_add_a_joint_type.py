@@ -96,7 +96,7 @@ def show(folder: Path) -> None:
         np.testing.assert_allclose(many, np.tile(one, (3, *(1,) * np.ndim(one))), atol=1e-12)
     M = eurdf.mass_matrix(robot, q)
     np.testing.assert_allclose(M[:2, :2], 5.0 * np.eye(2), atol=1e-12)
-    there = eurdf.forward_kinematics(robot, {"table": np.array(robot.coordinates(q)["table"]) + 0.01}, q)
+    there = eurdf.forward_kinematics(robot, {"table": np.array(robot.joint_positions(q)["table"]) + 0.01}, q)
     np.testing.assert_allclose(eurdf.residual(robot, there), 0.0, atol=1e-9)
     assert eurdf.simulate(robot, q, np.zeros(3), duration=0.01).q.shape[1] == robot.model.nq
 

@@ -8,10 +8,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.pinocchio.frames import body_frame_ids
 
 #: Angles of Tello's own in the pose that is drawn, where they are not 0 (rad).
@@ -119,7 +119,7 @@ def test_wheel_leans_and_steers_as_the_page_says() -> None:
 def test_hanging_wheel_drops_until_the_spring_is_at_rest() -> None:
     robot = eurdf.load("double_wishbone", geometry=False)
     q = eurdf.forward_kinematics(robot, {"motor_rack": 0.0})
-    assert robot.coordinates(q)["spring_strut"] == pytest.approx((0.075,))
+    assert robot.joint_positions(q)["spring_strut"] == pytest.approx((0.075,))
     assert np.abs(eurdf.residual(robot, q)).max() < 1e-12
 
 
@@ -243,7 +243,7 @@ def test_pads_move_as_in_the_source(tmp_path: Path) -> None:
     half_turn = pin.SE3(pin.utils.rotate("z", np.pi), np.zeros(3))  # the drawing sees the base from the other side
     for name in ("assembled", "closed", "enveloping"):
         q = ours.configurations[name]
-        values = {joint: angle for joint, angle in ours.coordinates(q).items() if joint != "motor"}
+        values = {joint: angle for joint, angle in ours.joint_positions(q).items() if joint != "motor"}
         there = source.configuration(values)
         assert np.abs(eurdf.residual(source, there)).max() < 1e-9
         pin.framesForwardKinematics(source.model, source.data, there)
@@ -265,7 +265,7 @@ def test_motors_turn_joints_by_the_published_ratios() -> None:
         motors = {name: random.uniform(-0.5, 0.5) for name in robot.actuation.joints}
         motors |= {f"{side}_knee_act": random.uniform(-1.9, -0.1) for side in ("left", "right")}
         q = eurdf.forward_kinematics(robot, motors)
-        at = {name: values[0] for name, values in robot.coordinates(q).items()}
+        at = {name: values[0] for name, values in robot.joint_positions(q).items()}
         # Ratios of config.json and toddlerbot.xml of hshi74/toddlerbot 62cee1b.
         one, two = motors["waist_act_1"], motors["waist_act_2"]
         expected = {
@@ -313,7 +313,7 @@ def test_waist_has_the_lengths_of_the_published_parts(g1: eurdf.Robot) -> None:
 
 
 def test_motors_reach_the_ends_of_pitch_and_roll(g1: eurdf.Robot) -> None:
-    waist = eurdf.prepare_transmission(g1, WAIST)
+    waist = eurdf.transmissions.prepare_transmission(g1, WAIST)
     stops = [g1.model.upperPositionLimit[g1.slots[f"{side}_waist_joint"].idx_q] for side in ("left", "right")]
     for pose in ((0.52, 0.0), (-0.52, 0.0), (0.0, 0.52), (0.0, -0.52)):
         assert (np.abs(waist.at_joints(pose).positions) < stops).all(), pose
@@ -323,7 +323,7 @@ def test_motors_reach_the_ends_of_pitch_and_roll(g1: eurdf.Robot) -> None:
 def test_serial_twin_has_the_poses_of_the_robot(g1: eurdf.Robot) -> None:
     twin = g1
     for joints in (WAIST, *ANKLES):
-        twin = eurdf.serial_twin(twin, joints, limits="fitted", grid=5).robot
+        twin = eurdf.transmissions.serial_twin(twin, joints, limits="fitted", grid=5).robot
     assert twin.constraints == ()
     assert len(twin.actuation.joints) == twin.model.nv - 6 == 29
     random = np.random.default_rng(5)

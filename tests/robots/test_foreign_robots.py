@@ -21,7 +21,7 @@ if not ROBOTS:
 CONVERTED = ("usd", "drake")
 
 
-def exported(name: str, to: str) -> eurdf.Export:
+def exported(name: str, to: str) -> eurdf.convert.Export:
     if to in CONVERTED:
         return eurdf.export(eurdf.load(ROBOTS[name], geometry=False), to)
     return eurdf.export(ROBOTS[name], to, package_dirs=PACKAGE_DIRS)
@@ -32,7 +32,7 @@ def exported(name: str, to: str) -> eurdf.Export:
 def test_start_is_closed_and_within_limits(name: str, to: str) -> None:
     try:
         found = exported(name, to).verify(seconds=0.0)
-    except eurdf.MissingExtra as missing:
+    except eurdf.errors.MissingExtra as missing:
         pytest.skip(str(missing))
     assert found.findings == ()
     assert [each for each in found.openings if max(each.position, each.angle) > 1e-8] == []

@@ -112,6 +112,6 @@ def _loaded(place: Place, uris: list[str]) -> dict[str, bytes]:
 def _imported(file: Path, format_: str) -> dict[str, bytes]:
     try:
         found = eurdf.import_robot(file, format=format_)
-    except eurdf.CannotImport as reason:
+    except eurdf.errors.CannotImport as reason:
         return {f"{file.name}: refused": str(reason).encode()}
     return {f"{format_}/{path}": content for path, content in found.files.items()}

@@ -10,6 +10,7 @@ import copy
 import inspect
 import multiprocessing
 import pickle
+import re
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
@@ -20,7 +21,8 @@ import numpy as np
 import pytest
 
 import eurdf
-from eurdf.exceptions import EurdfError, Portable
+from eurdf.errors import EurdfError, Portable
+from support.public import own_names, public_functions, public_names
 
 #: Name; root; joints of the serial side; actuator.
 ROBOTS = [
@@ -50,7 +52,7 @@ class Case:
         q = robot.configurations["assembled"]
         v = eurdf.project_velocity(robot, q, np.full(robot.model.nv, 0.1))
         u = np.full(len(robot.actuation.idx_v), 0.1)
-        coordinates = robot.coordinates(q)
+        coordinates = robot.joint_positions(q)
         frame = robot.mechanism.bodies[-1].name
         self.arguments: dict[str, Any] = {
             "robot": robot,
@@ -77,7 +79,7 @@ class Case:
             "coordinates": coordinates,
         }
         self.arguments["q_actuated"], self.arguments["q_free"] = eurdf.split_configuration(robot, q)
-        self.arguments["v_actuated"], self.arguments["v_free"] = eurdf.split_velocity(robot, v)
+        self.arguments["v_actuated"], self.arguments["v_free"] = eurdf.kinematics.split_velocity(robot, v)
         written = eurdf.export(robot, "mjcf").coordinates
         self.arguments |= {"files": coordinates, "configuration": written.to_q(q), "velocity": written.to_v(q, v)}
         motors = {name: float(q[robot.slots[name].idx_q]) for name in robot.actuation.joints[:1]}
@@ -87,11 +89,12 @@ class Case:
             "inverse_dynamics": {"weights": np.full(len(u), 2.0)},
             "actuator_values": {"joints": dict.fromkeys(joints, 0.0)},
             "joint_values": {"motors": motors},
+            "configuration": {"positions": coordinates},
             "import_robot": {"path": folder / "robot.sdf"},
         }
         if joints:
             at = np.array([coordinates[name][0] for name in joints])
-            of_motors = eurdf.prepare_transmission(robot, joints, q).at_joints(at).positions
+            of_motors = eurdf.transmissions.prepare_transmission(robot, joints, q).at_joints(at).positions
             self.arguments |= {"positions": at, "x": np.zeros(len(joints))}
             self.arguments |= dict.fromkeys(("v_J", "tau_J"), np.zeros(len(joints)))
             self.arguments |= dict.fromkeys(("v_m", "tau_m"), np.zeros(len(of_motors)))
@@ -114,11 +117,11 @@ class Case:
 
     def results(self) -> dict[str, Any]:
         """What each public function returns."""
-        functions = [(name, getattr(eurdf, name)) for name in eurdf.__all__ if name not in WITHOUT_DATA]
-        found = {name: self.call(each, name) for name, each in functions if inspect.isfunction(each)}
-        for name, function in inspect.getmembers(eurdf.batch, inspect.isfunction):
-            found[f"batch.{name}"] = self.call(function, name, self.batch)
-        return found
+        functions = {name: each for name, each in public_functions().items() if name not in WITHOUT_DATA}
+        return {
+            name: self.call(each, each.__name__, self.batch if name.startswith("batch.") else {})
+            for name, each in functions.items()
+        }
 
 
 def parts(value: Any, path: str, case: Case, seen: dict[int, Any] | None = None) -> Iterator[tuple[str, Any]]:
@@ -203,6 +206,48 @@ def test_results_belong_to_the_caller(robot: tuple[str, Any, tuple[str, ...], st
     assert_equal(before, numbers(after, case))
 
 
+def objects(value: Any, seen: dict[int, Any]) -> Iterator[Any]:
+    """The objects of the package in a result."""
+    if id(value) in seen or isinstance(value, np.ndarray | str):
+        return
+    seen[id(value)] = value
+    if isinstance(value, eurdf.Robot):
+        yield value
+        return
+    if isinstance(value, Mapping | tuple | list) and type(value).__module__ == "builtins":
+        inner: Any = value.values() if isinstance(value, Mapping) else value
+    else:
+        yield value
+        inner = getattr(value, "__dict__", {}).values()
+        if hasattr(value, "__dataclass_fields__"):
+            inner = [getattr(value, name) for name in value.__dataclass_fields__]
+        elif isinstance(value, tuple):
+            inner = value
+    for each in inner if type(value).__module__.startswith(("eurdf", "builtins")) else ():
+        yield from objects(each, seen)
+
+
+def test_results_print_in_few_lines_with_units(tmp_path: Path) -> None:
+    kinds = {kind for kind in public_names().values() if inspect.isclass(kind) and not issubclass(kind, BaseException)}
+    seen: set[type] = {eurdf.viewing.Viewer, eurdf.viewing.ShownRobot}  # they need a server
+    for number, robot in enumerate(ROBOTS):
+        case = Case(*robot, tmp_path / str(number))
+        results = {**case.results(), "robot": case.arguments["robot"], "diagnostics": OF_EXCEPTIONS["diagnostics"]}
+        if joints := case.arguments["joints"]:
+            several = case.arguments["robot"], joints, np.tile(case.arguments["q"], (2, 1))
+            results |= {"transmissions": eurdf.transmission(*several), "boundary": results["workspace"].boundary}
+            results["common"] = eurdf.transmissions.serial_limits(*several)
+        for each in objects(results, {}):
+            seen.add(type(each))
+            if type(each) in kinds:
+                text = repr(each)
+                assert text.startswith("<"), text
+                assert text.count("\n") < 3, text
+                assert len(text) < 400, text
+                assert not re.search(r"array\(| object at 0x", text), text
+    assert kinds - seen == set()
+
+
 @pytest.mark.parametrize("robot", ROBOTS, ids=[name for name, *_ in ROBOTS])
 def test_results_survive_pickle_and_copy(robot: tuple[str, Any, tuple[str, ...], str], tmp_path: Path) -> None:
     case = Case(*robot, tmp_path)
@@ -249,7 +294,7 @@ OF_EXCEPTIONS: dict[str, Any] = {
     "joint": "knee",
     "joints": ("knee", "hip"),
     "names": ("knee", "hip"),
-    "openings": (eurdf.Opening("rod", 0.1, 0.2),),
+    "openings": (eurdf.results.Opening("rod", 0.1, 0.2),),
     "tolerance": 1e-9,
     "q": np.zeros(3),
     "given": np.zeros(2),
@@ -303,13 +348,9 @@ def test_exception_survives_pickle_and_copy(kind: type[Exception]) -> None:
 
 
 def test_every_public_exception_is_portable() -> None:
-    public = [getattr(eurdf, name) for name in eurdf.__all__]
-    assert [kind for kind in public if isinstance(kind, type) and issubclass(kind, BaseException)]
-    assert not [
-        kind
-        for kind in public
-        if isinstance(kind, type) and issubclass(kind, BaseException) and not issubclass(kind, Portable)
-    ]
+    kinds = {name: kind for name, kind in vars(eurdf.errors).items() if inspect.isclass(kind)}
+    own = {name for name, kind in kinds.items() if kind.__module__ == "eurdf.errors"}
+    assert own - {"CannotRun"} == own_names(eurdf.errors).keys()
 
 
 def velocities(robot: str | eurdf.Robot) -> int:
@@ -321,7 +362,7 @@ def test_robots_and_exceptions_pass_between_processes(tmp_path: Path) -> None:
     broken.write_text("<robot name='r'/>")
     with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
         assert pool.submit(velocities, eurdf.load("four_bar", geometry=False)).result(60) == 3
-        for path, error in (("no_such_robot", eurdf.RobotNotFound), (str(broken), eurdf.InvalidRobot)):
+        for path, error in (("no_such_robot", eurdf.errors.RobotNotFound), (str(broken), eurdf.InvalidRobot)):
             with pytest.raises(error) as here:
                 velocities(path)
             with pytest.raises(error) as there:

@@ -67,8 +67,8 @@ def test_programs_reach_what_python_reaches(language: str, tmp_path: Path, monke
     assert lines
     for line in lines:
         pitch, roll, *motors = map(float, re.findall(r"-?\d+\.\d+", line))
-        seen = eurdf.joint_values(robot, dict(zip(("motor_a", "motor_b"), encoders, strict=True))).values
+        seen = eurdf.transmissions.joint_values(robot, dict(zip(("motor_a", "motor_b"), encoders, strict=True))).values
         assert (pitch, roll) == pytest.approx([seen[name] for name in joints], abs=1e-4)
-        asked = eurdf.actuator_values(robot, {"free_pitch": -0.3, "free_roll": 0.05}).values
+        asked = eurdf.transmissions.actuator_values(robot, {"free_pitch": -0.3, "free_roll": 0.05}).values
         assert motors == pytest.approx(list(asked.values()), abs=1e-4)
         encoders = motors

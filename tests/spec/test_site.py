@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 from functools import cache
 from pathlib import Path
@@ -17,6 +18,7 @@ from spec.site.citation import case_citations
 from spec.site.clause import ROOT, SPEC, read_chapters, read_clauses
 from spec.site.pages import address
 from support.browser import browser
+from support.public import MODULES, own_names
 from support.site import BUILDS_SITE, build_site
 
 #: The robots that get a page here; each takes time.
@@ -138,22 +140,23 @@ def test_schemas_and_registry_are_published(site: Path) -> None:
 
 def test_every_public_name_is_documented_once(site: Path) -> None:
     pages = {page.stem: _anchors(site, page.stem) for page in site.glob("api_*.html")}
-    batch = [
-        name for name, value in vars(eurdf.batch).items() if not name.startswith("_") and value.__module__ != "eurdf"
-    ]
-    expected = [f"eurdf.{name}" for name in eurdf.__all__ if name not in ("batch", "__version__")]
-    expected += [f"eurdf.batch.{name}" for name in batch if name != "annotations"]
-    assert len(expected) > 100
-    assert [name for name in expected if sum(anchors.count(name) for anchors in pages.values()) != 1] == []
+    expected = [f"eurdf.{name}" for name in own_names(eurdf)]
+    for module in MODULES:
+        names = own_names(getattr(eurdf, module)).keys() - own_names(eurdf).keys() - {"Portable"}
+        if module == "batch":
+            names = own_names(eurdf.batch)
+        expected += [f"eurdf.{module}.{name}" for name in names]
+    shown = [name for anchors in pages.values() for name in anchors if re.fullmatch(r"eurdf(\.[a-z]\w*)?\.\w+", name)]
+    assert sorted(shown) == sorted(expected)
 
 
 def test_docstring_has_links_shapes_and_errors(site: Path) -> None:
     page = (site / "api_closing.html").read_text(encoding="utf-8")
     assert 'href="closures.html#EU-CLO-008"' in page
     assert 'href="diagnostics/urdf-no-range.html"' in page
-    assert 'id="eurdf.Analysis.mobility"' in page
+    assert 'id="eurdf.results.Analysis.mobility"' in page
     text = _text(site / "api_closing.html")
-    assert "eurdf.assemble(robot: Robot, q0: Vector | None = None, hold: str | Iterable[str] = ()" in text
+    assert "eurdf.assemble(robot: Robot | RobotSource, q0: Named | None = None, *, hold: str" in text
     assert "q0: Where to start (nq,)" in text
     assert "ValueError: q0 is not a configuration" in text
     assert "B<sub>J</sub> = B A⁺" in (site / "api_transmissions.html").read_text(encoding="utf-8")

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.mechanism.constraint import Closure

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 
 import eurdf
-import pinocchio as pin
 from eurdf.pinocchio.configuration import configuration_vector
 from support.plain_urdf import inertial, joint_element, link_element, robot
 

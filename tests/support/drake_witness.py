@@ -19,7 +19,7 @@ from eurdf.pinocchio.robot import Robot
 class InDrake(Plant):
     """An exported robot in Drake."""
 
-    def __init__(self, robot: Robot, export: eurdf.Export, kind: str = "urdf", time_step: float = 1e-3) -> None:
+    def __init__(self, robot: Robot, export: eurdf.convert.Export, kind: str = "urdf", time_step: float = 1e-3) -> None:
         super().__init__(export.main.decode(), kind, time_step)
         self.robot, self.coordinates = robot, export.coordinates
 
@@ -48,7 +48,7 @@ class InDrake(Plant):
 class TreeInDrake(SdfTree):
     """The tree of a robot exported to SDFormat, in Drake."""
 
-    def __init__(self, robot: Robot, export: eurdf.Export) -> None:
+    def __init__(self, robot: Robot, export: eurdf.convert.Export) -> None:
         with tempfile.TemporaryDirectory() as folder:
             super().__init__(Exported(export.write(folder)[0], robot, export.coordinates))
         self.names = list(export.coordinates.names)  # Drake's vectors are in another order, which `at` knows

@@ -7,9 +7,9 @@ from typing import Any
 
 import mujoco
 import numpy as np
+import pinocchio as pin
 
 import eurdf
-import pinocchio as pin
 from eurdf.convert.coordinates import Coordinates
 from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.joint import Joint, JointProperties
@@ -59,7 +59,7 @@ def random_robot(seed: int, root: Root = "fixed", **options: Any) -> tuple[Robot
     mechanism = robot.mechanism
     joints = tuple(replace(joint, properties=some_properties(joint, random)) for joint in mechanism.joints)
     bodies = tuple(replace(body, inertia=real_inertia(random)) for body in mechanism.bodies)
-    coordinates = robot.coordinates(q)
+    coordinates = robot.joint_positions(q)
     mechanism = replace(
         mechanism, version="2.1", joints=joints, bodies=bodies, configurations={"assembled": coordinates}
     )
@@ -110,7 +110,7 @@ def near(robot: Robot, q: Any, seed: int = 0) -> tuple[Any, Any]:
     )
 
 
-def witness(robot: Robot, export: eurdf.Export) -> Any:
+def witness(robot: Robot, export: eurdf.convert.Export) -> Any:
     """An exported robot in the program that reads it, which has `names`, `at`, `pose`, `inertia_matrix` and `bias`."""
     if export.format == "mjcf":
         return InMuJoCo(robot, export)
@@ -126,7 +126,7 @@ class InPinocchio:
 
     bias = None
 
-    def __init__(self, robot: Robot, export: eurdf.Export) -> None:
+    def __init__(self, robot: Robot, export: eurdf.convert.Export) -> None:
         self.coordinates = export.coordinates
         self.model = pinocchios_own(export.main.decode(), robot.mechanism.root)
         self.data = self.model.createData()
@@ -157,7 +157,7 @@ class InPinocchio:
 class InMuJoCo:
     """An exported robot in MuJoCo."""
 
-    def __init__(self, robot: Robot, export: eurdf.Export) -> None:
+    def __init__(self, robot: Robot, export: eurdf.convert.Export) -> None:
         self.robot, self.coordinates = robot, export.coordinates
         meshes = {path.removeprefix("meshes/"): content for path, content in export.files.items()}
         self.model = mujoco.MjModel.from_xml_string(export.main.decode(), meshes)

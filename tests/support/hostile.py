@@ -303,7 +303,7 @@ def face(name: str) -> dict[str, object]:
         path = HOSTILE[name].write(Path(folder))
         try:
             report = eurdf.check(path)
-        except eurdf.RobotNotFound as error:
+        except eurdf.errors.RobotNotFound as error:
             return {"codes": [type(error).__name__], "loaded": "", "told": len(str(error))}
         told = "".join(text for line in report_lines(report) for text, _ in line) + json.dumps(
             reports_to_json([report])

@@ -7,9 +7,9 @@ from typing import Any
 
 import mujoco
 import numpy as np
+import pinocchio as pin
 
 import eurdf
-import pinocchio as pin
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand
@@ -107,7 +107,7 @@ class Beside:
         data = self.data
         rows = data.efc_id[: data.ne]
         for opening, constraint in zip(
-            eurdf.closure_openings(self.robot, q), self.robot.mechanism.constraints, strict=True
+            eurdf.kinematics.closure_openings(self.robot, q), self.robot.mechanism.constraints, strict=True
         ):
             mine = data.efc_pos[: data.ne][rows == self.model.equality(constraint.name).id]
             assert len(mine), constraint.name

@@ -28,7 +28,7 @@ class InUsd(Stage):
         folder: Where to write it.
     """
 
-    def __init__(self, export: eurdf.Export, folder: Path) -> None:
+    def __init__(self, export: eurdf.convert.Export, folder: Path) -> None:
         self.path = export.write(folder)[0]
         super().__init__(self.path)
 

@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-
 import pinocchio as pin
+
 from eurdf.closures import REGISTRY
 from eurdf.kinematics.residual import closure_openings
 from eurdf.mechanism.body import Anchor

@@ -7,9 +7,9 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 
 import eurdf
-import pinocchio as pin
 from eurdf.closures import REGISTRY
 from eurdf.closures.distance import DistanceClosure
 from eurdf.closures.frame import FrameClosure

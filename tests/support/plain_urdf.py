@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
+import pinocchio as pin
 from hypothesis import strategies as st
 
-import pinocchio as pin
 from eurdf.diagnostics import Diagnostics
 from eurdf.format.urdf.read import read_urdf
 from eurdf.linking.link import link

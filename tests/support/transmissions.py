@@ -29,7 +29,7 @@ def posed(name: str, seed: int = 0) -> tuple[Any, Any]:
     for joint in found.actuation.joints:
         properties = found.slots[joint].joint.properties
         half = 0.15 * (properties.upper[0] - properties.lower[0])
-        motors[joint] = found.coordinates(found.configurations["assembled"])[joint][0] + random.uniform(-half, half)
+        motors[joint] = found.joint_positions(found.configurations["assembled"])[joint][0] + random.uniform(-half, half)
     return found, eurdf.forward_kinematics(found, motors)
 
 

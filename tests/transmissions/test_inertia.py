@@ -6,10 +6,10 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.pinocchio.robot import build_robot
 from support.exported import InMuJoCo
 from support.transmissions import DRIVEN, posed, slider_crank
@@ -33,7 +33,7 @@ def test_joint_torque_accelerates_the_inertia(name: str) -> None:
     armature = {motor: 0.01 * (index + 1) for index, motor in enumerate(found.actuation.joints)}
     armature[DRIVEN[name][0]] = 0.02  # of a passive joint too
     robot = with_armature(found, armature)
-    inertia = eurdf.reflected_inertia(robot, DRIVEN[name], q)
+    inertia = eurdf.transmissions.reflected_inertia(robot, DRIVEN[name], q)
     others = [motor for motor in robot.actuation.joints if motor not in inertia.motors]
     alone = eurdf.lock(robot, others, q)
     at, n = q[alone.idx_q], len(inertia.joints)
@@ -55,7 +55,7 @@ def test_joint_torque_accelerates_the_inertia(name: str) -> None:
     np.testing.assert_allclose(change[free], 0.0, atol=1e-6)
 
     given = dict.fromkeys(inertia.motors, 0.1)
-    other = eurdf.reflected_inertia(found, DRIVEN[name], q, armature=given)
+    other = eurdf.transmissions.reflected_inertia(found, DRIVEN[name], q, armature=given)
     G = eurdf.transmission(robot, DRIVEN[name], q).G
     np.testing.assert_allclose(other.rotors, 0.1 * G.T @ G, rtol=1e-9, atol=1e-15)
     np.testing.assert_allclose(other.linkage, inertia.linkage, rtol=1e-9, atol=1e-12)
@@ -65,9 +65,9 @@ def test_joint_torque_accelerates_the_inertia(name: str) -> None:
 @pytest.mark.parametrize("name", ["unitree_g1_ankle", "tesla_optimus_ankle"])
 def test_linkage_has_the_energy_of_its_bodies(name: str) -> None:
     robot, q = posed(name)
-    inertia = eurdf.reflected_inertia(robot, DRIVEN[name], q)
+    inertia = eurdf.transmissions.reflected_inertia(robot, DRIVEN[name], q)
     v_J = np.array([0.7, -0.4])
-    v = eurdf.dq_dq_actuated(robot, q) @ eurdf.transmission(robot, DRIVEN[name], q).motor_velocity(v_J)
+    v = eurdf.kinematics.dq_dq_actuated(robot, q) @ eurdf.transmission(robot, DRIVEN[name], q).motor_velocity(v_J)
     model, data = robot.model, robot.model.createData()
     pin.forwardKinematics(model, data, q, v)
     energy = {True: 0.0, False: 0.0}
@@ -85,7 +85,7 @@ def test_linkage_has_the_energy_of_its_bodies(name: str) -> None:
 
 def test_bodies_of_a_linkage_are_those_no_serial_robot_has() -> None:
     robot = eurdf.load("kangaroo_leg", geometry=False)
-    bodies = eurdf.reflected_inertia(robot, DRIVEN["kangaroo_leg"]).bodies
+    bodies = eurdf.transmissions.reflected_inertia(robot, DRIVEN["kangaroo_leg"]).bodies
     assert {"nut", "triangle", "knee_rod", "ankle_inner_crank", "ankle_outer_piston"} <= set(bodies)
     assert not {"hip", "thigh", "shin", "ankle_cross", "foot"} & set(bodies)
 
@@ -93,9 +93,11 @@ def test_bodies_of_a_linkage_are_those_no_serial_robot_has() -> None:
 def test_many_configurations_equal_single_ones() -> None:
     robot, joints = eurdf.load("unitree_g1_ankle", geometry=False), DRIVEN["unitree_g1_ankle"]
     qs = np.array([posed("unitree_g1_ankle", seed)[1] for seed in range(2)])
-    many = eurdf.reflected_inertia(robot, joints, qs)
+    many = eurdf.transmissions.reflected_inertia(robot, joints, qs)
     for index, q in enumerate(qs):
-        np.testing.assert_allclose(many.total[index], eurdf.reflected_inertia(robot, joints, q).total, rtol=1e-12)
+        np.testing.assert_allclose(
+            many.total[index], eurdf.transmissions.reflected_inertia(robot, joints, q).total, rtol=1e-12
+        )
     assert many.equivalent_armature.shape == (2, 2, 2)
 
 
@@ -103,7 +105,7 @@ def test_mujoco_finds_the_same_inertia() -> None:
     """Its constraints are soft, so that it is extrapolated to hard ones, in steps of their regularization (1 - d)/d."""
     found, q = posed("unitree_g1_ankle")
     robot, joints = with_armature(found, {"motor_a": ROTORS, "motor_b": ROTORS}), DRIVEN["unitree_g1_ankle"]
-    expected = eurdf.reflected_inertia(robot, joints, q)
+    expected = eurdf.transmissions.reflected_inertia(robot, joints, q)
     assert (np.diagonal(expected.rotors) > np.diagonal(expected.serial)).all()
     there = InMuJoCo(robot, eurdf.export(robot, "mjcf"))
     there.model.opt.gravity[:] = 0.0
@@ -133,9 +135,9 @@ def test_wrong_inertias_are_refused() -> None:
         ({"motor_a": np.inf}, "not finite"),
     ):
         with pytest.raises(ValueError, match=message):
-            eurdf.reflected_inertia(robot, joints, armature=armature)
-    with pytest.raises(eurdf.NoTransmission, match="add 'free_roll'"):
-        eurdf.reflected_inertia(robot, "free_pitch")
+            eurdf.transmissions.reflected_inertia(robot, joints, armature=armature)
+    with pytest.raises(eurdf.errors.NoTransmission, match="add 'free_roll'"):
+        eurdf.transmissions.reflected_inertia(robot, "free_pitch")
     stretched, q = slider_crank(0.05, 0.13, 0.0)
-    with pytest.raises(eurdf.NoTransmission, match="singular"):
-        eurdf.reflected_inertia(stretched, "slide", q)
+    with pytest.raises(eurdf.errors.NoTransmission, match="singular"):
+        eurdf.transmissions.reflected_inertia(stretched, "slide", q)

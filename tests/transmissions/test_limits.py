@@ -26,7 +26,7 @@ def motor_ranges(robot: Any, motors: tuple[str, ...]) -> tuple[Any, Any]:
 def test_polytopes_are_what_the_motors_can_do(name: str) -> None:
     robot, q = posed(name)
     at = eurdf.transmission(robot, DRIVEN[name], q)
-    limits = eurdf.serial_limits(robot, DRIVEN[name], q)
+    limits = eurdf.transmissions.serial_limits(robot, DRIVEN[name], q)
     effort, fastest = motor_ranges(robot, at.motors)
     random = np.random.default_rng(0)
     tau_m = random.uniform(-1.0, 1.0, (10_000, len(effort))) * effort
@@ -97,8 +97,8 @@ def test_common_box_holds_at_every_configuration() -> None:
     name = "unitree_g1_ankle"
     qs = np.array([posed(name, seed)[1] for seed in range(6)])
     robot, joints = posed(name)[0], DRIVEN[name]
-    common = eurdf.serial_limits(robot, joints, qs)
-    one = [eurdf.serial_limits(robot, joints, q) for q in qs]
+    common = eurdf.transmissions.serial_limits(robot, joints, qs)
+    one = [eurdf.transmissions.serial_limits(robot, joints, q) for q in qs]
     for kind in ("torque", "velocity"):
         box, bounded_by = getattr(common, f"{kind}_box"), getattr(common, f"{kind}_bounded_by")
         corners = box * np.array([[1.0, 1.0], [1.0, -1.0]])
@@ -108,7 +108,7 @@ def test_common_box_holds_at_every_configuration() -> None:
             assert polytope.contains(1.0001 * corners).all() == (index not in bounded_by)
             np.testing.assert_allclose(getattr(common, f"{kind}_axes")[index], getattr(each, f"{kind}_axes"), rtol=1e-9)
             assert box.prod() <= getattr(each, f"{kind}_box").prod() * (1.0 + 1e-9)
-    along = eurdf.serial_limits(robot, joints, qs, torque_ratio=[2.0, 1.0])
+    along = eurdf.transmissions.serial_limits(robot, joints, qs, torque_ratio=[2.0, 1.0])
     assert along.torque_box[0] == pytest.approx(2.0 * along.torque_box[1])
     assert along.torque_box.prod() < common.torque_box.prod()
     np.testing.assert_array_equal(along.velocity_box, common.velocity_box)
@@ -119,7 +119,7 @@ def test_control_range_bounds_torques() -> None:
     motors = MappingProxyType({"motor_a": Motor("a", (-10.0, 4.0))})
     narrow = build_robot(replace(robot.mechanism, version="2.1", motors=motors), geometry=False)
     at = eurdf.transmission(narrow, DRIVEN["unitree_g1_ankle"], q)
-    limits = eurdf.serial_limits(narrow, DRIVEN["unitree_g1_ankle"], q)
+    limits = eurdf.transmissions.serial_limits(narrow, DRIVEN["unitree_g1_ankle"], q)
     corners = np.array([at.joint_torque([a, b]) for a in (-10.0, 4.0) for b in (-25.0, 25.0)])
     np.testing.assert_allclose(
         limits.torque.vertices[np.lexsort(limits.torque.vertices.T)], corners[np.lexsort(corners.T)], rtol=1e-9
@@ -150,7 +150,7 @@ def test_wrong_limits_are_refused() -> None:
         ({"velocity": (0.0,)}, "'motor_a' has the velocity limit 0; state a positive one: velocity in the <limit>"),
     ):
         with pytest.raises(ValueError, match=message):
-            eurdf.serial_limits(with_limits(robot, "motor_a", **limits), joints)
+            eurdf.transmissions.serial_limits(with_limits(robot, "motor_a", **limits), joints)
     for control, shown in (
         ((0.0, 4.0), "0 to 4"),
         ((-4.0, -0.0), "-4 to 0"),
@@ -162,25 +162,25 @@ def test_wrong_limits_are_refused() -> None:
         with pytest.raises(
             ValueError, match=f"'motor_a' has the control range {shown}; state one from below to above zero"
         ):
-            eurdf.serial_limits(pulling, joints)
+            eurdf.transmissions.serial_limits(pulling, joints)
     with pytest.raises(ValueError, match=r"torque_ratio is .* expected positive numbers"):
-        eurdf.serial_limits(robot, joints, torque_ratio=[1.0, -1.0])
+        eurdf.transmissions.serial_limits(robot, joints, torque_ratio=[1.0, -1.0])
     with pytest.raises(ValueError, match="no rows"):
-        eurdf.serial_limits(robot, joints, np.empty((0, robot.model.nq)))
+        eurdf.transmissions.serial_limits(robot, joints, np.empty((0, robot.model.nq)))
     stretched, q = slider_crank(0.05, 0.13, 0.0)
-    with pytest.raises(eurdf.NoTransmission, match="G at q is not determined: the pose is singular"):
-        eurdf.serial_limits(stretched, "slide", q)
-    with pytest.raises(eurdf.NoTransmission, match=r"G at q\[1\] is not determined"):
-        eurdf.serial_limits(stretched, "slide", np.array([slider_crank(0.05, 0.13, 0.8)[1], q]))
-    with pytest.raises(eurdf.NoTransmission, match="leave out some"):
-        eurdf.serial_limits(robot, [*joints, "universal_rod_a"])
+    with pytest.raises(eurdf.errors.NoTransmission, match="G at q is not determined: the pose is singular"):
+        eurdf.transmissions.serial_limits(stretched, "slide", q)
+    with pytest.raises(eurdf.errors.NoTransmission, match=r"G at q\[1\] is not determined"):
+        eurdf.transmissions.serial_limits(stretched, "slide", np.array([slider_crank(0.05, 0.13, 0.8)[1], q]))
+    with pytest.raises(eurdf.errors.NoTransmission, match="leave out some"):
+        eurdf.transmissions.serial_limits(robot, [*joints, "universal_rod_a"])
 
 
 def test_limits_in_a_workspace_hold_between_its_points() -> None:
     crank, rod = 0.05, 0.13
     robot, q = slider_crank(crank, rod, 0.8)
-    space = eurdf.workspace(robot, "slide", q, grid=4, ranges={"slide": (0.1, 0.17)})
-    limits = eurdf.serial_limits(robot, "slide", space)
+    space = eurdf.transmissions.workspace(robot, "slide", q, grid=4, ranges={"slide": (0.1, 0.17)})
+    limits = eurdf.transmissions.serial_limits(robot, "slide", space)
 
     def slope(angle: Any) -> Any:  # |dx/dθ|
         return crank * np.sin(angle) + crank**2 * np.sin(angle) * np.cos(angle) / np.sqrt(
@@ -193,18 +193,18 @@ def test_limits_in_a_workspace_hold_between_its_points() -> None:
     force, velocity = 10.0 / slopes.max(), 3.0 * slopes.min()  # limits of the motor: 10 N·m, 3 rad/s
     assert limits.torque_box[0] == pytest.approx(force, rel=1e-3)
     assert limits.velocity_box[0] == pytest.approx(velocity, rel=1e-6)
-    assert eurdf.serial_limits(robot, "slide", space.q).torque_box[0] > 1.005 * force
+    assert eurdf.transmissions.serial_limits(robot, "slide", space.q).torque_box[0] > 1.005 * force
     assert limits.torque_margin is not None
     assert 0.0 <= limits.torque_margin < 1e-2
     with pytest.raises(ValueError, match="the workspace is that of another robot, or of other joints: slide"):
-        eurdf.serial_limits(robot, "pin", space)
+        eurdf.transmissions.serial_limits(robot, "pin", space)
 
 
 @pytest.mark.slow
 def test_limits_in_the_workspace_of_an_ankle_hold_at_random_poses() -> None:
     robot, joints = eurdf.load("unitree_g1_ankle", geometry=False), DRIVEN["unitree_g1_ankle"]
-    space = eurdf.workspace(robot, joints, grid=9)
-    limits = eurdf.serial_limits(robot, joints, space)
+    space = eurdf.transmissions.workspace(robot, joints, grid=9)
+    limits = eurdf.transmissions.serial_limits(robot, joints, space)
     random = np.random.default_rng(0)
     start = random.integers(0, len(space.q), 400)
     cell = np.array([axis[1] - axis[0] for axis in space.axes])
@@ -212,6 +212,6 @@ def test_limits_in_the_workspace_of_an_ankle_hold_at_random_poses() -> None:
     qs = qs[np.isfinite(qs).all(axis=1)]
     assert len(qs) > 200
     signs = np.array([[1.0, 1.0], [1.0, -1.0]])
-    for each in eurdf.serial_limits(robot, joints, qs).each:
+    for each in eurdf.transmissions.serial_limits(robot, joints, qs).each:
         assert each.torque.contains(signs * limits.torque_box, 1e-6).all()
         assert each.velocity.contains(signs * limits.velocity_box, 1e-6).all()

@@ -22,8 +22,8 @@ def test_limits_of_one_joint_are_those_of_the_polytopes() -> None:
     motors = MappingProxyType({"motor_a": Motor("a", (-10.0, 4.0))})
     robot = build_robot(replace(whole.mechanism, version="2.1", motors=motors), geometry=False)
     found = {each.name: each for each in passive_limits(robot, q)}
-    limits = eurdf.serial_limits(robot, DRIVEN["unitree_g1_ankle"], q)
-    assert isinstance(limits, eurdf.SerialLimits)
+    limits = eurdf.transmissions.serial_limits(robot, DRIVEN["unitree_g1_ankle"], q)
+    assert isinstance(limits, eurdf.transmissions.SerialLimits)
     for index, joint in enumerate(limits.joints):
         assert found[joint].velocity == pytest.approx(limits.velocity.vertices[:, index].max(), rel=1e-9)
         assert found[joint].torque == pytest.approx(limits.torque_axes[index], rel=1e-9)
@@ -48,5 +48,5 @@ def test_limits_of_a_slider_crank_have_a_closed_form() -> None:
     unlimited = next(each for each in passive_limits(with_motor(velocity=(), effort=()), q) if each.name == "slide")
     assert (unlimited.velocity, unlimited.torque) == (np.inf, (-np.inf, np.inf))
     both = build_robot(replace(robot.mechanism, actuators=("motor", "slide")), geometry=False)
-    with pytest.raises(eurdf.NoTransmission, match="only 1 of 2 actuator velocities are independent"):
+    with pytest.raises(eurdf.errors.NoTransmission, match="only 1 of 2 actuator velocities are independent"):
         passive_limits(both, q)

@@ -39,7 +39,7 @@ def test_positions_and_derivatives_agree_with_c_over_the_workspace(
     name: str, lower: tuple[float, float], upper: tuple[float, float], tmp_path: Path
 ) -> None:
     robot = eurdf.load(name, geometry=False)
-    prepared = eurdf.prepare_transmission(robot, ANKLE)
+    prepared = eurdf.transmissions.prepare_transmission(robot, ANKLE)
     compiled = Compiled(prepared, tmp_path)
     index = [robot.slots[motor].idx_q for motor in prepared.motors]
     before = np.zeros(2)
@@ -82,7 +82,7 @@ def loop(*types: str, closure: str, seed: int, slow: bool = True, **options: boo
 def test_every_joint_and_constraint_agrees_with_c(described: Any, tmp_path: Path) -> None:
     types, closure, seed, options = described
     robot = one_loop(types, closure, seed, **options)
-    prepared = eurdf.prepare_transmission(robot, ["j0"])
+    prepared = eurdf.transmissions.prepare_transmission(robot, ["j0"])
     compiled = Compiled(prepared, tmp_path)
     slot = robot.slots["j0"]
     start = np.array(robot.mechanism.configurations["assembled"]["j0"])
@@ -102,9 +102,9 @@ def test_every_joint_and_constraint_agrees_with_c(described: Any, tmp_path: Path
 
 def test_long_motions_follow_the_path() -> None:
     robot = eurdf.load("unitree_g1_ankle", geometry=False)
-    prepared = eurdf.prepare_transmission(robot, ANKLE)
+    prepared = eurdf.transmissions.prepare_transmission(robot, ANKLE)
     far = prepared.at_joints([-0.8, 0.02]).positions
-    near = eurdf.prepare_transmission(robot, ANKLE)
+    near = eurdf.transmissions.prepare_transmission(robot, ANKLE)
     for pitch in np.linspace(0.0, -0.8, 81):
         found = near.at_joints([pitch, 0.02]).positions
     assert far == pytest.approx(found, abs=1e-9)
@@ -114,11 +114,11 @@ def status_in_python(call: Callable[[Any], object], positions: Any) -> int:
     """The status of C that stands for what a call raises."""
     try:
         call(positions)
-    except eurdf.TooFar:
+    except eurdf.errors.TooFar:
         return TOO_FAR
-    except eurdf.NotClosable:
+    except eurdf.errors.NotClosable:
         return NOT_CLOSED
-    except eurdf.NoTransmission:
+    except eurdf.errors.NoTransmission:
         return SINGULAR
     return OK
 
@@ -149,7 +149,7 @@ def test_statuses_in_c_are_errors_in_python(
     name: str, joints: tuple[str, ...], statuses: set[int], tmp_path: Path
 ) -> None:
     robot = eurdf.load(name, geometry=False)
-    prepared = eurdf.prepare_transmission(robot, joints)
+    prepared = eurdf.transmissions.prepare_transmission(robot, joints)
     compiled = Compiled(prepared, tmp_path)
     found = set()
     for side, start, at, c_start, c_at in (
@@ -181,10 +181,10 @@ def test_statuses_in_c_are_errors_in_python(
 @pytest.mark.parametrize(("name", "points"), [("unitree_g1_ankle", 21), ("tesla_optimus_ankle", 9), ("digit_leg", 9)])
 def test_start_reaches_every_pose_of_the_workspace(name: str, points: int, tmp_path: Path) -> None:
     robot = eurdf.load(name, geometry=False)
-    prepared = eurdf.prepare_transmission(robot, DRIVEN[name])
+    prepared = eurdf.transmissions.prepare_transmission(robot, DRIVEN[name])
     compiled = Compiled(prepared, tmp_path)
     motors = [robot.slots[motor].idx_q for motor in prepared.motors]
-    space = eurdf.workspace(robot, DRIVEN[name], grid=points)
+    space = eurdf.transmissions.workspace(robot, DRIVEN[name], grid=points)
     assert len(space.q) > 0.8 * points**2
     for q, positions in zip(space.q, space.positions, strict=True):
         assert compiled.start_at_joints(positions) == OK
@@ -203,7 +203,7 @@ def test_redundant_rows_may_contradict_by_rounding(tmp_path: Path) -> None:
     ]
     robot = build_robot(replace(mechanism, joints=tuple(joints)), geometry=False)
     assert eurdf.assemble(robot).reason == "rounding"
-    prepared = eurdf.prepare_transmission(robot, "free_b")
+    prepared = eurdf.transmissions.prepare_transmission(robot, "free_b")
     compiled = Compiled(prepared, tmp_path)
     for angle in (0.1, 1.0, 2.0):
         status, motor, _ = compiled.at_joints(np.array([angle]))
@@ -212,10 +212,10 @@ def test_redundant_rows_may_contradict_by_rounding(tmp_path: Path) -> None:
 
 def test_an_error_keeps_the_pose(tmp_path: Path) -> None:
     robot = eurdf.load("slider_crank", geometry=False)
-    prepared = eurdf.prepare_transmission(robot, ["free_slider"])
+    prepared = eurdf.transmissions.prepare_transmission(robot, ["free_slider"])
     compiled = Compiled(prepared, tmp_path)
     q, pose = prepared.q, compiled.pose.copy()
-    with pytest.raises(eurdf.NotClosable, match="cannot be closed at free_slider 5: closures stay open"):
+    with pytest.raises(eurdf.errors.NotClosable, match="cannot be closed at free_slider 5: closures stay open"):
         prepared.at_joints([5.0])
     with pytest.raises(ValueError, match="not finite"):
         prepared.at_joints([np.nan])
@@ -231,7 +231,7 @@ def test_an_error_keeps_the_pose(tmp_path: Path) -> None:
 
 def test_c_refuses_what_the_loops_do_not_reach(tmp_path: Path) -> None:
     robot = eurdf.load("slider_crank", geometry=False)
-    prepared = eurdf.prepare_transmission(robot, ["free_slider"])
+    prepared = eurdf.transmissions.prepare_transmission(robot, ["free_slider"])
     compiled = Compiled(prepared, tmp_path)
     statuses, slider = [], prepared.at_motors(prepared._motors.read(prepared.q)).positions
     for step in itertools.count():
@@ -241,13 +241,13 @@ def test_c_refuses_what_the_loops_do_not_reach(tmp_path: Path) -> None:
             break
     assert statuses[-1] in (NOT_CLOSED, TOO_FAR, SINGULAR)
     prepared.at_joints(slider + 1e-3 * (step - 1))
-    with pytest.raises(eurdf.NotClosable, match="cannot be closed"):
+    with pytest.raises(eurdf.errors.NotClosable, match="cannot be closed"):
         prepared.at_joints(slider + 1e-3 * (step + 1))
 
 
 def test_turns_of_a_motor_are_counted(tmp_path: Path) -> None:
     robot = eurdf.load("bennett", geometry=False)
-    prepared = eurdf.prepare_transmission(robot, ["free_b"])
+    prepared = eurdf.transmissions.prepare_transmission(robot, ["free_b"])
     compiled = Compiled(prepared, tmp_path)
     start = prepared.at_joints([0.0]).positions
     for angle in np.linspace(0.0, 4.0 * np.pi, 200):
@@ -264,7 +264,7 @@ def test_turns_of_a_motor_are_counted(tmp_path: Path) -> None:
 
 
 def test_one_substep_refuses_long_motions(tmp_path: Path) -> None:
-    prepared = eurdf.prepare_transmission(eurdf.load("unitree_g1_ankle", geometry=False), ANKLE)
+    prepared = eurdf.transmissions.prepare_transmission(eurdf.load("unitree_g1_ankle", geometry=False), ANKLE)
     goal = np.array([-0.3, 0.05])
     assert Compiled(prepared, tmp_path).at_joints(goal)[0] == OK
     compiled = Compiled(prepared, tmp_path, substeps=1)
@@ -292,12 +292,12 @@ def test_one_substep_refuses_long_motions(tmp_path: Path) -> None:
 def test_joints_that_do_not_fit_are_named(name: str, joints: list[str], message: str) -> None:
     robot = eurdf.load(name, geometry=False)
     with pytest.raises(ValueError, match=message):
-        eurdf.prepare_transmission(robot, joints)
+        eurdf.transmissions.prepare_transmission(robot, joints)
 
 
 def test_motors_in_the_chain_are_their_own() -> None:
     robot = eurdf.load("talos_leg", geometry=False)
-    prepared = eurdf.prepare_transmission(robot, ["motor_knee", "free_ankle"])
+    prepared = eurdf.transmissions.prepare_transmission(robot, ["motor_knee", "free_ankle"])
     motors, G = prepared.at_joints([0.4, 0.1])
     assert prepared.motors[0] == "motor_knee"
     assert (motors[0], G[0].tolist()) == (0.4, [1.0, 0.0])
@@ -308,7 +308,7 @@ def test_springs_that_no_motor_controls_are_held(tmp_path: Path) -> None:
     spring = JointProperties(stiffness=(10.0,), rest=(0.0,))
     joints = tuple(replace(joint, properties=spring) if joint.name == "j4" else joint for joint in mechanism.joints)
     robot = build_robot(replace(mechanism, joints=joints), geometry=False)
-    prepared = eurdf.prepare_transmission(robot, "j0")
+    prepared = eurdf.transmissions.prepare_transmission(robot, "j0")
     compiled = Compiled(prepared, tmp_path)
     at = robot.slots["j4"].idx_q
     start, deflection = prepared.at_joints(robot.mechanism.configurations["assembled"]["j0"]), prepared.q[at]

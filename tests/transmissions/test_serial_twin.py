@@ -9,10 +9,10 @@ from pathlib import Path
 import jsonschema
 import mujoco
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.commands.output import output_schemas
 from eurdf.pinocchio.robot import build_robot
 
@@ -26,18 +26,20 @@ def ankle() -> eurdf.Robot:
 
 
 @pytest.fixture(scope="module")
-def twin(ankle: eurdf.Robot) -> eurdf.SerialTwin:
-    return eurdf.serial_twin(ankle, ANKLE, armature=ROTORS, grid=11)
+def twin(ankle: eurdf.Robot) -> eurdf.transmissions.SerialTwin:
+    return eurdf.transmissions.serial_twin(ankle, ANKLE, armature=ROTORS, grid=11)
 
 
-def test_twin_is_serial_and_driven_at_its_joints(twin: eurdf.SerialTwin) -> None:
+def test_twin_is_serial_and_driven_at_its_joints(twin: eurdf.transmissions.SerialTwin) -> None:
     assert twin.robot.constraints == ()
     assert twin.robot.actuation.joints == ANKLE
     assert twin.robot.model.nv == 2
     assert {"crank_a", "crank_b", "rod_a", "rod_b"} < set(twin.bodies)
 
 
-def test_lumped_masses_are_those_of_the_locked_linkage(ankle: eurdf.Robot, twin: eurdf.SerialTwin) -> None:
+def test_lumped_masses_are_those_of_the_locked_linkage(
+    ankle: eurdf.Robot, twin: eurdf.transmissions.SerialTwin
+) -> None:
     # Pinocchio lumps the masses of locked joints on its own.
     others = [name for name in ankle.slots if name not in ANKLE]
     ids = [joint for joint, name in enumerate(ankle.model.names) if name.removesuffix("/1") in others]
@@ -53,16 +55,16 @@ def test_lumped_masses_are_those_of_the_locked_linkage(ankle: eurdf.Robot, twin:
         assert mass == pytest.approx(pin.crba(locked, data, q), abs=1e-12)
 
 
-def test_conservative_numbers_hold_in_the_whole_box(ankle: eurdf.Robot, twin: eurdf.SerialTwin) -> None:
+def test_conservative_numbers_hold_in_the_whole_box(ankle: eurdf.Robot, twin: eurdf.transmissions.SerialTwin) -> None:
     points = twin.workspace.positions
     inside = ((points >= twin.position[:, 0] - 1e-12) & (points <= twin.position[:, 1] + 1e-12)).all(axis=1)
     assert np.count_nonzero(inside) == round(twin.neglected.covered * len(points)) > 20
     for q, position in zip(twin.workspace.q[inside][::5], points[inside][::5], strict=True):
-        limits = eurdf.serial_limits(ankle, ANKLE, q)
+        limits = eurdf.transmissions.serial_limits(ankle, ANKLE, q)
         corners = np.array([[1, 1], [1, -1], [-1, 1], [-1, -1]])
         assert limits.torque.contains(corners * twin.torque).all()
         assert limits.velocity.contains(corners * twin.velocity).all()
-        exact = eurdf.reflected_inertia(ankle, ANKLE, q, armature=ROTORS).total
+        exact = eurdf.transmissions.reflected_inertia(ankle, ANKLE, q, armature=ROTORS).total
         own = eurdf.mass_matrix(twin.robot, position)
         assert (np.diag(own) >= np.diag(exact) - 1e-12).all()
         error = np.linalg.norm(own - exact, 2) / np.linalg.norm(exact, 2)
@@ -70,9 +72,9 @@ def test_conservative_numbers_hold_in_the_whole_box(ankle: eurdf.Robot, twin: eu
         assert np.abs(own - exact)[0, 1] <= twin.neglected.coupling[0, 1] + 1e-12
 
 
-def test_map_is_as_near_as_it_states(ankle: eurdf.Robot, twin: eurdf.SerialTwin) -> None:
+def test_map_is_as_near_as_it_states(ankle: eurdf.Robot, twin: eurdf.transmissions.SerialTwin) -> None:
     for pitch, roll in ((0.0, 0.0), (-0.3, 0.1), (0.2, -0.05)):
-        at = eurdf.prepare_transmission(ankle, ANKLE).at_joints([pitch, roll])
+        at = eurdf.transmissions.prepare_transmission(ankle, ANKLE).at_joints([pitch, roll])
         # Four times what was seen at the points tested.
         assert np.abs(twin.map.motor_positions([pitch, roll]) - at.positions) == pytest.approx(0, abs=4e-3)
         assert np.abs(twin.map.G([pitch, roll]) - at.G) == pytest.approx(0, abs=0.1)
@@ -81,7 +83,9 @@ def test_map_is_as_near_as_it_states(ankle: eurdf.Robot, twin: eurdf.SerialTwin)
         assert twin.map.G([pitch, roll])[:, 0] == pytest.approx((ahead - behind) / (2 * h), abs=1e-7)
 
 
-def test_gravity_error_is_that_of_the_closed_mechanism(ankle: eurdf.Robot, twin: eurdf.SerialTwin) -> None:
+def test_gravity_error_is_that_of_the_closed_mechanism(
+    ankle: eurdf.Robot, twin: eurdf.transmissions.SerialTwin
+) -> None:
     differences = []
     for q, position in zip(twin.workspace.q, twin.workspace.positions, strict=True):
         held = eurdf.inverse_dynamics(ankle, q, np.zeros(8), np.zeros(8)).u
@@ -92,7 +96,7 @@ def test_gravity_error_is_that_of_the_closed_mechanism(ankle: eurdf.Robot, twin:
     assert (twin.neglected.gravity > 1e-3).all()
 
 
-def test_files_are_read_by_simulators(twin: eurdf.SerialTwin, tmp_path: Path) -> None:
+def test_files_are_read_by_simulators(twin: eurdf.transmissions.SerialTwin, tmp_path: Path) -> None:
     twin.write(tmp_path)
     model = mujoco.MjModel.from_xml_path(str(tmp_path / "mjcf" / "robot.xml"))
     assert (model.nq, model.neq, model.nu) == (2, 0, 2)
@@ -108,15 +112,15 @@ def test_files_are_read_by_simulators(twin: eurdf.SerialTwin, tmp_path: Path) ->
 
 
 def test_fitted_numbers_are_means(ankle: eurdf.Robot) -> None:
-    fitted = eurdf.serial_twin(ankle, ANKLE, armature=ROTORS, limits="fitted", grid=5)
-    each = [eurdf.serial_limits(ankle, ANKLE, q).torque_box for q in fitted.workspace.q]
+    fitted = eurdf.transmissions.serial_twin(ankle, ANKLE, armature=ROTORS, limits="fitted", grid=5)
+    each = [eurdf.transmissions.serial_limits(ankle, ANKLE, q).torque_box for q in fitted.workspace.q]
     assert fitted.torque == pytest.approx(np.mean(each, axis=0), rel=1e-9)
     assert fitted.neglected.covered == 1.0
 
 
 def test_motors_without_limits_are_noted() -> None:
     robot = eurdf.load("four_bar", geometry=False)
-    found = eurdf.serial_twin(robot, "free_rocker", grid=5, ranges={"free_rocker": (-0.1, 0.1)})
+    found = eurdf.transmissions.serial_twin(robot, "free_rocker", grid=5, ranges={"free_rocker": (-0.1, 0.1)})
     limited = np.isfinite(found.torque).all()
     assert limited == (not found.notes)
 
@@ -131,23 +135,25 @@ def test_springs_of_joints_are_kept_and_those_of_the_linkage_noted() -> None:
         replace(joint, properties=replace(joint.properties, **springs.get(joint.name, {}))) for joint in plain.joints
     ]
     robot = build_robot(replace(plain, joints=tuple(joints)), geometry=False)
-    found = eurdf.serial_twin(robot, "free_rocker", grid=5, ranges={"free_rocker": (-0.1, 0.1)})
+    found = eurdf.transmissions.serial_twin(robot, "free_rocker", grid=5, ranges={"free_rocker": (-0.1, 0.1)})
     (kept,) = (joint.properties for joint in found.robot.mechanism.joints if joint.name == "free_rocker")
     assert (kept.stiffness, kept.rest) == ((20.0,), (0.1,))
     q = found.robot.configuration({"free_rocker": (0.3,)})
-    assert eurdf.spring_force(found.robot, q) == pytest.approx([-20.0 * 0.2])
+    assert eurdf.springs.spring_force(found.robot, q) == pytest.approx([-20.0 * 0.2])
     note = found.notes[-1]
     assert note == "springs of the linkage are left out, those of 'motor_crank': add their torque to the drives"
 
 
 def test_wrong_arguments_are_errors(ankle: eurdf.Robot) -> None:
     with pytest.raises(ValueError, match="limits is 'best'; it must be 'conservative' or 'fitted'"):
-        eurdf.serial_twin(ankle, ANKLE, limits="best")  # type: ignore[arg-type]
+        eurdf.transmissions.serial_twin(ankle, ANKLE, limits="best")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="degree is 0"):
-        eurdf.serial_twin(ankle, ANKLE, degree=0)
+        eurdf.transmissions.serial_twin(ankle, ANKLE, degree=0)
 
 
 def test_linkage_with_motors_of_other_joints_is_refused() -> None:
     robot = eurdf.load("kangaroo_leg", geometry=False)
-    with pytest.raises(eurdf.NoTransmission, match="'motor_ankle_outer' and 'motor_ankle_inner'; add the joints"):
-        eurdf.serial_twin(robot, ["free_knee"])
+    with pytest.raises(
+        eurdf.errors.NoTransmission, match="'motor_ankle_outer' and 'motor_ankle_inner'; add the joints"
+    ):
+        eurdf.transmissions.serial_twin(robot, ["free_knee"])

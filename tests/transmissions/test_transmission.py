@@ -21,7 +21,7 @@ G1 = "unitree_g1_ankle", DRIVEN["unitree_g1_ankle"]
 
 
 def values(robot: Any, q: Any, names: tuple[str, ...]) -> Any:
-    found = robot.coordinates(q)
+    found = robot.joint_positions(q)
     return np.array([found[name][0] for name in names])
 
 
@@ -116,10 +116,10 @@ def test_differential_of_couplings_has_its_matrix() -> None:
     at = eurdf.transmission(robot, ["pitch", "roll"])
     np.testing.assert_allclose(at.G, [[1.0, 2.0], [1.0, -2.0]], atol=1e-12)
     np.testing.assert_array_equal(at.hessian, 0.0)
-    limits = eurdf.serial_limits(robot, ["pitch", "roll"])
+    limits = eurdf.transmissions.serial_limits(robot, ["pitch", "roll"])
     np.testing.assert_allclose(limits.torque_axes[:, 1], [8.0, 16.0])  # 4 N·m each
     np.testing.assert_allclose(limits.torque_box, [4.0, 8.0])
-    found = eurdf.actuator_values(robot, {"pitch": 0.3, "roll": -0.1})
+    found = eurdf.transmissions.actuator_values(robot, {"pitch": 0.3, "roll": -0.1})
     assert found.values == pytest.approx({"motor_1": 0.1, "motor_2": 0.5})
 
 
@@ -135,7 +135,7 @@ def test_dead_points_leave_the_map_that_exists() -> None:
     assert at.joint_velocity([2.0]) == pytest.approx([0.0], abs=1e-12)
     assert at.motor_torque([100.0]) == pytest.approx([0.0], abs=1e-9)  # a straight rod bears any force
     for ask in (at.motor_velocity, at.joint_torque, at.rate):
-        with pytest.raises(eurdf.NoTransmission, match="singular"):
+        with pytest.raises(eurdf.errors.NoTransmission, match="singular"):
             ask([1.0])
 
     # Driven by the slider, the same pose is a dead point of the motor.
@@ -144,7 +144,7 @@ def test_dead_points_leave_the_map_that_exists() -> None:
     assert "dead point" in at.inverse_reason
     assert at.undetermined == ("motor",)
     assert at.motor_velocity([2.0]) == pytest.approx([0.0], abs=1e-12)
-    with pytest.raises(eurdf.NoTransmission, match="dead point"):
+    with pytest.raises(eurdf.errors.NoTransmission, match="dead point"):
         at.joint_velocity([1.0])
 
 
@@ -175,10 +175,10 @@ def test_dependent_velocities_are_refused() -> None:
     assert at.rank_joints == 2
     v_J = at.joint_velocity([0.3, -0.2])
     np.testing.assert_allclose(at.motor_velocity(v_J), [0.3, -0.2], atol=1e-12)
-    with pytest.raises(eurdf.DependentVelocities, match="do not allow") as raised:
+    with pytest.raises(eurdf.errors.DependentVelocities, match="do not allow") as raised:
         at.motor_velocity(v_J + np.array([0.0, 0.0, 0.1, 0.0]))
     np.testing.assert_allclose(at.motor_velocity(raised.value.nearest), at.G @ raised.value.nearest)
-    with pytest.raises(eurdf.NoTransmission, match="leave out"):
+    with pytest.raises(eurdf.errors.NoTransmission, match="leave out"):
         at.rate(v_J)
 
 
@@ -191,7 +191,7 @@ def test_redundant_motors_share_a_torque() -> None:
     assert at.internal.shape == (2, 1)
     assert at.joint_torque(at.internal[:, 0]) == pytest.approx([0.0], abs=1e-12)
     assert tau @ at.internal[:, 0] == pytest.approx(0.0, abs=1e-12)
-    with pytest.raises(eurdf.DependentVelocities):
+    with pytest.raises(eurdf.errors.DependentVelocities):
         at.joint_velocity(at.motor_velocity([1.0]) + at.internal[:, 0])
 
 
@@ -223,8 +223,8 @@ def test_springs_hold_what_no_motor_decides() -> None:
     # A deflected spring has no power, so that the torques are static ones.
     deflected = sprung(free, "j2", rest=0.3)
     at = eurdf.transmission(deflected, "j4", q)
-    assert np.abs(eurdf.spring_force(deflected, q)).max() > 10.0
-    np.testing.assert_allclose(at.motions.T @ eurdf.spring_force(deflected, q), 0.0, atol=1e-9)
+    assert np.abs(eurdf.springs.spring_force(deflected, q)).max() > 10.0
+    np.testing.assert_allclose(at.motions.T @ eurdf.springs.spring_force(deflected, q), 0.0, atol=1e-9)
 
     # Two springs on one motion: one of them would deflect.
     with pytest.raises(ValueError, match="the springs of j2, j3 cannot all be held while the motors move"):
@@ -253,7 +253,7 @@ def test_many_configurations_equal_single_ones() -> None:
         np.testing.assert_allclose(many.G[each], one.G, atol=1e-12)
         np.testing.assert_allclose(many.B_J[each], one.B_J, atol=1e-12)
         assert many.condition[each] == pytest.approx(one.condition)
-    with pytest.raises(eurdf.NotClosable, match="assemble first"):
+    with pytest.raises(eurdf.errors.NotClosable, match="assemble first"):
         many[2]
     stretched, q = slider_crank(0.05, 0.13, 0.0)
     many = eurdf.transmission(stretched, "slide", q[None])

@@ -27,12 +27,14 @@ def ankle() -> eurdf.Robot:
 
 
 @pytest.fixture(scope="module")
-def found(ankle: eurdf.Robot) -> eurdf.Workspace:
-    return eurdf.workspace(ankle, ANKLE, grid=13)
+def found(ankle: eurdf.Robot) -> eurdf.transmissions.Workspace:
+    return eurdf.transmissions.workspace(ankle, ANKLE, grid=13)
 
 
 @pytest.mark.slow
-def test_polygon_separates_reachable_poses_from_others(ankle: eurdf.Robot, found: eurdf.Workspace) -> None:
+def test_polygon_separates_reachable_poses_from_others(
+    ankle: eurdf.Robot, found: eurdf.transmissions.Workspace
+) -> None:
     lower, upper = ankle.model.lowerPositionLimit, ankle.model.upperPositionLimit
     limited = upper < 1e3
     random = np.random.default_rng(0)
@@ -46,7 +48,7 @@ def test_polygon_separates_reachable_poses_from_others(ankle: eurdf.Robot, found
         try:
             q = eurdf.forward_kinematics(ankle, dict(zip(ANKLE, point, strict=True)))
             reachable = bool(((q >= lower) & (q <= upper))[limited].all())
-        except eurdf.NotClosable:
+        except eurdf.errors.NotClosable:
             reachable = False
         assert reachable is around[0]
         seen.add(reachable)
@@ -54,7 +56,7 @@ def test_polygon_separates_reachable_poses_from_others(ankle: eurdf.Robot, found
 
 
 @pytest.mark.slow
-def test_every_boundary_point_is_at_its_stop(ankle: eurdf.Robot, found: eurdf.Workspace) -> None:
+def test_every_boundary_point_is_at_its_stop(ankle: eurdf.Robot, found: eurdf.transmissions.Workspace) -> None:
     limits = ankle.model.lowerPositionLimit, ankle.model.upperPositionLimit
     assert {str(stop) for stop in found.stops} >= {
         "lower limit of 'motor_a'",
@@ -69,7 +71,7 @@ def test_every_boundary_point_is_at_its_stop(ankle: eurdf.Robot, found: eurdf.Wo
         assert point.q[:2] == pytest.approx(point.position, abs=1e-12)
 
 
-def test_fields_are_on_the_grid(found: eurdf.Workspace) -> None:
+def test_fields_are_on_the_grid(found: eurdf.transmissions.Workspace) -> None:
     condition = found.on_grid(found.transmissions.condition)
     assert condition.shape == (13, 13)
     assert np.isfinite(condition).sum() == len(found.q) < 169
@@ -82,7 +84,7 @@ def test_fields_are_on_the_grid(found: eurdf.Workspace) -> None:
 def test_slider_ends_at_the_dead_points_of_its_crank() -> None:
     robot, q = slider_crank(0.3, 0.8, 1.1)
     ends = [0.5, 1.1]
-    found = eurdf.workspace(robot, "slide", q, grid=9, ranges={"slide": (0.0, 2.0)})
+    found = eurdf.transmissions.workspace(robot, "slide", q, grid=9, ranges={"slide": (0.0, 2.0)})
     reached = sorted((float(point.position[0]), point.stop.kind) for point in found.boundary)
     assert [position for position, _ in reached] == pytest.approx(ends, abs=1e-6)
     assert {kind for _, kind in reached} <= {"singular", "not closed"}
@@ -92,7 +94,11 @@ def test_slider_ends_at_the_dead_points_of_its_crank() -> None:
 def test_singular_poses_bound_the_workspace() -> None:
     robot = eurdf.load("five_bar", geometry=False)
     joints = ["motor_1", "free_elbow_1"]
-    ends = [point for point in eurdf.workspace(robot, joints, grid=9).boundary if point.stop.kind == "singular"]
+    ends = [
+        point
+        for point in eurdf.transmissions.workspace(robot, joints, grid=9).boundary
+        if point.stop.kind == "singular"
+    ]
     assert ends
     for point in ends:
         condition = eurdf.transmission(robot, joints, point.q).condition
@@ -103,9 +109,9 @@ def test_three_joints_have_samples() -> None:
     robot = eurdf.load("kangaroo_leg", geometry=False)
     joints = ("free_knee", "free_ankle_y", "free_ankle_x")
     near = {"free_knee": 0.05, "free_ankle_y": 0.05, "free_ankle_x": 0.05}
-    at = robot.coordinates(robot.configurations["assembled"])
+    at = robot.joint_positions(robot.configurations["assembled"])
     ranges = {name: (at[name][0] - half, at[name][0] + half) for name, half in near.items()}
-    found = eurdf.workspace(robot, joints, grid=3, ranges=ranges)
+    found = eurdf.transmissions.workspace(robot, joints, grid=3, ranges=ranges)
     assert found.positions.shape == (len(found.q), 3)
     assert {point.stop.kind for point in found.boundary} <= {"range", "joint", "passive", "motor"}
     with pytest.raises(ValueError, match="no polygon"):
@@ -133,4 +139,4 @@ def test_wrong_arguments_are_errors(
     ankle: eurdf.Robot, joints: object, options: dict[str, object], message: str
 ) -> None:
     with pytest.raises(ValueError, match=message):
-        eurdf.workspace(ankle, joints, **options)
+        eurdf.transmissions.workspace(ankle, joints, **options)

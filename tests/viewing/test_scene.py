@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import coal
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.viewing.scene import Scene
 from eurdf.viewing.surface import Surface, surface_of
 

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.viewing import playback
 from support.places import ROBOTS
 from support.viewer_client import ViewerClient, differ
@@ -43,7 +43,7 @@ def expected(robot: eurdf.Robot, q: np.ndarray) -> list[tuple[float, ...]]:
 class Watched:
     """A viewer, and a page of it that is compared after each step."""
 
-    def __init__(self, viewer: eurdf.Viewer, page: ViewerClient) -> None:
+    def __init__(self, viewer: eurdf.viewing.Viewer, page: ViewerClient) -> None:
         self.viewer, self.page = viewer, page
         self.before = page.bodies(1)
 
@@ -234,7 +234,7 @@ def test_pause_is_served_while_a_step_is_computed(monkeypatch: pytest.MonkeyPatc
 
 def test_gravity_that_diverges_ends_with_a_reason(monkeypatch: pytest.MonkeyPatch) -> None:
     def diverges(*_: Any, **options: Any) -> Any:
-        raise eurdf.SimulationDiverged(0.0, options["step"])
+        raise eurdf.errors.SimulationDiverged(0.0, options["step"])
 
     with eurdf.view("four_bar", port=0) as viewer, ViewerClient(viewer.url) as page:
         page.click("gravity")

@@ -7,10 +7,10 @@ import re
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.kinematics.evaluate import frames
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.viewing.session import Session, Stop
@@ -105,7 +105,7 @@ def test_passive_joint_is_at_its_limit_where_the_slider_stops() -> None:
     stop = session.move(index, session.sliders[index].upper)
     assert stop is not None
     assert (stop.reason, stop.joint) == ("passive limit", "left_free_hip_x")
-    at = session.robot.coordinates(session.q)["left_free_hip_x"][0]
+    at = session.robot.joint_positions(session.q)["left_free_hip_x"][0]
     assert at == pytest.approx(stop.value, abs=2e-9)
 
 
@@ -169,9 +169,9 @@ def test_robot_that_cannot_close_is_moved_open() -> None:
     session = Session(robot)
     session.show(robot.tree.integrate(session.q, np.full(robot.tree.nv, 0.3)))
     assert not session.is_closed
-    before = robot.coordinates(session.q)
+    before = robot.joint_positions(session.q)
     assert session.move(0, session.value(0) + 0.2) is None
-    after = robot.coordinates(session.q)
+    after = robot.joint_positions(session.q)
     assert {name for name in after if after[name] != pytest.approx(before[name], abs=1e-12)} == {"motor_crank"}
     assert session.assemble().closes
     assert session.is_closed
@@ -224,7 +224,7 @@ def test_configuration_is_carried_to_changed_robot(tmp_path: Path) -> None:
     session.move(index_of(session, "motor_knee"), 0.3)
     other = eurdf.load("digit_leg", root="floating")
     q = session.carried_to(other)
-    assert other.coordinates(q)["motor_knee"] == pytest.approx((0.3,))
+    assert other.joint_positions(q)["motor_knee"] == pytest.approx((0.3,))
     assert np.abs(eurdf.residual(other, q)).max() < 1e-9
 
 
@@ -250,7 +250,7 @@ def test_sliders_of_a_pose_move_the_passive_joints(kind: str, units: list[str], 
     else:
         tip = pin.exp3(np.array(goals[-3:])) @ (1.0, 0.0, 0.0) + np.array((*goals[:-3], 0.0, 0.0, 0.0)[:3])
     length = np.linalg.norm(tip - (1.0, 0.0, -1.0))
-    assert moved.coordinates(session.q)["slide"] == pytest.approx((length - STRUT,), abs=1e-8)
+    assert moved.joint_positions(session.q)["slide"] == pytest.approx((length - STRUT,), abs=1e-8)
 
 
 def test_slider_of_a_pose_stops_at_limit_of_passive_joint() -> None:

@@ -16,7 +16,7 @@ import pytest
 import eurdf
 from eurdf.commands.main import main
 from eurdf.commands.output_file import write_new
-from eurdf.exceptions import CannotRun
+from eurdf.errors import CannotRun
 from eurdf.writing.atomic_file import write_atomically, write_together
 from eurdf.writing.output_folder import write_files
 from support.places import ROBOTS

@@ -8,13 +8,13 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from lxml import etree
 
 import eurdf
-import pinocchio as pin
 from eurdf.linking.robot_files import read_robot
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.constraint import Compliance
@@ -145,7 +145,7 @@ def test_child_frame_away_from_its_joint_stays_there() -> None:
     joints = tuple(replace(joint, offset=by_hand.some_pose(random)) for joint in robot.mechanism.joints)
     robot = build_robot(replace(robot.mechanism, joints=joints), geometry=False)
     there = build_robot(read(describe_mechanism(robot.mechanism)), geometry=False)
-    q2 = there.configuration(robot.coordinates(q))
+    q2 = there.configuration(robot.joint_positions(q))
     for each, at in ((robot, q), (there, q2)):
         pin.framesForwardKinematics(each.model, each.data, at)
     for body in robot.mechanism.bodies:

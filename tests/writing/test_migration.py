@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 import yaml
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-import pinocchio as pin
 from eurdf.commands.main import main
 from eurdf.diagnostics import Diagnostics, FileError
 from eurdf.format.read import read_description

@@ -31,9 +31,9 @@ from types import ModuleType
 from typing import Any, ClassVar
 from unittest import mock
 
+import pinocchio as pin
 import yaml
 
-import pinocchio as pin
 from eurdf_conformance.level import Level
 from eurdf_conformance.protocol.message import Accepted, Rejected
 from eurdf_conformance.protocol.reply import accepted, rejected

@@ -10,7 +10,7 @@ import eurdf
 from eurdf.advice.loops import closure_diagnostics
 from eurdf.diagnostics import Diagnostic
 from eurdf.diagnostics.wording import encodable
-from eurdf.exceptions import RobotNotFound
+from eurdf.errors import RobotNotFound
 from eurdf.linking.mesh_files import find_meshes
 from eurdf.linking.robot_files import ReadRobot, read_robot
 from eurdf.mechanism.mechanism import Mechanism

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-
 import pinocchio as pin
+
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.pinocchio.configuration import slots

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from eurdf.exceptions import CannotRun
+from eurdf.errors import CannotRun
 from eurdf_conformance.needed import missing, needs
 
 

@@ -17,7 +17,7 @@ from eurdf.commands.output_file import refuse_to_replace, write_new
 from eurdf.commands.terminal import is_terminal, write_json, write_lines
 from eurdf.diagnostics.text import Line
 from eurdf.diagnostics.wording import visible
-from eurdf.exceptions import CannotRun
+from eurdf.errors import CannotRun
 from eurdf_conformance.certificate.certificate import Certificate, NoCertificate, read_certificate
 from eurdf_conformance.certificate.comparison_page import comparison_markdown, comparison_page
 from eurdf_conformance.certificate.write import NoRoom, make_room, write_certificate

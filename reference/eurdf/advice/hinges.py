@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-
 import pinocchio as pin
+
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.hinge import HingeClosure
 from eurdf.closures.point import PointClosure
@@ -73,7 +73,7 @@ def likely_hinge(
             closures = tuple(hinge if each is closure else each for each in group)
             trial = build_robot(replace(mechanism, closures=closures, couplings=coupled), geometry=False)
             # The trial has the couplings of the group alone, and a continuous joint has other coordinates if coupled.
-            at = trial.configuration(robot.coordinates(q))
+            at = trial.configuration(robot.joint_positions(q))
             found = next((each for each in analyze(trial, at).loops if each.closures == loop.closures), None)
             if found is not None and found.finite_mobility == found.mobility and is_better(trial, found):
                 return LikelyHinge(closure.name, axes)

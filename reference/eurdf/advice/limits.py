@@ -56,7 +56,9 @@ def _beyond(robot: Robot, q: Vector) -> list[BeyondLimit]:
     names, first = robot.tree.velocity_names, robot.tree.own_velocities
     joints = joints_of_loops(robot)
     in_loops = {names[first[joint].start] for joint in joints}
-    return [found for found in beyond_limits(robot.mechanism.joints, robot.coordinates(q)) if found.joint in in_loops]
+    return [
+        found for found in beyond_limits(robot.mechanism.joints, robot.joint_positions(q)) if found.joint in in_loops
+    ]
 
 
 def _middle(robot: Robot, q: Vector) -> Vector:

@@ -6,8 +6,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-
 import pinocchio as pin
+
 from eurdf.array import Matrix, Vector
 from eurdf.kinematics.loop import joints_of_loops
 from eurdf.kinematics.scale import characteristic_length

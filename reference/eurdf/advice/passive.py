@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-
 import pinocchio as pin
+
 from eurdf.array import Matrix, Vector
 from eurdf.kinematics.loop import joints_of_loops
 from eurdf.kinematics.loop_analysis import LoopAnalysis, Motion, sparse_basis

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from eurdf.collection.near_paths import near_path
-from eurdf.exceptions import RobotNotFound
+from eurdf.errors import RobotNotFound
 from eurdf.mesh_files.folders import MANIFEST
 from eurdf.reading.robot_source import STDIN, RobotSource, display_name, is_stream, is_xml, source_of
 from eurdf.reading.source import Source, unreadable

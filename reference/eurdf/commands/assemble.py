@@ -11,7 +11,7 @@ from eurdf.commands.command import JSON, ROBOT, cannot_run, command, flag, optio
 from eurdf.commands.output import write_result
 from eurdf.commands.selection import NEUTRAL, named_configuration
 from eurdf.commands.terminal import cell, new_table, write_notes, write_rendered
-from eurdf.exceptions import CannotRun
+from eurdf.errors import CannotRun
 from eurdf.json_schema import Count, NullIfInfinite
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import root_joint
@@ -147,7 +147,7 @@ def assemble(
     start = start or (NAME if NAME in robot.configurations else NEUTRAL)
     with cannot_run(ValueError):
         assembly = _assemble(robot, named_configuration(robot, start), hold, limits)
-    beyond = beyond_limits(robot.mechanism.joints, robot.coordinates(assembly.q))
+    beyond = beyond_limits(robot.mechanism.joints, robot.joint_positions(assembly.q))
     info = replace(_assembly_info(robot, assembly, start, hold, {found.joint for found in beyond}), file=file)
     if not json:
         _show(info)
@@ -175,9 +175,9 @@ def _assemble(robot: Robot, q0: Vector, hold: list[str], limits: bool) -> Assemb
     held = [velocity for name in hold for velocity in robot.tree.velocities_of(name)]
     # All joints but the held ones within their limits, also those outside of loops.
     within = position_limits(robot).clip(q0, np.setdiff1d(np.arange(robot.tree.nv), held))
-    assembly = assemble(robot, within if limits else q0, hold, tolerance=_TOLERANCE, limits=limits)
-    if not limits and assembly.closes and beyond_limits(robot.mechanism.joints, robot.coordinates(assembly.q)):
-        limited = assemble(robot, within, hold, tolerance=_TOLERANCE, limits=True)
+    assembly = assemble(robot, within if limits else q0, hold=hold, tolerance=_TOLERANCE, limits=limits)
+    if not limits and assembly.closes and beyond_limits(robot.mechanism.joints, robot.joint_positions(assembly.q)):
+        limited = assemble(robot, within, hold=hold, tolerance=_TOLERANCE, limits=True)
         if limited.closes:
             return limited
     return assembly
@@ -199,7 +199,7 @@ def _assembly_info(
             held=name in held,
             beyond_limits=name in beyond,
         )
-        for name, values in robot.coordinates(assembly.q).items()
+        for name, values in robot.joint_positions(assembly.q).items()
     )
     return AssemblyInfo(
         name=robot.mechanism.name,

@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from eurdf.exceptions import CannotRun
+from eurdf.errors import CannotRun
 
 #: Entry points of this group are commands: functions of their arguments that return the exit code.
 GROUP = "eurdf.commands"

@@ -8,7 +8,7 @@ from typing import Any
 from eurdf.commands.command import ROBOTS, command, flag, option
 from eurdf.commands.selection import select, without_robot
 from eurdf.commands.terminal import progress_bar, write_json, write_lines, write_reports
-from eurdf.exceptions import CannotRun
+from eurdf.errors import CannotRun
 from eurdf.reading.robot_source import is_stream
 
 _DESCRIPTION = """\

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from eurdf.collection.near_paths import near_path
 from eurdf.commands.selection import select_one
 from eurdf.commands.terminal import write_refusal
-from eurdf.exceptions import CannotRun, InvalidRobot, MissingExtra
+from eurdf.errors import CannotRun, InvalidRobot, MissingExtra
 from eurdf.reading.robot_source import is_stream, is_text
 
 #: The path that means the standard output.

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from eurdf.commands.command import option
 from eurdf.commands.output_file import write_all_new
 from eurdf.commands.terminal import write_notes, write_text
-from eurdf.exceptions import CannotRun
+from eurdf.errors import CannotRun
 
 if TYPE_CHECKING:
     from eurdf.format.schema import SchemaVersion

@@ -14,7 +14,7 @@ from eurdf.commands.output import write_result
 from eurdf.commands.output_file import writing
 from eurdf.commands.terminal import progress_bar, write_lines, write_notes, write_refusal
 from eurdf.convert.formats import ACTUATORS, CLOSURES, EXPORTS, MESH_FILES
-from eurdf.exceptions import CannotRun
+from eurdf.errors import CannotRun
 
 if TYPE_CHECKING:
     from eurdf.convert.formats import Actuators, ClosureChoice, MeshFileChoice
@@ -87,9 +87,9 @@ def export(
     if read.diagnostics:  # such as closures of another dialect, which the file will not have
         write_refusal(read.path, read.diagnostics, as_json=False)
 
-    from eurdf.convert.exceptions import CannotExport
     from eurdf.convert.export import Choices, export_linked
     from eurdf.convert.verification.verify import require_reader
+    from eurdf.errors import CannotExport
 
     if verify:
         require_reader(to)

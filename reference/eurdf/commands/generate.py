@@ -20,7 +20,7 @@ from eurdf.commands.description_file import (
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import refuse_to_replace
 from eurdf.commands.terminal import write_notes, write_refusal
-from eurdf.exceptions import CannotRun
+from eurdf.errors import CannotRun
 from eurdf.reading.robot_source import display_name
 
 if TYPE_CHECKING:

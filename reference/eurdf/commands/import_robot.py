@@ -56,8 +56,8 @@ def import_robot(
     """Import, and show the losses."""
     import eurdf
     from eurdf.commands.conversion_info import ImportInfo, loss_infos
-    from eurdf.convert.exceptions import CannotImport
     from eurdf.diagnostics.report import Report
+    from eurdf.errors import CannotImport
 
     try:
         found = eurdf.import_robot(file, format=format_, within=within, strict=strict, allow_outside=allow_outside)

@@ -18,7 +18,7 @@ from typing import NoReturn, TextIO
 from eurdf import __version__
 from eurdf.commands import INTERRUPTED
 from eurdf.commands.command import Command
-from eurdf.exceptions import CannotExpand, CannotRun, MissingExtra
+from eurdf.errors import CannotExpand, CannotRun, MissingExtra
 from eurdf.sandbox import BOUNDS_MEMORY
 
 #: The commands, in the order in which the help shows them. Each is in the module of its name.

@@ -18,7 +18,7 @@ from eurdf.commands.description_file import (
 )
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import refuse_to_replace
-from eurdf.exceptions import CannotRun
+from eurdf.errors import CannotRun
 
 _DESCRIPTION = """\
 Convert a description from version 1 to version 2, with the same model.

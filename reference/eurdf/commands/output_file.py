@@ -6,7 +6,7 @@ import contextlib
 import os
 from collections.abc import Iterator, Mapping
 
-from eurdf.exceptions import CannotRun
+from eurdf.errors import CannotRun
 
 
 def refuse_to_replace(path: str | os.PathLike[str], force: bool) -> None:

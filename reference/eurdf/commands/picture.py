@@ -8,7 +8,7 @@ from eurdf.commands.command import FORCE_FILE, ROBOT, cannot_run, command, flag,
 from eurdf.commands.output_file import refuse_to_replace, writing
 from eurdf.commands.selection import NEUTRAL, named_configuration
 from eurdf.commands.terminal import write_notes
-from eurdf.exceptions import CannotRun
+from eurdf.errors import CannotRun
 
 _DESCRIPTION = """\
 Draw the visual shapes of a robot to a PNG file: from the right, from the front right above, and from behind. A robot

@@ -7,7 +7,7 @@ from typing import Any
 from eurdf.commands.command import OUTPUT, URDF_OPTIONS, command, flag, option, require_urdf
 from eurdf.commands.output_file import write_new
 from eurdf.commands.terminal import write_notes, write_text
-from eurdf.exceptions import CannotRun
+from eurdf.errors import CannotRun
 
 _NAMES: Any = (
     option(

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from eurdf.collection import find_robot, has_urdf
 from eurdf.diagnostics import FileError
-from eurdf.exceptions import CannotRun, RobotNotFound
+from eurdf.errors import CannotRun, RobotNotFound
 from eurdf.reading.robot_source import is_stream, is_text
 from eurdf.reading.source import FILE_LIMIT, begin_of_file
 
@@ -90,6 +90,7 @@ def named_configuration(robot: Robot, name: str) -> Vector:
         CannotRun: There is none of this name.
     """
     import pinocchio as pin
+
     from eurdf.diagnostics import did_you_mean
 
     if name in robot.configurations:

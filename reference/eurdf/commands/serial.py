@@ -23,7 +23,7 @@ from eurdf.commands.terminal import cell, new_table, write_notes, write_rendered
 
 if TYPE_CHECKING:
     from eurdf.array import Matrix, Vector
-    from eurdf.transmissions.serial_twin import Choice, SerialTwin
+    from eurdf.transmissions.serial_model import Choice, SerialTwin
 
 _DESCRIPTION = """\
 Write the serial equivalent of a robot whose joints are moved through rods, as URDF and MJCF, for simulators and
@@ -78,12 +78,12 @@ def serial(
 ) -> int:
     """Write the serial robot, and show what it neglects."""
     import eurdf
-    from eurdf.exceptions import EurdfError
+    from eurdf.errors import EurdfError
 
     robot = eurdf.load(path, **options)
     with cannot_run(EurdfError, ValueError):
-        twin = eurdf.serial_twin(
-            robot, joints, None, motors, limits=limits, armature=dict(armature), grid=grid, degree=degree
+        twin = eurdf.transmissions.serial_twin(
+            robot, joints, None, motors=motors, limits=limits, armature=dict(armature), grid=grid, degree=degree
         )
         with writing():
             written = twin.write(output, force=force)

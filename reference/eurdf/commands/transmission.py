@@ -14,7 +14,7 @@ from eurdf.commands.command import JSON, ROBOT, SERIAL_JOINTS, SERIAL_MOTORS, ca
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import refuse_to_replace, write_new, writing
 from eurdf.commands.terminal import cell, new_table, write_notes, write_rendered
-from eurdf.exceptions import CannotRun
+from eurdf.errors import CannotRun
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -74,8 +74,7 @@ def transmission(
 ) -> int:
     """Show the transmission."""
     import eurdf
-    from eurdf.exceptions import EurdfError
-    from eurdf.transmissions.exceptions import NoTransmission
+    from eurdf.errors import EurdfError, NoTransmission
 
     if force and not (table or plot or c):
         raise CannotRun("--force has no effect without --csv, --plot or --c; add one of them")
@@ -90,15 +89,15 @@ def transmission(
             info = _info(robot, joints, motors, q, grid)
             if plot:
                 from eurdf.transmissions.plot import plot_workspace
-                from eurdf.transmissions.workspace import workspace
+                from eurdf.transmissions.reachable_set import workspace
 
-                found = workspace(robot, joints, q, motors, grid=_FIGURE if grid is None else grid)
+                found = workspace(robot, joints, q, motors=motors, grid=_FIGURE if grid is None else grid)
                 with writing():
                     written.append(os.fspath(plot_workspace(found, plot)))
             if c:
                 from eurdf.transmissions.prepared import prepare_transmission
 
-                source = prepare_transmission(robot, joints, q, motors).c_source()
+                source = prepare_transmission(robot, joints, q, motors=motors).c_source()
                 with writing():
                     written += [os.fspath(each) for each in source.write(c, force=force)]
     except NoTransmission as reason:
@@ -121,14 +120,14 @@ def _info(
     """The transmission at q, or over a grid."""
     from eurdf.commands.transmission_info import transmission_info
     from eurdf.transmissions.motors import motors_of
+    from eurdf.transmissions.reachable_set import workspace
     from eurdf.transmissions.selection import selection
-    from eurdf.transmissions.workspace import workspace
 
     joints = selection(robot, joint_names, "--joints")
     motors = motors_of(robot, joints) if motor_names is None else selection(robot, motor_names, "--motors")
     if grid is None:
         assert q is not None
-        at = robot.coordinates(q)
+        at = robot.joint_positions(q)
         return transmission_info(robot, joints, motors, [q], [[value for name in joints.joints for value in at[name]]])
     if grid < 2 or grid ** len(joints) > _MOST_POSES:
         raise CannotRun(f"--grid {grid} makes {grid ** len(joints)} poses; give 2 to {_MOST_POSES}")

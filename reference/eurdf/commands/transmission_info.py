@@ -16,7 +16,7 @@ from eurdf.transmissions.motors import linkage_bodies
 from eurdf.transmissions.polynomial_map import PolynomialMap
 from eurdf.transmissions.positions import beyond_limits
 from eurdf.transmissions.selection import Selection
-from eurdf.transmissions.serial_twin import Choice, Neglected
+from eurdf.transmissions.serial_model import Choice, Neglected
 from eurdf.transmissions.transmission import at_one
 
 if TYPE_CHECKING:
@@ -134,7 +134,7 @@ def transmission_info(
         linkage=linkage_bodies(robot, joints, motors),
         limits_reason=reasons[0] if reasons else None,
         poses=tuple(poses),
-        common=_limits(serial_limits(robot, joints.joints, np.array(inside), motors.joints)) if inside else None,
+        common=_limits(serial_limits(robot, joints.joints, np.array(inside), motors=motors.joints)) if inside else None,
     )
 
 
@@ -148,15 +148,15 @@ def _pose(
 ) -> PoseInfo:
     if q is None:
         return PoseInfo(tuple(positions), reached=False)
-    at, coordinates = at_one(robot, joints, q, motors), robot.coordinates(q)
+    at, coordinates = at_one(robot, joints, q, motors), robot.joint_positions(q)
     limits = inertia = None
     if at.G is not None and at.rank_joints == len(at.joints):
         if at.B_J is not None:
             try:
-                limits = _limits(serial_limits(robot, joints.joints, q, motors.joints))
+                limits = _limits(serial_limits(robot, joints.joints, q, motors=motors.joints))
             except ValueError as reason:  # a motor has no limits
                 reasons.append(str(reason))
-        terms = reflected_inertia(robot, joints.joints, q, motors.joints)
+        terms = reflected_inertia(robot, joints.joints, q, motors=motors.joints)
         inertia = InertiaInfo(*map(_rows, (terms.rotors, terms.linkage, terms.serial, terms.other_armature)))
     return PoseInfo(
         joints=tuple(positions),
@@ -195,7 +195,7 @@ def _rows(matrix: Matrix) -> Rows:
 class SerialInfo:
     """The transmission.json that 'eurdf serial' writes."""
 
-    LIKE: ClassVar = "eurdf.transmissions.serial_twin:SerialTwin"
+    LIKE: ClassVar = "eurdf.transmissions.serial_model:SerialTwin"
 
     joints: tuple[str, ...]
     motors: tuple[str, ...]

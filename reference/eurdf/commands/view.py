@@ -10,7 +10,7 @@ from typing import Any
 from eurdf.commands.command import FORCE_FILE, ROBOT, ROOT, cannot_run, command, flag, option
 from eurdf.commands.output_file import refuse_to_replace, write_new
 from eurdf.commands.terminal import write_lines, write_notes
-from eurdf.exceptions import CannotRun
+from eurdf.errors import CannotRun
 
 _DESCRIPTION = """\
 Show a robot on a page in the browser, with a slider for each actuator. The loops stay closed: the passive joints

@@ -19,7 +19,7 @@ Vector = npt.NDArray[np.float64]
 Matrix = npt.NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Coordinates:
     """The map between the vectors of a robot, q (nq,) and v (nv,), and those of an exported model.
 
@@ -236,6 +236,9 @@ class Coordinates:
         along_child = part.rotation == "quaternion" and not part.orientation_first
         block[3:, 3:] = turn if along_child else block[:3, :3]
         return np.roll(block, 3, axis=0) if part.orientation_first else block
+
+    def __repr__(self) -> str:
+        return f"<Coordinates: nq {self.nq}, nv {self.nv}, {len(self.names)} joints>"
 
 
 def _on_circles(values: Sequence[float], circular: Sequence[int]) -> list[float]:

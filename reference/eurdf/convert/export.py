@@ -12,7 +12,6 @@ from types import MappingProxyType
 from eurdf.array import Vector
 from eurdf.convert.common_losses import BEYOND_LIMITS, UNKNOWN
 from eurdf.convert.coordinates import Coordinates
-from eurdf.convert.exceptions import CannotExport
 from eurdf.convert.export_format import ExportInput, Triangles, export_format
 from eurdf.convert.formats import (
     ACTUATORS,
@@ -28,7 +27,7 @@ from eurdf.convert.losses import Effect, Loss, Losses
 from eurdf.convert.parts import OwnVectors, VectorPlace
 from eurdf.convert.verification.verify import Verification, verify
 from eurdf.diagnostics import did_you_mean
-from eurdf.exceptions import InvalidRobot
+from eurdf.errors import CannotExport, InvalidRobot
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.linking.configurations import beyond_limits
@@ -61,7 +60,7 @@ class Choices:
     strict: bool
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Export:
     """A robot in another format.
 
@@ -122,6 +121,9 @@ class Export:
             MissingExtra: The program is not installed.
         """
         return verify(self.format, self.files, self.losses, self.coordinates, self.robot, self.start, seconds, progress)
+
+    def __repr__(self) -> str:
+        return f"<Export to {self.format}: {len(self.files)} files, {len(self.losses)} losses>"
 
 
 def export(
@@ -249,7 +251,7 @@ def _export(
     if mechanism.constraints and not configurations and losses.has_kind("export-no-configuration"):
         losses.add("export-no-configuration", ASSEMBLED)
     for name, coordinates in list(configurations.items())[:1] if losses.has_kind(BEYOND_LIMITS.code) else ():
-        every = robot.joint_coordinates(robot.configuration(coordinates))
+        every = robot.joint_positions(robot.configuration(coordinates), mimic=True)
         if beyond := beyond_limits(mechanism.joints, every):
             message = f"has joints beyond their limits: {', '.join(map(str, beyond))}"
             losses.add(BEYOND_LIMITS.code, name, message)
@@ -288,11 +290,11 @@ def _configurations(robot: Robot, first: str) -> dict[str, Mapping[str, tuple[fl
         raise ValueError(f"there is no configuration '{first}'; {hint}")
     start = position_limits(robot).clip(robot.tree.neutral())
     if not robot.constraints:
-        return {NEUTRAL: robot.coordinates(start), **stated}
+        return {NEUTRAL: robot.joint_positions(start), **stated}
     for limits in (True, False):
         assembly = assemble(robot, start, limits=limits)
         if assembly.closes:
-            return {ASSEMBLED: robot.coordinates(assembly.q), **stated}
+            return {ASSEMBLED: robot.joint_positions(assembly.q), **stated}
     return dict(stated)
 
 

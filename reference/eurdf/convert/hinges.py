@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-
 import pinocchio as pin
+
 from eurdf.array import Vector
 from eurdf.closures.hinge import HingeClosure
 from eurdf.closures.point import PointClosure

@@ -15,7 +15,6 @@ from types import MappingProxyType
 import numpy as np
 
 from eurdf.array import Vector
-from eurdf.convert.exceptions import CannotImport
 from eurdf.convert.import_format import ImportFormat, ImportInput, RobotRead, import_format, loss_kinds
 from eurdf.convert.loop_axes import allowed_axes, with_axes
 from eurdf.convert.losses import Effect, Loss, Losses, dropped, exact
@@ -23,7 +22,7 @@ from eurdf.convert.readme import licence_file, readme
 from eurdf.convert.xml_elements import places_of_names, recognized
 from eurdf.diagnostics import Diagnostic, Severity, did_you_mean
 from eurdf.diagnostics.wording import visible
-from eurdf.exceptions import RobotNotFound
+from eurdf.errors import CannotImport, RobotNotFound
 from eurdf.format.schema import FILES, SchemaVersion, json_schema, schema_text
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.opening import Opening
@@ -85,7 +84,7 @@ COMMON = loss_kinds(
 )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Import:
     """A robot from a file of another format.
 
@@ -141,6 +140,10 @@ class Import:
             OSError: A file cannot be written.
         """
         return write_files(folder, self.files, force=force)
+
+    def __repr__(self) -> str:
+        state = "the loops close" if self.closes else "the loops do not close"
+        return f"<Import of {self.format}: {self.mechanism!r}; {len(self.losses)} losses; {state}>"
 
 
 def import_robot(
@@ -292,7 +295,7 @@ def _assembled(mechanism: Mechanism, robot: Robot, q: Vector, losses: Losses) ->
     if found is None:
         losses.add("import-not-assembled", ASSEMBLED, "no configuration was found that closes the loops")
         return mechanism, False
-    coordinates = robot.coordinates(found.q)
+    coordinates = robot.joint_positions(found.q)
     if beyond := beyond_limits(mechanism.joints, coordinates):
         losses.add("import-not-assembled", ASSEMBLED, f"the loops close beyond limits only: {beyond[0]}")
         return mechanism, True

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from eurdf.convert.coordinates import rotation_matrix
-from eurdf.convert.exceptions import CannotExport
 from eurdf.convert.losses import Losses
+from eurdf.errors import CannotExport
 from eurdf.mechanism.body import Body, Inertia
 from eurdf.mechanism.pose import IDENTITY, Pose
 from eurdf.writing.xml_text import angles_with_yaw

@@ -196,7 +196,7 @@ exact, approximate, dropped = (partial(LossKind, effect) for effect in Effect)
 # -- losses ------------------------------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Loss:
     """One loss of one export or import.
 
@@ -218,6 +218,9 @@ class Loss:
 
     def __str__(self) -> str:
         return f"{self.effect}: {self.concept} '{self.name}': {self.message} [{self.code}]"
+
+    def __repr__(self) -> str:
+        return f"<Loss: {self}>"
 
 
 class Losses:

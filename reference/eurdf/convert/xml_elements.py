@@ -9,8 +9,8 @@ from pathlib import Path
 
 from lxml import etree
 
-from eurdf.convert.exceptions import CannotImport
 from eurdf.diagnostics import Diagnostic, FileError, Place, did_you_mean
+from eurdf.errors import CannotImport
 from eurdf.format.conventions import VERSION_KEY
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 from eurdf.mesh_files.folders import Folders

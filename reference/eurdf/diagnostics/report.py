@@ -14,7 +14,7 @@ from eurdf.diagnostics.wording import encodable
 REPORT_VERSION = 1
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Report:
     """The diagnostics of one robot.
 
@@ -52,6 +52,9 @@ class Report:
             "ok": self.passes(strict),
             "diagnostics": [_diagnostic_to_json(found) for found in self.diagnostics],
         }
+
+    def __repr__(self) -> str:
+        return f"<Report on '{self.path}': {len(self.errors)} errors, {len(self.warnings)} warnings>"
 
 
 def reports_to_json(reports: Iterable[Report], strict: bool = False, skipped: Iterable[str] = ()) -> dict[str, Any]:

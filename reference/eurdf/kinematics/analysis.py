@@ -14,6 +14,7 @@ from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.finite_mobility import MobilityTest
 from eurdf.kinematics.loop import LoopGroup
 from eurdf.kinematics.loop_analysis import LoopAnalysis, Motion, analyze_group
+from eurdf.kinematics.named import Named
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import norms, null_space
 from eurdf.kinematics.tolerances import SOLVED
@@ -101,6 +102,12 @@ class Analysis:
     rounded_mobility: int | None = None
     rounded_tolerance: float | None = None
 
+    def __repr__(self) -> str:
+        found = f"rank {self.rank}, {self.mobility} degrees of freedom, {self.uncontrolled} uncontrolled"
+        if self.rank is None:
+            found = self.left_out or "the loops do not close"
+        return f"<Analysis: {self.nv} velocities, {self.nc} rows; {found}; residual {self.residual:.3g} m, rad>"
+
 
 #: The figures that `eurdf info` and the viewer show, in this order, and what each of them counts, in few words.
 FIGURES = {
@@ -116,7 +123,7 @@ FIGURES = {
 }
 
 
-def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
+def analyze(robot: Robot, q: Named | None = None) -> Analysis:
     """Close the loops, compute ranks and mobility, and find uncontrolled motions and dependent actuators.
 
     rank = rank K, mobility = nv - rank, redundant = nc - rank, uncontrolled = nv - rank [K; Sᵀ], where S (nv, nu)

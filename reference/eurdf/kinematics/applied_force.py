@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from eurdf.array import Matrix, Vector
 from eurdf.kinematics.evaluate import Frames, frames
+from eurdf.kinematics.named import Named, motor_values_of, velocity_of
 from eurdf.pinocchio.arguments import checked_array
 
 if TYPE_CHECKING:
@@ -34,6 +35,7 @@ class AppliedForce:
         Raises:
             ValueError: A frame is unknown, or a force is not six finite numbers.
         """
+        self._robot = robot
         self._idx_v = robot.actuation.idx_v
         self._tree = robot.tree
         self._dissipation = dissipation
@@ -48,7 +50,7 @@ class AppliedForce:
             ]
             self._external = frames(robot, list(external), few=True), np.array(forces)
 
-    def at(self, q: Vector, v: Vector, u: Vector | None = None, tau: Vector | None = None) -> Vector:
+    def at(self, q: Vector, v: Vector, u: Named | None = None, tau: Named | None = None) -> Vector:
         """Generalized force (nv,) of all but the springs.
 
         Args:
@@ -64,18 +66,18 @@ class AppliedForce:
         if tau is None:
             force: Vector = np.zeros(self._tree.nv)
             if u is not None:
-                force[idx_v] = checked_array("u", u, idx_v.shape)
+                force[idx_v] = motor_values_of(self._robot, u)
         else:
-            force = np.array(checked_array("tau", tau, (self._tree.nv,)))
+            force = np.array(velocity_of(self._robot, tau, "tau"))
             if u is not None:
-                force[idx_v] += checked_array("u", u, idx_v.shape)
+                force[idx_v] += motor_values_of(self._robot, u)
         if self._external is not None:
             force += self._at_frames(*self._external, q)
         if self._dissipation:
             force -= self._tree.damping * v + self._tree.dry_friction * np.sign(v)
         return force
 
-    def total(self, q: Vector, v: Vector, u: Vector | None = None, tau: Vector | None = None) -> Vector:
+    def total(self, q: Vector, v: Vector, u: Named | None = None, tau: Named | None = None) -> Vector:
         """The same with that of the springs."""
         force = self.at(q, v, u, tau)
         return self.with_springs(q, force) if self._has_springs else force

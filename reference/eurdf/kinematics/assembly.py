@@ -16,15 +16,16 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
+from eurdf.errors import NotClosable
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.descend import Descended, descend, evaluated
-from eurdf.kinematics.exceptions import NotClosable
+from eurdf.kinematics.named import Named, configuration_of
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits, chosen_limits
 from eurdf.kinematics.problem import Group, Problem
 from eurdf.kinematics.rank import norms
 from eurdf.kinematics.tolerances import CLOSED, MOST_STEPS, MOST_WORK, RESTARTS, SOLVED, WELL_CLOSED
-from eurdf.pinocchio.arguments import as_names, checked_array, checked_count, checked_tolerance
+from eurdf.pinocchio.arguments import as_names, checked_count, checked_tolerance
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -71,7 +72,7 @@ class Assembly:
 
     def __repr__(self) -> str:
         is_open = ", ".join(str(found) for found in self.open if found.is_open)
-        parts = [f"open: {is_open}" if is_open else "closed", f"residual {self.residual:.3g}"]
+        parts = [f"open: {is_open}" if is_open else "closed", f"residual {self.residual:.3g} m, rad"]
         if self.reason == "rounding":
             parts.append("not converged: rounding makes redundant rows contradict each other")
         if self.reason == "not decided":
@@ -83,9 +84,9 @@ class Assembly:
 
 def assemble(
     robot: Robot,
-    q0: Vector | None = None,
-    hold: str | Iterable[str] = (),
+    q0: Named | None = None,
     *,
+    hold: str | Iterable[str] = (),
     tolerance: float = SOLVED,
     limits: bool = False,
     restarts: int = RESTARTS,
@@ -125,7 +126,7 @@ def assemble(
         return assembled(problem, q, tolerance, restarts, chosen)
 
 
-def start(robot: Robot, q0: Vector | None = None, name: str = "q0") -> Vector:
+def start(robot: Robot, q0: Named | None = None, name: str = "q0") -> Vector:
     """The given configuration, checked and normalized; by default `assembled`, or else the neutral configuration.
 
     ``name`` is that of the argument.
@@ -138,7 +139,7 @@ def start(robot: Robot, q0: Vector | None = None, name: str = "q0") -> Vector:
     if q0 is None:
         return robot.tree.neutral()
     tree = robot.tree
-    given = checked_array(name, q0, (tree.nq,))
+    given = configuration_of(robot, q0, name)
     if tree.is_normalized(given, _ROUNDING):
         return np.array(given)
     q = tree.normalized(given)

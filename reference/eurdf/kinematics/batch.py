@@ -12,13 +12,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
+from pinocchio import LOCAL
 
 from eurdf.array import Indices, Mask, Matrix, Vector
+from eurdf.errors import NumericalOverflow
 from eurdf.kinematics.assembly import close
 from eurdf.kinematics.blocks import Progress, blocks, checked_configurations, checked_rows, shape_of, starts
 from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.evaluate import Evaluator, evaluator, frames
-from eurdf.kinematics.exceptions import NumericalOverflow
 from eurdf.kinematics.forward import driving_many, goals, in_equilibrium, moved_many
 from eurdf.kinematics.frame_jacobian import checked_reference
 from eurdf.kinematics.inverse import checked_targets
@@ -31,7 +32,6 @@ from eurdf.kinematics.sensitivity import JacobianTask, actuated_jacobians
 from eurdf.kinematics.tangent_space import metric
 from eurdf.kinematics.tolerances import RESTARTS, SOLVED
 from eurdf.pinocchio.arguments import checked_count, checked_tolerance
-from pinocchio import LOCAL
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -244,8 +244,8 @@ class Projection:
 def project_configuration(
     robot: Robot,
     q: Matrix,
-    weights: Vector | Matrix | None = None,
     *,
+    weights: Vector | Matrix | None = None,
     tolerance: float = SOLVED,
     block: int | None = None,
     threads: int = 1,
@@ -309,11 +309,11 @@ class ActuatedJacobian:
 
 def actuated_jacobian(
     robot: Robot,
-    q: Matrix,
     frame: str,
+    q: Matrix,
+    *,
     reference: Any = LOCAL,
     weights: Vector | Matrix | None = None,
-    *,
     block: int | None = None,
     threads: int = 1,
     executor: Executor | None = None,
@@ -323,8 +323,8 @@ def actuated_jacobian(
 
     Args:
         robot: The robot.
-        q: Closed configurations (B, nq).
         frame: Name of a link, a joint (its frame on the child's side), or a frame of the description.
+        q: Closed configurations (B, nq).
         reference: Where the twist is expressed: ``pin.LOCAL``, ``pin.WORLD`` or ``pin.LOCAL_WORLD_ALIGNED``.
         weights: The metric in which motions that the actuators do not control are minimal: a matrix (nv, nv), or its
             diagonal (nv,); the identity by default, in rad/s and m/s.
@@ -365,7 +365,7 @@ class InverseKinematics:
         position_error: Distances (B, F) of the origins of the frames from those of the targets, m, in their order.
         angle_error: Angles (B, F) between their axes and those of the targets, rad; 0 for targets that are positions.
         residual: Euclidean norms (B,) of the residual at q, m and rad.
-        reason: For each element why it did not converge, as `eurdf.InverseKinematics` has it; None if it did.
+        reason: For each element why it did not converge, as `eurdf.results.InverseKinematics` has it; None if it did.
     """
 
     q: Matrix
@@ -383,8 +383,8 @@ def inverse_kinematics(
     robot: Robot,
     targets: Mapping[str, Any],
     q0: Matrix | None = None,
-    limits: bool = True,
     *,
+    limits: bool = True,
     tolerance: float = 1e-8,
     restarts: int = 10,
     block: int | None = None,

@@ -17,15 +17,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from eurdf.array import Matrix, Vector
+from eurdf.array import Matrix, Vector, numbers
+from eurdf.errors import UnderactuatedMotion
 from eurdf.kinematics.applied_force import AppliedForce, External
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.equation_of_motion import EquationOfMotion, by_joint, per_constraint
-from eurdf.kinematics.exceptions import UnderactuatedMotion
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.forward_solver import ForwardSolver
 from eurdf.kinematics.inverse_solver import InverseSolver
+from eurdf.kinematics.named import Named, velocity_of
 from eurdf.kinematics.tolerances import FORCES_SOLVED, MASSLESS
 from eurdf.pinocchio.arguments import checked_array, checked_tolerance
 from eurdf.pinocchio.tree_dynamics import TreeDynamics
@@ -45,6 +46,9 @@ class ForwardDynamics(NamedTuple):
     a: Vector
     forces: tuple[Vector, ...]
 
+    def __repr__(self) -> str:
+        return f"<ForwardDynamics: a {numbers(self.a)} rad/s² or m/s²; {len(self.forces)} forces, N and N·m>"
+
 
 class InverseDynamics(NamedTuple):
     """The result of `inverse_dynamics`.
@@ -57,14 +61,17 @@ class InverseDynamics(NamedTuple):
     u: Vector
     forces: tuple[Vector, ...]
 
+    def __repr__(self) -> str:
+        return f"<InverseDynamics: u {numbers(self.u)} N·m or N; {len(self.forces)} forces, N and N·m>"
+
 
 def forward_dynamics(
     robot: Robot,
-    q: Vector,
-    v: Vector,
-    u: Vector | None = None,
+    q: Named,
+    v: Named,
+    u: Named | None = None,
     *,
-    tau: Vector | None = None,
+    tau: Named | None = None,
     external: External | None = None,
     dissipation: bool = False,
     gains: tuple[float, float] | None = None,
@@ -104,7 +111,7 @@ def forward_dynamics(
         NumericalOverflow: The result is not finite.
     """
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"), borrowed(robot, ForwardSolver) as solver:
-        q, v = start(robot, q, "q"), checked_array("v", v, (robot.tree.nv,))
+        q, v = start(robot, q, "q"), velocity_of(robot, v)
         dynamics = solver.dynamics(data)
         force = AppliedForce(robot, external, dissipation).total(q, v, u, tau)
         if gains is None:
@@ -119,11 +126,11 @@ def forward_dynamics(
 
 def inverse_dynamics(
     robot: Robot,
-    q: Vector,
-    v: Vector,
-    a: Vector,
+    q: Named,
+    v: Named,
+    a: Named,
     *,
-    tau: Vector | None = None,
+    tau: Named | None = None,
     external: External | None = None,
     dissipation: bool = False,
     weights: Vector | None = None,
@@ -192,11 +199,11 @@ def inverse_dynamics(
 
 def achievable_acceleration(
     robot: Robot,
-    q: Vector,
-    v: Vector,
-    a: Vector,
+    q: Named,
+    v: Named,
+    a: Named,
     *,
-    tau: Vector | None = None,
+    tau: Named | None = None,
     external: External | None = None,
     dissipation: bool = False,
     tolerance: float = 1e-6,
@@ -242,7 +249,7 @@ def achievable_acceleration(
 
 
 @overflow_refused("the mass matrix")
-def mass_matrix(robot: Robot, q: Vector, *, data: Any = None) -> Matrix:
+def mass_matrix(robot: Robot, q: Named, *, data: Any = None) -> Matrix:
     """Mass matrix M(q) of the spanning tree, the armature included: its kinetic energy is ½ vᵀ M v.
 
     It is computed by `pin.crba`, except for robots with mimic joints: up to Pinocchio 4.1, `pin.crba` has wrong entries
@@ -273,11 +280,11 @@ def mass_matrix(robot: Robot, q: Vector, *, data: Any = None) -> Matrix:
 
 
 def _state(
-    robot: Robot, q: Vector, v: Vector, a: Vector, solver: ForwardSolver, data: Any
+    robot: Robot, q: Named, v: Named, a: Named, solver: ForwardSolver, data: Any
 ) -> tuple[Vector, Vector, Vector, TreeDynamics]:
     """Configuration, velocity, acceleration and dynamics of the tree, all checked."""
-    nv, dynamics = (robot.tree.nv,), solver.dynamics(data)
-    return start(robot, q, "q"), checked_array("v", v, nv), checked_array("a", a, nv), dynamics
+    dynamics = solver.dynamics(data)
+    return start(robot, q, "q"), velocity_of(robot, v), velocity_of(robot, a, "a"), dynamics
 
 
 def _uncontrolled(motion: EquationOfMotion, inertial: Vector, force: Vector) -> tuple[Vector, Vector]:

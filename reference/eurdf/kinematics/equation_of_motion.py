@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from eurdf.array import Matrix, Vector
+from eurdf.errors import InconsistentMotion, UndeterminedMotion
 from eurdf.kinematics.derived import derived
-from eurdf.kinematics.exceptions import InconsistentMotion, UndeterminedMotion
 from eurdf.kinematics.finite import finite
 from eurdf.kinematics.loop import find_loops
 from eurdf.kinematics.rank import numerical_rank

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 import numpy as np
 
 from eurdf.array import Matrix
-from eurdf.kinematics.exceptions import NumericalOverflow
+from eurdf.errors import NumericalOverflow
 
 
 def finite(result: str, *arrays: Matrix) -> None:

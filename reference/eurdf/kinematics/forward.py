@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
@@ -10,9 +9,10 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
+from eurdf.errors import NotClosable, NumericalOverflow, TooFar
 from eurdf.kinematics.assembly import assembled, close, closed_start, is_closed, start
 from eurdf.kinematics.derived import borrowed
-from eurdf.kinematics.exceptions import NotClosable, NumericalOverflow, TooFar
+from eurdf.kinematics.named import ByJoint, Named, unknown_joint
 from eurdf.kinematics.path import follow_given
 from eurdf.kinematics.problem import Problem, for_many
 from eurdf.kinematics.residual import all_openings
@@ -33,8 +33,8 @@ _SHORTEST_STEP_AT_REST = 2.0**-3
 
 def forward_kinematics(
     robot: Robot,
-    actuated: Vector | Mapping[str, float | Sequence[float]],
-    q0: Vector | None = None,
+    actuated: Named,
+    q0: Named | None = None,
     *,
     tolerance: float = SOLVED,
 ) -> Vector:
@@ -94,9 +94,7 @@ def _closed_start(driving: Driving, q: Vector) -> Vector:
     return closed_start(driving.free, q, driving.tolerance)
 
 
-def farthest(
-    robot: Robot, values: Mapping[str, float | Sequence[float]], first: Vector, shortest: float = SHORTEST_STEP
-) -> tuple[Vector, float]:
+def farthest(robot: Robot, values: ByJoint, first: Vector, shortest: float = SHORTEST_STEP) -> tuple[Vector, float]:
     """As `forward_kinematics`, but it returns how far the straight path leads if it ends early.
 
     Args:
@@ -265,7 +263,7 @@ class _Given:
     values: Vector
 
 
-def _given(robot: Robot, values: Vector | Mapping[str, float | Sequence[float]]) -> _Given:
+def _given(robot: Robot, values: Named) -> _Given:
     if isinstance(values, Mapping):
         return _given_by_name(robot, values)
     actuation = robot.actuation
@@ -273,26 +271,21 @@ def _given(robot: Robot, values: Vector | Mapping[str, float | Sequence[float]])
     return _Given(actuation.joints, actuation.idx_q, actuation.idx_v, values)
 
 
-def _given_by_name(robot: Robot, by_name: Mapping[str, float | Sequence[float]]) -> _Given:
-    mechanism = robot.mechanism
+def _given_by_name(robot: Robot, by_name: ByJoint) -> _Given:
     # For each joint: index of its first coordinate, their number, index of its first velocity, their number, and the
     # number of its coordinates in files.
     at = {
         name: (slot.idx_q, slot.nq, slot.idx_v, slot.nv, len(slot.joint.type.coordinates))
         for name, slot in robot.slots.items()
     }
-    if mechanism.root == "floating":
+    if robot.mechanism.root == "floating":
         at[ROOT_JOINT] = (0, 7, 0, 6, 7)
     coordinates: list[int] = []
     velocities: list[int] = []
     as_in_files: dict[str, list[float]] = {}
     for name, values in by_name.items():
         if name not in at:
-            if any(joint.name == name and joint.mimic is not None for joint in mechanism.joints):
-                raise ValueError(f"joint '{name}' is a mimic joint; give the coordinate of its leader instead")
-            near = difflib.get_close_matches(name, at, n=1)
-            hint = f"; did you mean '{near[0]}'?" if near else ""
-            raise ValueError(f"the robot has no moving joint '{name}'{hint}")
+            raise unknown_joint(robot, name)
         first_q, nq, first_v, nv, count = at[name]
         shapes = [(1,), ()] if count == 1 else [(count,)]
         as_in_files[name] = np.atleast_1d(checked_array(f"actuated['{name}']", values, *shapes)).tolist()

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from pinocchio import LOCAL, LOCAL_WORLD_ALIGNED, WORLD
 
 from eurdf.array import Matrix, Vector
 from eurdf.closures.se3 import skew
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.evaluate import Frames, frames
-from pinocchio import LOCAL, LOCAL_WORLD_ALIGNED, WORLD
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot

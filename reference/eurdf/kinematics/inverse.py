@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from pinocchio import SE3
 
 from eurdf.array import Vector
 from eurdf.kinematics.assembly import assembled, measured, start
@@ -15,6 +16,7 @@ from eurdf.kinematics.blocks import checked_rows, shape_of
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.frame_jacobian import frames_of
 from eurdf.kinematics.inverse_search import InverseKinematicsReason, InverseTask, Target, search
+from eurdf.kinematics.named import Named
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.position_limit import JointAtLimit, chosen_limits
 from eurdf.kinematics.problem import Problem
@@ -23,7 +25,6 @@ from eurdf.kinematics.tolerances import (
     SOLVED,
 )
 from eurdf.pinocchio.arguments import checked_array, checked_count, checked_tolerance
-from pinocchio import SE3
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 _ONE = np.eye(3)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class FrameError:
     """How far a frame is from its target.
 
@@ -49,6 +50,9 @@ class FrameError:
     def __str__(self) -> str:
         angle = f" and {math.degrees(self.angle):.3g} degrees" if self.angle else ""
         return f"'{self.frame}' by {self.position * 1e3:.3g} mm{angle}"
+
+    def __repr__(self) -> str:
+        return f"<FrameError: {self}>"
 
 
 _SENTENCES: dict[InverseKinematicsReason, str] = {
@@ -95,9 +99,9 @@ class InverseKinematics:
 def inverse_kinematics(
     robot: Robot,
     targets: Mapping[str, Any],
-    q0: Vector | None = None,
-    limits: bool = True,
+    q0: Named | None = None,
     *,
+    limits: bool = True,
     tolerance: float = 1e-8,
     restarts: int = 10,
 ) -> InverseKinematics:

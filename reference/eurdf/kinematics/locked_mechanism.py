@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 from eurdf.diagnostics.wording import meant
-from eurdf.kinematics.exceptions import CannotLock
+from eurdf.errors import CannotLock
 from eurdf.mechanism.constraint import Constraint
 from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.mechanism import Mechanism

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from eurdf.array import Indices, Vector
+from eurdf.errors import CannotLock, LockedOpen
 from eurdf.kinematics.assembly import start
-from eurdf.kinematics.exceptions import CannotLock, LockedOpen
 from eurdf.kinematics.locked_mechanism import lock_joints
 from eurdf.kinematics.loop import find_loops
+from eurdf.kinematics.named import Named
 from eurdf.kinematics.residual import all_openings, residual
 from eurdf.kinematics.tolerances import CLOSED
 from eurdf.mechanism.mechanism import ROOT_JOINT
@@ -43,9 +44,12 @@ class LockedRobot(Robot):
     idx_q: Indices
     idx_v: Indices
 
+    def __repr__(self) -> str:
+        return f"{super().__repr__()[:-1]}; locked: {', '.join(self.locked_joints) or 'none'}>"
+
 
 def lock(
-    robot: Robot, joints: str | Iterable[str], q: Vector | None = None, *, tolerance: float = CLOSED
+    robot: Robot, joints: str | Iterable[str], q: Named | None = None, *, tolerance: float = CLOSED
 ) -> LockedRobot:
     """Lock joints of a robot at a configuration.
 
@@ -78,7 +82,7 @@ def lock(
     if ROOT_JOINT in names and robot.mechanism.root == "floating":
         raise CannotLock(ROOT_JOINT, "it is the floating root; load the robot with root='fixed' instead")
     q, tolerance = start(robot, q, "q"), checked_tolerance(tolerance)
-    locked = lock_joints(robot.mechanism, names, robot.joint_coordinates(q))
+    locked = lock_joints(robot.mechanism, names, robot.joint_positions(q, mimic=True))
     _check_closed(robot, q, {constraint.name for constraint in locked.constraints}, tolerance)
     built = build_robot(locked.mechanism, geometry=False)
     idx_q, idx_v = _free_indices(robot, built)

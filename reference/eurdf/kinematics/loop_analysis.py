@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
+from eurdf.diagnostics.wording import enumerated
 from eurdf.json_schema import HIDDEN, Count, NullIfInfinite
 from eurdf.kinematics.finite_mobility import Evidence, FiniteMobility
 from eurdf.kinematics.problem import Group
@@ -19,7 +20,7 @@ from eurdf.kinematics.rank import numerical_rank, singular_values
 NEGLIGIBLE = 1e-4
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Motion:
     """A motion left with every actuator held.
 
@@ -35,8 +36,11 @@ class Motion:
     values: Vector = field(metadata=HIDDEN)
     q: Vector = field(metadata=HIDDEN)
 
+    def __repr__(self) -> str:
+        return f"<Motion of {enumerated(self.joints)}>"
 
-@dataclass(frozen=True, slots=True, eq=False)
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class LoopAnalysis:
     """An independent group of loops: they share joints with one another and with no other loop.
 
@@ -86,6 +90,12 @@ class LoopAnalysis:
     evidence: Evidence | None
     branches: tuple[Count, ...]
     rigid_order: Count | None
+
+    def __repr__(self) -> str:
+        return (
+            f"<LoopAnalysis of {enumerated(self.closures)}: {self.nv} velocities, {self.nc} rows of rank {self.rank}, "
+            f"{self.mobility} degrees of freedom, {self.uncontrolled} uncontrolled>"
+        )
 
 
 def analyze_group(

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from eurdf.kinematics.tolerances import CLOSED
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Opening:
     """How far a constraint is open.
 
@@ -42,6 +42,9 @@ class Opening:
     def width(self) -> float:
         """The larger of its two numbers, in m or rad."""
         return max(self.position, self.angle)
+
+    def __repr__(self) -> str:
+        return f"<Opening: {self}>"
 
 
 def widest(openings: Iterable[Opening], most: int = 4) -> str:

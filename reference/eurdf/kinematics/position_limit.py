@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class JointAtLimit:
     """A joint whose coordinate is at one of its limits.
 
@@ -32,6 +32,9 @@ class JointAtLimit:
 
     def __str__(self) -> str:
         return f"'{self.joint}' ({self.side} limit {self.limit:.6g})"
+
+    def __repr__(self) -> str:
+        return f"<JointAtLimit: {self} rad or m>"
 
 
 @dataclass(frozen=True, eq=False)

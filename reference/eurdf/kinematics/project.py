@@ -11,16 +11,17 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
+from eurdf.errors import NotClosable
 from eurdf.kinematics.assembly import assembled, close, start
 from eurdf.kinematics.derived import borrowed, derived
-from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.finite import finite, overflow_refused
+from eurdf.kinematics.named import Named, velocity_of
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import are_finite
 from eurdf.kinematics.residual import acceleration_drift, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpace, TangentSpaces, metric, nearest
 from eurdf.kinematics.tolerances import RESTARTS, SOLVED
-from eurdf.pinocchio.arguments import checked_array, checked_tolerance
+from eurdf.pinocchio.arguments import checked_tolerance
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -34,7 +35,7 @@ _DIFFERENCE = 1e-6
 
 @overflow_refused("the configuration")
 def project_configuration(
-    robot: Robot, q: Vector, weights: Vector | Matrix | None = None, *, tolerance: float = SOLVED
+    robot: Robot, q: Named, *, weights: Vector | Matrix | None = None, tolerance: float = SOLVED
 ) -> Vector:
     """The closed configuration nearest to q.
 
@@ -160,7 +161,7 @@ def _second_derivatives(
 
 
 @overflow_refused("the velocity")
-def project_velocity(robot: Robot, q: Vector, v: Vector, weights: Vector | Matrix | None = None) -> Vector:
+def project_velocity(robot: Robot, q: Named, v: Named, *, weights: Vector | Matrix | None = None) -> Vector:
     """The velocity nearest to v that keeps the loops closed.
 
     The orthogonal projection onto ker K(q): v' = Z (Zᵀ W Z)⁻¹ Zᵀ W v with K Z = 0, which minimises (v' - v)ᵀ W (v' - v)
@@ -179,7 +180,7 @@ def project_velocity(robot: Robot, q: Vector, v: Vector, weights: Vector | Matri
         ValueError: ``q`` or ``v`` has another shape or is not finite, or ``weights`` is not a metric.
     """
     W = metric(weights, robot.tree.nv)
-    v = checked_array("v", v, (robot.tree.nv,))
+    v = velocity_of(robot, v)
     _, K = residual_and_jacobian(robot, start(robot, q, "q"))
     projected = nearest(derived(robot, TangentSpaces).at(K).basis, W, v)
     finite("the velocity", projected)
@@ -188,7 +189,7 @@ def project_velocity(robot: Robot, q: Vector, v: Vector, weights: Vector | Matri
 
 @overflow_refused("the acceleration")
 def project_acceleration(
-    robot: Robot, q: Vector, v: Vector, a: Vector, weights: Vector | Matrix | None = None
+    robot: Robot, q: Named, v: Named, a: Named, *, weights: Vector | Matrix | None = None
 ) -> Vector:
     """The acceleration nearest to a that keeps the loops closed.
 
@@ -211,7 +212,7 @@ def project_acceleration(
         ValueError: ``q``, ``v`` or ``a`` has another shape or is not finite, or ``weights`` is not a metric.
     """
     W = metric(weights, robot.tree.nv)
-    v, a, q = checked_array("v", v, (robot.tree.nv,)), checked_array("a", a, (robot.tree.nv,)), start(robot, q, "q")
+    v, a, q = velocity_of(robot, v), velocity_of(robot, a, "a"), start(robot, q, "q")
     _, K = residual_and_jacobian(robot, q)
     space = derived(robot, TangentSpaces).at(K)
     forced = -space.inverse @ acceleration_drift(robot, q, v)

@@ -15,14 +15,14 @@ from eurdf.array import Matrix, Vector
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.evaluate import Evaluator, State, evaluator
 from eurdf.kinematics.finite import finite
+from eurdf.kinematics.named import Named, configuration_of, velocity_of
 from eurdf.kinematics.opening import Opening
-from eurdf.pinocchio.arguments import checked_array
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 
-def residual(robot: Robot, q: Vector) -> Vector:
+def residual(robot: Robot, q: Named) -> Vector:
     """Residual of all constraints, stacked in their order.
 
     Args:
@@ -36,14 +36,14 @@ def residual(robot: Robot, q: Vector) -> Vector:
         ValueError: ``q`` has another shape or is not finite.
         NumericalOverflow: Coordinates or lengths are so large that the residual is not finite.
     """
-    q = checked_array("q", q, (robot.tree.nq,))
+    q = configuration_of(robot, q)
     with borrowed(robot, _constraints) as constraints:
         r = np.array(constraints.residual(constraints.at(q[None]))[0])
     finite("the residual", r)
     return r
 
 
-def residual_and_jacobian(robot: Robot, q: Vector) -> tuple[Vector, Matrix]:
+def residual_and_jacobian(robot: Robot, q: Named) -> tuple[Vector, Matrix]:
     """Residual of all constraints and its derivative (EU-CLO-010).
 
     Args:
@@ -57,7 +57,7 @@ def residual_and_jacobian(robot: Robot, q: Vector) -> tuple[Vector, Matrix]:
         ValueError: As in `residual`.
         NumericalOverflow: As in `residual`, also of the derivative.
     """
-    q = checked_array("q", q, (robot.tree.nq,))
+    q = configuration_of(robot, q)
     with borrowed(robot, _constraints) as constraints:
         at = constraints.at(q[None])
         r, K = np.array(constraints.residual(at)[0]), constraints.jacobian(at)[0]
@@ -81,7 +81,7 @@ def acceleration_drift(robot: Robot, q: Vector, v: Vector) -> Vector:
     Raises:
         ValueError: As in `residual`, also for ``v``.
     """
-    q, v = checked_array("q", q, (robot.tree.nq,)), checked_array("v", v, (robot.tree.nv,))
+    q, v = configuration_of(robot, q), velocity_of(robot, v)
     with borrowed(robot, _constraints) as constraints:
         return np.asarray(constraints.drift(q[None], v[None])[0])
 
@@ -98,7 +98,7 @@ def drift_of_pairs(robot: Robot, q: Vector, V: Matrix) -> Matrix:
     return D
 
 
-def closure_openings(robot: Robot, q: Vector) -> tuple[Opening, ...]:
+def closure_openings(robot: Robot, q: Named) -> tuple[Opening, ...]:
     """How far each constraint is open, in their order.
 
     Args:
@@ -114,9 +114,9 @@ def closure_openings(robot: Robot, q: Vector) -> tuple[Opening, ...]:
     return found
 
 
-def all_openings(robot: Robot, q: Vector) -> tuple[Opening, ...]:
+def all_openings(robot: Robot, q: Named) -> tuple[Opening, ...]:
     """As `closure_openings`, also where they are not finite: such a constraint is open."""
-    q = checked_array("q", q, (robot.tree.nq,))
+    q = configuration_of(robot, q)
     with borrowed(robot, _constraints) as constraints:
         return _named(robot, constraints, constraints.at(q[None]))
 

@@ -6,19 +6,20 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+from pinocchio import LOCAL
 
-from eurdf.array import Indices, Mask, Matrix, Vector
+from eurdf.array import Indices, Mask, Matrix, Vector, numbers
+from eurdf.errors import DependentActuators
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.derived import borrowed, derived
-from eurdf.kinematics.exceptions import DependentActuators
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.frame_jacobian import checked_reference, frame_jacobian, frames_of, in_reference
+from eurdf.kinematics.named import Named
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import numerical_rank, numerical_ranks
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces, metric, orthonormal
 from eurdf.pinocchio.arguments import checked_array
-from pinocchio import LOCAL
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -28,7 +29,7 @@ _PART = 1e-6
 
 
 @overflow_refused("the derivative")
-def dq_dq_actuated(robot: Robot, q: Vector, weights: Vector | Matrix | None = None) -> Matrix:
+def dq_dq_actuated(robot: Robot, q: Named, *, weights: Vector | Matrix | None = None) -> Matrix:
     """Derivative of the closed configuration with respect to the actuated coordinates: v = D u.
 
     D solves K D = 0, Sᵀ D = 1. Of all solutions, each column of D is the one with the least norm in the metric W, so
@@ -64,7 +65,7 @@ def dq_dq_actuated(robot: Robot, q: Vector, weights: Vector | Matrix | None = No
 
 @overflow_refused("the Jacobian")
 def actuated_jacobian(
-    robot: Robot, q: Vector, frame: str, reference: Any = LOCAL, weights: Vector | Matrix | None = None
+    robot: Robot, frame: str, q: Named, *, reference: Any = LOCAL, weights: Vector | Matrix | None = None
 ) -> Matrix:
     """Jacobian of a frame with respect to the actuated velocities: its twist is J D u.
 
@@ -76,8 +77,8 @@ def actuated_jacobian(
 
     Args:
         robot: The robot.
-        q: A closed configuration (nq,).
         frame: Name of a link, a joint (its frame on the child's side), or a frame of the description.
+        q: A closed configuration (nq,).
         reference: Where the twist is expressed: ``pin.LOCAL``, ``pin.WORLD`` or ``pin.LOCAL_WORLD_ALIGNED``.
         weights: See `dq_dq_actuated`.
 
@@ -181,16 +182,16 @@ class FrameVelocity(NamedTuple):
     twist: Vector
     rank: int
 
+    def __repr__(self) -> str:
+        return (
+            f"<FrameVelocity: twist {numbers(self.twist)} m/s and rad/s, of rank {self.rank}; "
+            f"actuated {numbers(self.actuated)} rad/s or m/s>"
+        )
+
 
 @overflow_refused("the velocity")
 def differential_inverse_kinematics(
-    robot: Robot,
-    q: Vector,
-    frame: str,
-    twist: ArrayLike,
-    reference: Any = LOCAL,
-    *,
-    singular: float = 1e-3,
+    robot: Robot, frame: str, q: Named, twist: ArrayLike, *, reference: Any = LOCAL, singular: float = 1e-3
 ) -> FrameVelocity:
     """The velocity of the closed mechanism for a desired twist of a frame.
 
@@ -206,8 +207,8 @@ def differential_inverse_kinematics(
 
     Args:
         robot: The robot. Its actuators may depend on one another.
-        q: A closed configuration (nq,).
         frame: Name of a link, a joint (its frame on the child side), or a frame of the description.
+        q: A closed configuration (nq,).
         twist: Desired twist (6,) of the frame relative to the world: linear (m/s), then angular (rad/s).
         reference: The axes of the twist: ``pin.LOCAL``, ``pin.WORLD`` or ``pin.LOCAL_WORLD_ALIGNED``.
         singular: Fraction of the largest singular value below which a singular value counts as zero, between 0 and 1.

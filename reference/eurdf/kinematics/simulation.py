@@ -10,22 +10,22 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from eurdf.array import Matrix, Vector
+from eurdf.errors import NotClosable, SimulationDiverged, StepTooLongWarning
 from eurdf.kinematics.applied_force import AppliedForce, External
 from eurdf.kinematics.assembly import assemble, start
 from eurdf.kinematics.derived import borrowed, derived
-from eurdf.kinematics.exceptions import NotClosable, SimulationDiverged, StepTooLongWarning
 from eurdf.kinematics.finite import overflow_refused
 from eurdf.kinematics.forward_solver import ForwardSolver
 from eurdf.kinematics.independence import norm
+from eurdf.kinematics.named import Named, velocity_of
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.kinematics.tolerances import DIVERGED
-from eurdf.pinocchio.arguments import checked_array
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 #: Motor torques (nu,) at a time (s), a configuration (nq,) and a velocity (nv,).
-Control = Callable[[float, Vector, Vector], Vector]
+Control = Callable[[float, Vector, Vector], Named]
 
 
 # Energy error, relative to the energy exchanged, above which the step is too long, and that of the step suggested.
@@ -71,11 +71,14 @@ class Simulation(NamedTuple):
         """The largest range of kinetic energy, potential energy and work, J: what `energy_error` compares with."""
         return float(max(np.ptp(part) for part in (self.kinetic, self.potential, self.work)))
 
+    def __repr__(self) -> str:
+        return f"<Simulation: {self.t[-1]:.6g} s in {len(self.t) - 1} steps; energy error {self.energy_error:.3g} J>"
+
 
 def simulate(
     robot: Robot,
-    q: Vector,
-    v: Vector | None = None,
+    q: Named,
+    v: Named | None = None,
     *,
     duration: float,
     step: float = 1e-3,
@@ -122,7 +125,7 @@ def simulate(
     callers = np.geterr()
     with borrowed(robot, ForwardSolver) as solver, np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         motion = _Motion(robot, solver, control, callers, AppliedForce(robot, external, dissipation), step)
-        initial = checked_array("v", np.zeros(tree.nv) if v is None else v, (tree.nv,))
+        initial = velocity_of(robot, {} if v is None else v)
         qs[0], vs[0] = motion.closed(0.0, assembly.q, initial, 0)
         kinetic[0], potential[0] = motion.energies(qs[0], vs[0])
         for n in range(count):

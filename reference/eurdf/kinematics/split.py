@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eurdf.array import Indices, Vector
+from eurdf.kinematics.named import Named, configuration_of, velocity_of
 from eurdf.pinocchio.arguments import checked_array
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 
-def split_configuration(robot: Robot, q: Vector) -> tuple[Vector, Vector]:
+def split_configuration(robot: Robot, q: Named) -> tuple[Vector, Vector]:
     """Split a configuration into the coordinates of the actuated joints and the others.
 
     Args:
@@ -29,7 +30,7 @@ def split_configuration(robot: Robot, q: Vector) -> tuple[Vector, Vector]:
     Raises:
         ValueError: ``q`` has a wrong shape or is not finite.
     """
-    return _split("q", q, robot.actuation.idx_q, robot.tree.nq)
+    return _split(configuration_of(robot, q), robot.actuation.idx_q)
 
 
 def merge_configuration(robot: Robot, q_actuated: Vector, q_free: Vector) -> Vector:
@@ -46,7 +47,7 @@ def merge_configuration(robot: Robot, q_actuated: Vector, q_free: Vector) -> Vec
     return _merge("q", q_actuated, q_free, robot.actuation.idx_q, robot.tree.nq)
 
 
-def split_velocity(robot: Robot, v: Vector) -> tuple[Vector, Vector]:
+def split_velocity(robot: Robot, v: Named) -> tuple[Vector, Vector]:
     """Split a velocity (or acceleration, or torque) into the part of the actuated joints, Sᵀ v, and the others.
 
     Args:
@@ -59,7 +60,7 @@ def split_velocity(robot: Robot, v: Vector) -> tuple[Vector, Vector]:
     Raises:
         ValueError: ``v`` has a wrong shape or is not finite.
     """
-    return _split("v", v, robot.actuation.idx_v, robot.tree.nv)
+    return _split(velocity_of(robot, v), robot.actuation.idx_v)
 
 
 def merge_velocity(robot: Robot, v_actuated: Vector, v_free: Vector) -> Vector:
@@ -76,8 +77,7 @@ def merge_velocity(robot: Robot, v_actuated: Vector, v_free: Vector) -> Vector:
     return _merge("v", v_actuated, v_free, robot.actuation.idx_v, robot.tree.nv)
 
 
-def _split(name: str, whole: Vector, actuated: Indices, size: int) -> tuple[Vector, Vector]:
-    whole = checked_array(name, whole, (size,))
+def _split(whole: Vector, actuated: Indices) -> tuple[Vector, Vector]:
     return whole[actuated], np.delete(whole, actuated)
 
 

@@ -1,7 +1,6 @@
 """Force and energy of the springs of a robot's joints, and the closed configuration at which they store the least.
 
-Pinocchio's model has no springs. To use its algorithms on a robot with springs, add `spring_force` to the generalized
-force; the functions of this package include it.
+The public names are those of `eurdf.springs`.
 """
 
 from __future__ import annotations
@@ -14,11 +13,11 @@ import numpy as np
 from eurdf.array import Indices, Matrix, Vector
 from eurdf.kinematics.assembly import close
 from eurdf.kinematics.derived import derived
+from eurdf.kinematics.named import Named, configuration_of
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.residual import drift_of_pairs, residual_and_jacobian
 from eurdf.kinematics.tolerances import LONGEST_MOTION, MOST_CORRECTION
-from eurdf.pinocchio.arguments import checked_array
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -32,7 +31,7 @@ _SLACK = 1e-9
 _SHORTEST_STEP = 2.0**-20
 
 
-def spring_force(robot: Robot, q: Vector) -> Vector:
+def spring_force(robot: Robot, q: Named) -> Vector:
     """Generalized force of the springs (EU-JNT-035).
 
     A spring with the stiffness k on a coordinate c has the force -k (c - rest). That of a mimic joint acts on its
@@ -48,10 +47,10 @@ def spring_force(robot: Robot, q: Vector) -> Vector:
     Raises:
         ValueError: ``q`` has a wrong shape or is not finite.
     """
-    return robot.tree.springs.force(checked_array("q", q, (robot.tree.nq,)), robot.tree.nv)
+    return robot.tree.springs.force(configuration_of(robot, q), robot.tree.nv)
 
 
-def spring_energy(robot: Robot, q: Vector) -> float:
+def spring_energy(robot: Robot, q: Named) -> float:
     """Energy that the springs store, Σ ½ k (c - rest)², J.
 
     Args:
@@ -61,7 +60,7 @@ def spring_energy(robot: Robot, q: Vector) -> float:
     Raises:
         ValueError: ``q`` has a wrong shape or is not finite.
     """
-    return robot.tree.springs.energy(checked_array("q", q, (robot.tree.nq,)))
+    return robot.tree.springs.energy(configuration_of(robot, q))
 
 
 class Resting(NamedTuple):

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from eurdf.array import Mask, Matrix, Vector
+from eurdf.errors import NotClosable
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.branch import Branch, Point
-from eurdf.kinematics.exceptions import NotClosable
+from eurdf.kinematics.named import Named
 from eurdf.kinematics.path import Elements, follow
 from eurdf.kinematics.position_limit import PositionLimits, chosen_limits
 from eurdf.kinematics.scale import characteristic_length
@@ -28,7 +29,7 @@ End = Literal["limit", "half turn", "characteristic length", "passive limit", "d
 _SHORTEST_STEP = 2.0**-12  # steps are halved down to this fraction of one
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class MotionPath:
     """The path of an actuator from its start toward one of its position limits.
 
@@ -51,8 +52,12 @@ class MotionPath:
     correction: float
     singularity: float
 
+    def __repr__(self) -> str:
+        by = f" of '{self.joint}'" if self.joint else ""
+        return f"<MotionPath to {self.reached:.6g} rad or m: {self.end}{by}; {len(self.configurations)} configurations>"
 
-@dataclass(frozen=True, slots=True, eq=False)
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Sweep:
     """The range of motion of one actuator, as `sweep` returns it.
 
@@ -72,11 +77,15 @@ class Sweep:
     upper: MotionPath
     periodic: bool | None
 
+    def __repr__(self) -> str:
+        ends = (f"{path.reached:.6g} ({path.end})" for path in (self.lower, self.upper))
+        return f"<Sweep of '{self.actuator}': {' to '.join(ends)} rad or m>"
+
 
 def sweep(
     robot: Robot,
     actuator: str,
-    q0: Vector | None = None,
+    q0: Named | None = None,
     *,
     steps: int = 200,
     limits: bool = True,

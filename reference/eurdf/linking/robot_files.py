@@ -11,7 +11,7 @@ from typing import Any, Literal, NamedTuple, TypeVar
 
 from eurdf.collection import find_robot
 from eurdf.diagnostics import Diagnostics, FileError, Place
-from eurdf.exceptions import CannotExpand, InvalidRobot
+from eurdf.errors import CannotExpand, InvalidRobot
 from eurdf.format.model import Description
 from eurdf.format.read import read_description, version_of
 from eurdf.format.urdf.data import Urdf

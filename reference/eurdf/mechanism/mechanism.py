@@ -49,7 +49,7 @@ class Motor(NamedTuple):
     control: tuple[float, float] | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Mechanism:
     """A robot with closed kinematic chains.
 
@@ -102,3 +102,9 @@ class Mechanism:
     def nc(self) -> int:
         """Number of rows of all constraints."""
         return sum(constraint.rows for constraint in self.constraints)
+
+    def __repr__(self) -> str:
+        return (
+            f"<Mechanism '{self.name}': {len(self.bodies)} bodies, {len(self.joints)} joints, "
+            f"{len(self.closures)} closures, {len(self.couplings)} couplings, {len(self.actuators)} actuators>"
+        )

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-
 import pinocchio as pin
+
 from eurdf.array import Indices, Matrix
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.configuration import Slot

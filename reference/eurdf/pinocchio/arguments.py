@@ -12,8 +12,8 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-
 import pinocchio as pin
+
 from eurdf.array import Matrix
 
 _FLOATS = np.dtype(np.float64)

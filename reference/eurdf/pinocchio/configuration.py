@@ -6,8 +6,11 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+import numpy as np
 import pinocchio as pin
+
 from eurdf.array import Vector
+from eurdf.diagnostics.wording import meant
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, root_joint
@@ -58,7 +61,7 @@ def slots(mechanism: Mechanism) -> dict[str, Slot]:
 def configuration_vector(
     mechanism: Mechanism,
     model: pin.Model,
-    coordinates: Mapping[str, Sequence[float]],
+    coordinates: Mapping[str, float | Sequence[float]],
     at: Mapping[str, Slot] | None = None,
 ) -> Vector:
     """The configuration q in which joints have the given coordinates, and all others their neutral (EU-CFG-005).
@@ -82,7 +85,7 @@ def configuration_vector(
     at = slots(mechanism) if at is None else at
     mimics = {joint.name for joint in mechanism.joints if joint.mimic is not None}
     for name, given in coordinates.items():
-        values = [float(value) for value in given]
+        values = np.atleast_1d(np.asarray(given, dtype=np.float64)).tolist()
         if name == ROOT_JOINT and mechanism.root == "floating":
             q[:7] = _checked(name, values, root_joint("").type)
             continue
@@ -90,7 +93,7 @@ def configuration_vector(
         if slot is None:
             if name in mimics:
                 continue
-            raise ValueError(f"'{name}' is not a joint with coordinates")
+            raise ValueError(f"'{name}' is not a joint with coordinates{meant(name, at)}")
         values = _checked(name, values, slot.joint.type)
         if slot.nq > len(values):  # the last of them is an angle, which Pinocchio has as (cos, sin)
             values[-1:] = math.cos(values[-1]), math.sin(values[-1])

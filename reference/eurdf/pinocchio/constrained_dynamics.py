@@ -10,8 +10,8 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-
 import pinocchio as pin
+
 from eurdf.array import Matrix, Vector
 from eurdf.pinocchio.constraint import number_of_models
 from eurdf.pinocchio.tree_dynamics import MOST_VELOCITIES_WITH_DATA

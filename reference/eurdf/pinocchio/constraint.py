@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 import numpy as np
-
 import pinocchio as pin
+
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.hinge import HingeClosure
 from eurdf.closures.point import PointClosure
-from eurdf.exceptions import EurdfError
+from eurdf.errors import NoConstraintModel
 from eurdf.mechanism.constraint import Constraint
 from eurdf.mechanism.pose import Vector3, direction
 from eurdf.pinocchio.tree import Tree
@@ -21,24 +21,6 @@ _NUMBER: Mapping[type[Constraint], int] = {PointClosure: 1, FrameClosure: 1, Hin
 
 #: Distance of the point on the axis of a hinge from its origin, m.
 _ON_AXIS = 0.1
-
-
-class NoConstraintModel(EurdfError, ValueError):  # noqa: N818 - part of the public interface
-    """A constraint has a kind for which Pinocchio has no constraint model.
-
-    Attributes:
-        constraint: Name of the constraint.
-        type: Its type.
-    """
-
-    def __init__(self, constraint: str, type_: str) -> None:
-        self.constraint = constraint
-        self.type = type_
-        super().__init__(
-            f"Pinocchio has no constraint model for constraint '{constraint}' of type '{type_}'; use "
-            "robot.model, robot.constraints and the other attributes one by one, and the functions of eurdf, such as "
-            "eurdf.forward_dynamics in place of pin.constraintDynamics"
-        )
 
 
 def number_of_models(constraint: Constraint) -> int:

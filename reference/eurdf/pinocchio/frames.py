@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pinocchio as pin
+
 from eurdf.diagnostics.wording import meant
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose

@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterator, Mapping
 
 import coal
 import numpy as np
-
 import pinocchio as pin
+
 from eurdf.array import Vector
-from eurdf.exceptions import EurdfError
+from eurdf.errors import EurdfError
 from eurdf.mechanism.body import Shape
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.frames import body_frame_ids, placement_of

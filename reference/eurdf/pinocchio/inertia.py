@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-
 import pinocchio as pin
+
 from eurdf.array import Matrix, Vector
 from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.pose import IDENTITY, Quaternion

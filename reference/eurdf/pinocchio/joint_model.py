@@ -6,8 +6,8 @@ import math
 from functools import lru_cache
 
 import numpy as np
-
 import pinocchio as pin
+
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import Vector3, squarable

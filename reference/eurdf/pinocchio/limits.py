@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-
 import pinocchio as pin
+
 from eurdf.array import Vector
 from eurdf.mechanism.joint import Joint
 

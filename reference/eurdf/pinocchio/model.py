@@ -12,6 +12,7 @@ from collections.abc import Collection, Mapping
 from itertools import count
 
 import pinocchio as pin
+
 from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.mechanism.pose import IDENTITY

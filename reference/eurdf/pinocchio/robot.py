@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import pinocchio as pin
+
 from eurdf.array import Vector
 from eurdf.diagnostics import Diagnostic
 from eurdf.mechanism.constraint import Constraint
@@ -149,44 +150,39 @@ class Robot:
         """Each joint that has coordinates of its own, by name, with the indices of these and of its velocities."""
         return MappingProxyType(slots(self.mechanism))
 
-    def configuration(self, coordinates: Mapping[str, Sequence[float]]) -> Vector:
-        """The configuration (nq,) in which joints have the given coordinates: the inverse of `coordinates`.
+    def configuration(self, positions: Mapping[str, float | Sequence[float]]) -> Vector:
+        """The configuration (nq,) in which joints have the given positions: the inverse of `joint_positions`.
 
         Args:
-            coordinates: By name of the joint, as a file states them; a joint that is not named is neutral.
+            positions: By name of the joint, as a file states them; a joint that is not named is neutral. Those of mimic
+                joints follow from their leaders', and are ignored.
 
         Raises:
             ValueError: A name is not a joint with coordinates, or a joint is given too few or too many of them, or a
                 quaternion of length 0.
         """
-        return configuration_vector(self.mechanism, self.model, coordinates, self.slots)
+        return configuration_vector(self.mechanism, self.model, positions, self.slots)
 
-    def coordinates(self, q: Vector) -> dict[str, tuple[float, ...]]:
-        """The coordinates of a configuration as a file states them: the inverse of what makes `configurations`.
+    def joint_positions(self, q: Vector, *, mimic: bool = False) -> dict[str, tuple[float, ...]]:
+        """The positions of the joints at a configuration, as a file states them: the inverse of `configuration`.
 
         Args:
             q: Configuration, of shape (nq,).
+            mimic: Whether to return also those of joints that mimic another, which follow from that one's.
 
         Returns:
             For each joint that has coordinates of its own, by name: an angle (rad) or a length (m); of a universal
             joint two angles, of a cylindrical one length and angle, of a planar one x, y and angle; of a spherical one
             a quaternion x, y, z, w, of a floating one x, y, z and a quaternion. The joint of a floating root is
-            ``root_joint``. Fixed joints and those that mimic another have none. The angle of a joint
-            without limits that Pinocchio has as (cos, sin) is from -pi to pi.
+            ``root_joint``. Fixed joints have none. The angle of a joint without limits that Pinocchio has as (cos, sin)
+            is from -pi to pi.
 
         Raises:
             ValueError: q does not have the shape (nq,), or is not finite.
         """
-        every = self.joint_coordinates(q)
-        return {name: own for name, own in every.items() if name in self.slots or name == ROOT_JOINT}
-
-    def joint_coordinates(self, q: Vector) -> dict[str, tuple[float, ...]]:
-        """The same of every joint that is not fixed: also of those that mimic another, which follow from that one's.
-
-        Raises:
-            ValueError: q does not have the shape (nq,), or is not finite.
-        """
-        return joint_coordinates(self.mechanism, self.model, q)
+        every = joint_coordinates(self.mechanism, self.model, q)
+        own = (name for name in every if mimic or name in self.slots or name == ROOT_JOINT)
+        return {name: every[name] for name in own}
 
     def __getstate__(self) -> dict[str, Any]:
         """What is pickled and copied: the model and its own geometry; what is derived from them is computed anew."""

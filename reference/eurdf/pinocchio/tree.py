@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-
 import pinocchio as pin
+
 from eurdf.array import Mask, Matrix, Vector
 from eurdf.closures.coupling import Coordinate
 from eurdf.diagnostics.wording import meant

@@ -9,8 +9,8 @@ from __future__ import annotations
 from functools import cached_property, lru_cache
 
 import numpy as np
-
 import pinocchio as pin
+
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.pinocchio.springs import Springs
 

@@ -10,8 +10,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-
 import pinocchio as pin
+
 from eurdf.array import Indices, Matrix, Vector
 from eurdf.closures.kind import PoseArrays, RelativeMotions, RelativePoses
 from eurdf.pinocchio.ancestry import between

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from eurdf.diagnostics import did_you_mean
-from eurdf.exceptions import CannotExpand, MissingExtra
+from eurdf.errors import CannotExpand, MissingExtra
 from eurdf.mesh_files.folders import Folders
 from eurdf.reading.resource import package_homes
 from eurdf.reading.source import FILE_LIMIT, Source, too_large

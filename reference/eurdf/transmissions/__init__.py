@@ -2,3 +2,7 @@
 
 The package is not named ``transmission``, since `eurdf.transmission` is the function.
 """
+
+from eurdf.public_names import public_names as _public_names
+
+__getattr__, __dir__ = _public_names(__name__, __file__)

@@ -123,7 +123,7 @@ class _Tables:
         own = {joint.name: mimics.get(joint.name) for joint in mechanism.joints if joint.child in relevant}
         needed = {name if mimic is None else mimic.joint for name, mimic in own.items()} | alone
         first: dict[str, tuple[int, int]] = {}
-        values = robot.coordinates(q)
+        values = robot.joint_positions(q)
         scale = derived(robot, TangentSpaces).scale
         for name, slot in robot.slots.items():
             if name not in needed:

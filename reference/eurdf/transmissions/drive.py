@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
+from eurdf.errors import NotClosable, NoTransmission, TooFar, shown
 from eurdf.kinematics.assembly import assemble, closed_start, start
 from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.evaluate import evaluator
-from eurdf.kinematics.exceptions import NotClosable, TooFar
 from eurdf.kinematics.loop import independent_groups, merged, moving_velocities
+from eurdf.kinematics.named import Named
 from eurdf.kinematics.path import Elements, follow
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import least_solution, norms, numerical_rank
@@ -27,7 +28,6 @@ from eurdf.kinematics.tolerances import (
     MOVES,
 )
 from eurdf.pinocchio.arguments import checked_array
-from eurdf.transmissions.exceptions import NoTransmission, shown
 from eurdf.transmissions.selection import Selection, listed
 from eurdf.transmissions.transmission import Transmission, at_one
 
@@ -214,7 +214,7 @@ class Drive:
         """Why the given joints do not get from q (nq,) to the positions."""
         there = np.array(q)
         self.given.write(positions, there)
-        anywhere = assemble(self._robot, there, (*self.given.joints, *self._held))
+        anywhere = assemble(self._robot, there, hold=(*self.given.joints, *self._held))
         at = shown(zip(self.given.names, positions.tolist(), strict=True))
         if not anywhere.closes:
             return NotClosable(f"the loops cannot be closed at {at}", anywhere.open, anywhere.q)
@@ -252,7 +252,7 @@ class Drive:
         return NoTransmission("G" if self._by_joints else "B_J", reason)
 
 
-def closed_pose(robot: Robot, q: Vector | None) -> Vector:
+def closed_pose(robot: Robot, q: Named | None) -> Vector:
     """A configuration, with its loops closed.
 
     Raises:

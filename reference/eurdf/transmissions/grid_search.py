@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from eurdf.array import Mask, Matrix, Vector
+from eurdf.array import Mask, Matrix, Vector, numbers
 from eurdf.transmissions.reach import Reach, Stop
 
 # Bisections of the step from a point that the joints reach to one that they do not.
@@ -23,7 +23,7 @@ Node = tuple[int, ...]
 Edge = tuple[Node, Node]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class BoundaryPoint:
     """A point at which the joints stop.
 
@@ -36,6 +36,9 @@ class BoundaryPoint:
     position: Vector
     q: Vector
     stop: Stop
+
+    def __repr__(self) -> str:
+        return f"<BoundaryPoint {numbers(self.position)} rad or m: {self.stop}>"
 
 
 class GridSearch:

@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from eurdf.array import Matrix, Vector
+from eurdf.array import Matrix, Vector, numbers
 from eurdf.kinematics.assembly import start
+from eurdf.kinematics.named import Named, vector_of
+from eurdf.loading import of_any_robot
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.transmissions.motors import sides
 from eurdf.transmissions.transmission import at_one, require
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
 Side = Literal["joints", "motors"]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Impedance:
     """Gains of joints and the equal gains of motors, as `impedance_map` returns them.
 
@@ -57,15 +59,23 @@ class Impedance:
     joint_stiffness_of_drives: Matrix
     joint_damping_of_drives: Matrix
 
+    def __repr__(self) -> str:
+        joints, motors = (numbers(np.diagonal(each)) for each in (self.joint_stiffness, self.motor_stiffness))
+        return (
+            f"<Impedance: stiffness of {', '.join(self.joints)} {joints}, of {', '.join(self.motors)} {motors}, "
+            "N·m/rad or N/m>"
+        )
 
+
+@of_any_robot
 def impedance_map(
     robot: Robot,
     joints: str | Iterable[str],
-    q: Vector | None,
+    q: Named | None,
     stiffness: ArrayLike,
-    damping: ArrayLike | None = None,
-    tau: ArrayLike | None = None,
     *,
+    damping: ArrayLike | None = None,
+    tau: Named | None = None,
     side: Side = "joints",
     motors: str | Iterable[str] | None = None,
 ) -> Impedance:
@@ -100,7 +110,7 @@ def impedance_map(
     at = at_one(robot, chosen, start(robot, q, "q"), by)
     n = len(at.joints if side == "joints" else at.motors)
     K, C = _symmetric("stiffness", stiffness, n), _symmetric("damping", np.zeros(n) if damping is None else damping, n)
-    torque = np.zeros(n) if tau is None else checked_array("tau", tau, (n,))
+    torque = np.zeros(n) if tau is None else vector_of(tau, at.joints if side == "joints" else at.motors, "tau")
     G, B = require(at, "G", "B_J")
     tau_m = at.motor_torque(torque) if side == "joints" else torque
     geometric = -np.tensordot(tau_m, at.hessian, axes=1)

@@ -8,15 +8,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eurdf.array import Matrix, Vector
+from eurdf.array import Matrix, Vector, numbers
+from eurdf.errors import NoTransmission
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.dynamics import mass_matrix
 from eurdf.kinematics.finite import finite, overflow_refused
+from eurdf.kinematics.named import Named
 from eurdf.kinematics.tolerances import FLOOR, MASSLESS
+from eurdf.loading import of_any_robot
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.pinocchio.robot import build_robot
-from eurdf.transmissions.exceptions import NoTransmission
 from eurdf.transmissions.motors import linkage_bodies, sides
 from eurdf.transmissions.selection import Selection, listed
 from eurdf.transmissions.transmission import Transmission, at_one, configurations, require
@@ -25,7 +27,7 @@ if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ReflectedInertia:
     """The terms of the inertia that joints feel, as `reflected_inertia` returns them.
 
@@ -64,14 +66,19 @@ class ReflectedInertia:
         """
         return np.asarray(self.rotors + self.linkage)
 
+    def __repr__(self) -> str:
+        armature = np.diagonal(self.equivalent_armature, axis1=-2, axis2=-1)
+        return f"<ReflectedInertia of {', '.join(self.joints)}: equivalent armature {numbers(armature)} kg·m² or kg>"
 
+
+@of_any_robot
 @overflow_refused("the inertia")
 def reflected_inertia(
     robot: Robot,
     joints: str | Iterable[str],
-    q: Vector | Matrix | None = None,
-    motors: str | Iterable[str] | None = None,
+    q: Named | Matrix | None = None,
     *,
+    motors: str | Iterable[str] | None = None,
     armature: Mapping[str, float] | None = None,
 ) -> ReflectedInertia:
     """The inertia that joints feel, by constraint embedding: M_J = Nᵀ M N with N = dq/dq_J.

@@ -11,14 +11,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from eurdf.array import Indices, Matrix, Vector
+from eurdf.array import Indices, Matrix, Vector, numbers
+from eurdf.errors import NoTransmission
+from eurdf.kinematics.named import Named
+from eurdf.loading import of_any_robot
 from eurdf.pinocchio.arguments import checked_array
-from eurdf.transmissions.exceptions import NoTransmission
 from eurdf.transmissions.motors import finite_ranges, sides
 from eurdf.transmissions.polytope import Polytope, box_along, image_of_box, largest_box, preimage_of_box
+from eurdf.transmissions.reachable_set import Workspace
 from eurdf.transmissions.selection import Selection, selection
 from eurdf.transmissions.transmission import Transmission, Transmissions, at_many, at_one, configurations, require
-from eurdf.transmissions.workspace import Workspace
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -74,7 +76,7 @@ class SerialLimits:
         return f"<SerialLimits of {', '.join(self.joints)} by {', '.join(self.motors)}>"
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class CommonLimits:
     """The limits of joints at B configurations, as `serial_limits` returns them.
 
@@ -110,13 +112,20 @@ class CommonLimits:
     torque_margin: float | None = None
     velocity_margin: float | None = None
 
+    def __repr__(self) -> str:
+        return (
+            f"<CommonLimits of {', '.join(self.joints)} at {len(self.each)} configurations: "
+            f"torques ±{numbers(self.torque_box)} N·m or N, velocities ±{numbers(self.velocity_box)} rad/s or m/s>"
+        )
 
+
+@of_any_robot
 def serial_limits(
     robot: Robot,
     joints: str | Iterable[str],
-    q: Vector | Matrix | Workspace | None = None,
-    motors: str | Iterable[str] | None = None,
+    q: Named | Matrix | Workspace | None = None,
     *,
+    motors: str | Iterable[str] | None = None,
     torque_ratio: ArrayLike | None = None,
     velocity_ratio: ArrayLike | None = None,
 ) -> SerialLimits | CommonLimits:

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
+from eurdf.errors import NotClosable
 from eurdf.kinematics.derived import derived
-from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import numerical_ranks
 from eurdf.kinematics.residual import all_openings, drift_of_pairs, residual_and_jacobian

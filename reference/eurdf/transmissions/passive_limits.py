@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from eurdf.array import Vector
+from eurdf.errors import NoTransmission
 from eurdf.kinematics.scale import characteristic_length, velocity_scale
 from eurdf.kinematics.tolerances import MOVES
-from eurdf.transmissions.exceptions import NoTransmission
 from eurdf.transmissions.motors import motor_ranges
 from eurdf.transmissions.selection import selectable, selection
 from eurdf.transmissions.transmission import at_one, require
@@ -66,7 +66,7 @@ def passive_limits(robot: Robot, q: Vector) -> tuple[PassiveLimit, ...]:
     if at.rank_motors < len(motors):
         reason = f"only {at.rank_motors} of {len(motors)} actuator velocities are independent here"
         raise NoTransmission(
-            "a limit of each passive joint", f"{reason}; name joints and motors in eurdf.serial_limits"
+            "a limit of each passive joint", f"{reason}; name joints and motors in eurdf.transmissions.serial_limits"
         )
     free = {
         robot.tree.velocity_names[velocity]

@@ -12,13 +12,13 @@ import numpy as np
 
 from eurdf.array import Matrix, Vector
 from eurdf.diagnostics.extras import install_command
-from eurdf.exceptions import MissingExtra
+from eurdf.errors import MissingExtra
 from eurdf.transmissions.inertia import reflected_inertia
 from eurdf.transmissions.limits import CommonLimits, serial_limits
 from eurdf.transmissions.motors import unlimited_motors
 from eurdf.transmissions.reach import Stop
+from eurdf.transmissions.reachable_set import Workspace
 from eurdf.transmissions.transmission import at_many
-from eurdf.transmissions.workspace import Workspace
 from eurdf.writing.atomic_file import write_atomically
 
 #: Kinds of file that a figure can be.
@@ -171,8 +171,8 @@ def _fields(found: Workspace, q: Matrix, armature: Mapping[str, float] | None) -
     if unlimited_motors(robot, motors):
         condition = at_many(robot, joints, q, motors).condition
     else:
-        limits = cast(CommonLimits, serial_limits(robot, joints.joints, q, motors.joints))
-    inertia = reflected_inertia(robot, joints.joints, q, motors.joints, armature=armature).equivalent_armature
+        limits = cast(CommonLimits, serial_limits(robot, joints.joints, q, motors=motors.joints))
+    inertia = reflected_inertia(robot, joints.joints, q, motors=motors.joints, armature=armature).equivalent_armature
     rows: list[list[_Field]] = []
     for k, (name, unit) in enumerate(zip(joints.names, found.units, strict=True)):
         force, speed, inert, scale = _UNITS[unit]

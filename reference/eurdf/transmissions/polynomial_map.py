@@ -11,7 +11,7 @@ from numpy.polynomial import chebyshev
 from eurdf.array import Matrix, Vector
 from eurdf.json_schema import HIDDEN, LISTS, ROW, ROWS
 from eurdf.pinocchio.arguments import checked_array
-from eurdf.transmissions.workspace import Workspace
+from eurdf.transmissions.reachable_set import Workspace
 
 # Points for each coefficient of the polynomials.
 _POINTS_A_COEFFICIENT = 3

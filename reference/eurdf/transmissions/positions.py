@@ -8,15 +8,18 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from eurdf.array import Vector
+from eurdf.diagnostics.wording import enumerated
+from eurdf.errors import NoTransmission, OutOfReach
 from eurdf.kinematics.assembly import assemble, closed_start, start
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.forward import farthest
+from eurdf.kinematics.named import Named
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.tolerances import SOLVED
+from eurdf.loading import of_any_robot
 from eurdf.mechanism.joint import LIMIT_TOLERANCE
 from eurdf.pinocchio.arguments import checked_array
-from eurdf.transmissions.exceptions import NoTransmission, OutOfReach
 from eurdf.transmissions.motors import motors_of, passive_joints_of
 from eurdf.transmissions.selection import Selection, selection
 from eurdf.transmissions.transmission import at_one, require
@@ -38,8 +41,14 @@ class Positions(NamedTuple):
     q: Vector
     beyond: tuple[str, ...]
 
+    def __repr__(self) -> str:
+        values = ", ".join(f"{name} {value + 0.0:.6g}" for name, value in self.values.items())
+        beyond = f"; beyond their limits: {enumerated(self.beyond)}" if self.beyond else ""
+        return f"<Positions: {values} rad or m{beyond}>"
 
-def actuator_values(robot: Robot, joints: Mapping[str, float], q0: Vector | None = None) -> Positions:
+
+@of_any_robot
+def actuator_values(robot: Robot, joints: Mapping[str, float], q0: Named | None = None) -> Positions:
     """Positions of the motors at which joints have the given positions.
 
     The joints move from q0 along a straight path, and the motors follow on the branch of q0; other actuators stay where
@@ -68,11 +77,9 @@ def actuator_values(robot: Robot, joints: Mapping[str, float], q0: Vector | None
     return _positions(robot, motors.joints, q)
 
 
+@of_any_robot
 def joint_values(
-    robot: Robot,
-    motors: Mapping[str, float],
-    q0: Vector | None = None,
-    joints: str | Iterable[str] | None = None,
+    robot: Robot, motors: Mapping[str, float], q0: Named | None = None, *, joints: str | Iterable[str] | None = None
 ) -> Positions:
     """Positions of joints at which the motors have the given positions; the inverse of `actuator_values`.
 
@@ -122,22 +129,20 @@ def _all_motors(robot: Robot) -> Selection:
     return selection(robot, single, "motors")
 
 
-def _moved(
-    robot: Robot, chosen: Selection, motors: Selection, values: Mapping[str, float], q0: Vector | None
-) -> Vector:
+def _moved(robot: Robot, chosen: Selection, motors: Selection, values: Mapping[str, float], q0: Named | None) -> Vector:
     """The configuration (nq,) with these values, and the actuators that are not ``motors`` where they are at q0."""
     wanted = {name: checked_array(f"the value of '{name}'", values[name], (), (1,)).item() for name in chosen.joints}
     with borrowed(robot, Problem) as problem:
         first = closed_start(problem, start(robot, q0), SOLVED)
-    at = robot.coordinates(first)
+    at = robot.joint_positions(first)
     moved = {*motors.joints, *wanted}
     given: dict[str, Sequence[float]] = {name: at[name] for name in robot.actuation.joints if name not in moved}
     given |= {name: (value,) for name, value in wanted.items()}
     q, part = farthest(robot, given, first)
     if part < 1.0:
-        at = robot.coordinates(q)
+        at = robot.joint_positions(q)
         reached = {name: at[name][0] for name in wanted}
-        least = assemble(robot, robot.configuration({**at, **given}), wanted)
+        least = assemble(robot, robot.configuration({**at, **given}), hold=wanted)
         raise OutOfReach(wanted, reached, part, least.open, least.q)
     return q
 
@@ -160,5 +165,5 @@ def beyond_limits(robot: Robot, q: Vector) -> tuple[str, ...]:
 
 
 def _positions(robot: Robot, names: Iterable[str], q: Vector) -> Positions:
-    at = robot.coordinates(q)
+    at = robot.joint_positions(q)
     return Positions({name: at[name][0] for name in names}, q, beyond_limits(robot, q))

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from eurdf.array import Matrix, Vector
+from eurdf.errors import NoTransmission
+from eurdf.kinematics.named import Named
+from eurdf.loading import of_any_robot
 from eurdf.transmissions.c_source import CSource, c_source
 from eurdf.transmissions.drive import STEPS, Drive, closed_pose
-from eurdf.transmissions.exceptions import NoTransmission
 from eurdf.transmissions.motors import sides
 from eurdf.transmissions.selection import Selection
 from eurdf.transmissions.transmission import Transmission, at_one
@@ -174,9 +176,13 @@ class PreparedTransmission:
         }
         self._q = q
 
+    def __repr__(self) -> str:
+        return f"<PreparedTransmission: motors {', '.join(self.motors)}; joints {', '.join(self.joints)}>"
 
+
+@of_any_robot
 def prepare_transmission(
-    robot: Robot, joints: str | Iterable[str], q: Vector | None = None, motors: str | Iterable[str] | None = None
+    robot: Robot, joints: str | Iterable[str], q: Named | None = None, *, motors: str | Iterable[str] | None = None
 ) -> PreparedTransmission:
     """Prepare the transmission between serial joints and motors for a control loop.
 

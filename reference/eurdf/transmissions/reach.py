@@ -32,7 +32,7 @@ Side = Literal["lower", "upper"]
 _SIDES: tuple[Side, Side] = ("lower", "upper")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Stop:
     """What stops the serial joints at a point of the boundary.
 
@@ -50,6 +50,9 @@ class Stop:
         words = {"singular": "singular pose", "not closed": "the loops do not close beyond"}
         end = "end of the range" if self.kind == "range" else "limit"
         return words.get(self.kind, f"{self.side} {end} of '{self.joint}'")
+
+    def __repr__(self) -> str:
+        return f"<Stop: {self}>"
 
 
 class Examined(NamedTuple):

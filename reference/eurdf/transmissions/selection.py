@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from eurdf.array import Indices, Mask, Vector
+from eurdf.kinematics.named import unknown_joint
 from eurdf.pinocchio.arguments import as_names
 
 if TYPE_CHECKING:
@@ -115,10 +115,4 @@ def _slot(robot: Robot, name: str) -> Slot:
             return slot
         kind = slot.joint.type.value
         raise ValueError(f"joint '{name}' is {kind}; a transmission is between joints whose coordinates have rates")
-    leaders = robot.mechanism.leaders
-    if name in leaders:
-        raise ValueError(f"joint '{name}' is a mimic joint; give its leader '{leaders[name].joint}' instead")
-    if any(joint.name == name for joint in robot.mechanism.joints):
-        raise ValueError(f"joint '{name}' is fixed")
-    near = difflib.get_close_matches(name, robot.slots, n=1)
-    raise ValueError(f"the robot has no joint '{name}'" + (f"; did you mean '{near[0]}'?" if near else ""))
+    raise unknown_joint(robot, name)

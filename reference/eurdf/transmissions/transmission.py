@@ -8,15 +8,15 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from eurdf.array import Indices, Mask, Matrix, Vector
+from eurdf.errors import DependentVelocities, NoTransmission
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.blocks import blocks, checked_configurations, shape_of
 from eurdf.kinematics.finite import overflow_refused
+from eurdf.kinematics.named import Named, vector_of
 from eurdf.kinematics.problem import for_many
-from eurdf.pinocchio.arguments import checked_array
-from eurdf.transmissions.exceptions import DependentVelocities, NoTransmission
+from eurdf.loading import of_any_robot
 from eurdf.transmissions.maps import Maps, Task, maps, maps_at, pseudoinverse, reasons, second_derivative
 from eurdf.transmissions.motors import sides, springs_of
 from eurdf.transmissions.selection import Selection
@@ -82,41 +82,41 @@ class Transmission:
     held_index: Indices
     motions: Matrix
 
-    def motor_velocity(self, v_J: ArrayLike) -> Vector:
+    def motor_velocity(self, v_J: Named) -> Vector:
         """v_m = G v_J (nm,), for joint velocities v_J (nJ,), rad/s or m/s.
 
         Raises:
             DependentVelocities: The loops do not allow these joint velocities together.
         """
-        (G,), v = require(self, "G"), checked_array("v_J", v_J, (len(self.joints),))
+        (G,), v = require(self, "G"), vector_of(v_J, self.joints, "v_J")
         if self.rank_joints < len(self.joints):
             self._refuse_dependent(self.joints, self.joint_index, v)
         return np.asarray(G @ v)
 
-    def joint_velocity(self, v_m: ArrayLike) -> Vector:
+    def joint_velocity(self, v_m: Named) -> Vector:
         """v_J = B_J v_m (nJ,), for motor velocities v_m (nm,), rad/s or m/s.
 
         Raises:
             DependentVelocities: The loops do not allow these motor velocities together.
         """
-        (B,), v = require(self, "B_J"), checked_array("v_m", v_m, (len(self.motors),))
+        (B,), v = require(self, "B_J"), vector_of(v_m, self.motors, "v_m")
         if self.rank_motors < len(self.motors):
             self._refuse_dependent(self.motors, self.motor_index, v)
         return np.asarray(B @ v)
 
-    def joint_torque(self, tau_m: ArrayLike) -> Vector:
+    def joint_torque(self, tau_m: Named) -> Vector:
         """τ_J = Gᵀ τ_m (nJ,), for motor torques or forces τ_m (nm,), N·m or N."""
         (G,) = require(self, "G")
-        return np.asarray(G.T @ checked_array("tau_m", tau_m, (len(self.motors),)))
+        return np.asarray(G.T @ vector_of(tau_m, self.motors, "tau_m"))
 
-    def motor_torque(self, tau_J: ArrayLike) -> Vector:
+    def motor_torque(self, tau_J: Named) -> Vector:
         """τ_m = B_Jᵀ τ_J (nm,), for joint torques or forces τ_J (nJ,), N·m or N.
 
         If the motors depend on each other, it is the solution with the least norm in units of the characteristic
         length; any torques of `internal` may be added.
         """
         (B,) = require(self, "B_J")
-        return np.asarray(B.T @ checked_array("tau_J", tau_J, (len(self.joints),)))
+        return np.asarray(B.T @ vector_of(tau_J, self.joints, "tau_J"))
 
     @cached_property
     def internal(self) -> Matrix:
@@ -134,13 +134,13 @@ class Transmission:
         indices = self.joint_index, self.motor_index, self.held_index
         return second_derivative(self.robot, self.q, self.motions, *indices)
 
-    def rate(self, v_J: ArrayLike) -> Matrix:
+    def rate(self, v_J: Named) -> Matrix:
         """Ġ (nm, nJ) while the joints move at v_J (nJ,), rad/s or m/s; see `hessian`."""
-        return np.asarray(self.hessian @ checked_array("v_J", v_J, (len(self.joints),)))
+        return np.asarray(self.hessian @ vector_of(v_J, self.joints, "v_J"))
 
-    def bias(self, v_J: ArrayLike) -> Vector:
+    def bias(self, v_J: Named) -> Vector:
         """Ġ v_J (nm,): the motor accelerations are a_m = G a_J + Ġ v_J; see `rate`."""
-        return np.asarray(self.rate(v_J) @ checked_array("v_J", v_J, (len(self.joints),)))
+        return np.asarray(self.rate(v_J) @ vector_of(v_J, self.joints, "v_J"))
 
     def _dimensionless(self, index: Indices) -> Matrix:
         """Rows (n, m) of the motions, dimensionless."""
@@ -205,11 +205,13 @@ class Transmissions:
         return f"<Transmissions: G exists at {int(self.exists.sum())} of {len(self.q)} configurations>"
 
 
+@of_any_robot
 @overflow_refused("the transmission")
 def transmission(
     robot: Robot,
     joints: str | Iterable[str],
-    q: Vector | Matrix | None = None,
+    q: Named | Matrix | None = None,
+    *,
     motors: str | Iterable[str] | None = None,
 ) -> Transmission | Transmissions:
     """The map between motors and the joints of the equivalent serial robot, at closed configurations.
@@ -221,7 +223,7 @@ def transmission(
 
     Joints with springs can move while the motors are still. Springs that such a motion would deflect are held where
     they are in q; `forward_kinematics` leaves them at rest. Springs beside the motors, such as one on an ankle that
-    motors drive, hold nothing; add their torque (`eurdf.spring_force`) to τ_J.
+    motors drive, hold nothing; add their torque (`eurdf.springs.spring_force`) to τ_J.
 
     Args:
         robot: The robot.
@@ -246,7 +248,7 @@ def transmission(
     return at_one(robot, chosen, each[0], by) if single else at_many(robot, chosen, each, by)
 
 
-def configurations(robot: Robot, q: Vector | Matrix | None) -> tuple[Matrix, bool]:
+def configurations(robot: Robot, q: Named | Matrix | None) -> tuple[Matrix, bool]:
     """Configurations (B, nq) that a caller gave, and whether it gave a single one, or None.
 
     Raises:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from typing import Any
 
-from eurdf.exceptions import InvalidRobot
+from eurdf.errors import InvalidRobot
 from eurdf.kinematics.residual import closure_openings
 from eurdf.linking.robot_files import ReadRobot, read_robot, read_valid
 from eurdf.loading import load

@@ -179,7 +179,7 @@ def _constraint(
 
 
 def _coordinates(robot: Robot, joints: Sequence[Mapping[str, Any]], q: Vector) -> list[list[float]]:
-    own = robot.coordinates(q)
+    own = robot.joint_positions(q)
     return [list(own.get(joint["name"], ())) for joint in joints]
 
 

@@ -7,8 +7,8 @@ from itertools import count
 from typing import Any
 
 import numpy as np
-
 import pinocchio as pin
+
 from eurdf.diagnostics.wording import visible
 from eurdf.kinematics.assembly import Assembly
 from eurdf.viewing.scene import Placed, wxyz

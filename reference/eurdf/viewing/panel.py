@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable
 from typing import Any
 
-from eurdf.exceptions import EurdfError, InvalidRobot
+from eurdf.errors import EurdfError, InvalidRobot
 from eurdf.transmissions.passive_limits import passive_limits
 from eurdf.viewing import text
 from eurdf.viewing.figure import LAYERS

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-
 import pinocchio as pin
+
 from eurdf.array import Vector
 from eurdf.diagnostics.extras import install_command
-from eurdf.exceptions import MissingExtra
+from eurdf.errors import MissingExtra
 from eurdf.kinematics.residual import openings_once
 from eurdf.pinocchio.robot import Robot
 from eurdf.viewing.scene import Scene

@@ -13,11 +13,11 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-
 import pinocchio as pin
+
 from eurdf.array import Vector
 from eurdf.diagnostics import did_you_mean
-from eurdf.kinematics.exceptions import NotClosable, SimulationDiverged
+from eurdf.errors import NotClosable, SimulationDiverged
 from eurdf.kinematics.forward import forward_kinematics
 from eurdf.kinematics.residual import residual
 from eurdf.kinematics.simulation import Simulation, simulate

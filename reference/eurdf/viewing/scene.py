@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import coal
 import numpy as np
-
 import pinocchio as pin
+
 from eurdf.array import Matrix, Vector
 from eurdf.closures.se3 import quaternion_of
 from eurdf.kinematics.derived import borrowed

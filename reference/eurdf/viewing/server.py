@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
 from eurdf.diagnostics.extras import install_command
-from eurdf.exceptions import MissingExtra
+from eurdf.errors import MissingExtra
 
 if TYPE_CHECKING:
     import viser

@@ -203,7 +203,7 @@ class Session:
     def carried_to(self, robot: Robot) -> Vector:
         """The configuration of another version of the robot in which its joints are where they are here."""
         names = {joint.name: len(joint.type.coordinates) for joint in robot.mechanism.joints if joint.mimic is None}
-        here = self.robot.coordinates(self.q)
+        here = self.robot.joint_positions(self.q)
         kept = {name: values for name, values in here.items() if names.get(name) == len(values)}
         root = {name: here[name] for name in (ROOT_JOINT,) if name in here and robot.mechanism.root == "floating"}
         return robot.configuration({**kept, **root})

@@ -111,6 +111,9 @@ class ShownRobot:
         figure.highlight(frozenset(name for each in self.session.analysis.dependent_actuators for name in each))
         return figure
 
+    def __repr__(self) -> str:
+        return f"<ShownRobot '{self.robot.mechanism.name}' at '{self._node}'>"
+
 
 @dataclass(slots=True, eq=False)
 class Page:

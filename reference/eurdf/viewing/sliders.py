@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-
 import pinocchio as pin
+
 from eurdf.array import Matrix, Vector
 from eurdf.closures.se3 import quaternion_log
 from eurdf.kinematics.analysis import Analysis

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from eurdf.array import Vector
-from eurdf.exceptions import EurdfError
+from eurdf.errors import EurdfError
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.pinocchio.robot import Robot
 from eurdf.reading.robot_source import RobotSource

@@ -10,7 +10,7 @@ import numpy as np
 
 from eurdf.array import Vector
 from eurdf.diagnostics import Diagnostics
-from eurdf.exceptions import EurdfError
+from eurdf.errors import EurdfError
 from eurdf.kinematics.residual import residual
 from eurdf.linking.link import reread
 from eurdf.linking.robot_files import ReadRobot
@@ -114,7 +114,7 @@ def with_closed_configuration(read: ReadRobot, robot: Robot, q: Vector, name: st
         NotEditable: The file has a form in which the configuration cannot be changed alone.
     """
     document = read.description.document
-    exact = robot.coordinates(q)
+    exact = robot.joint_positions(q)
     enough = max(CLOSED_IN_FULL, _largest_row(robot, q))
     rounded = {joint: tuple(round(value, _DECIMALS) for value in values) for joint, values in exact.items()}
     text, diagnostics = "", Diagnostics()

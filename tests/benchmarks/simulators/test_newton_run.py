@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from benchmarks.simulators.newton_run import HOW, VARIABLE, ask_newton
 from support.plain_urdf import inertial, joint_element, link_element
 from support.plain_urdf import robot as robot_element

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+import pinocchio as pin
 
 import eurdf
-import pinocchio as pin
 from support.drake_witness import InDrake
 from support.exported import BODY, LIMIT, random_robot
 from support.plain_urdf import joint_element, link_element

@@ -135,15 +135,15 @@ def features(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def imported(features: Path) -> eurdf.Import:
+def imported(features: Path) -> eurdf.convert.Import:
     return eurdf.import_robot(features)
 
 
-def codes(found: eurdf.Import) -> set[str]:
+def codes(found: eurdf.convert.Import) -> set[str]:
     return {loss.code for loss in found.losses}
 
 
-def test_poses_mass_matrix_and_openings_are_those_of_mujoco(features: Path, imported: eurdf.Import) -> None:
+def test_poses_mass_matrix_and_openings_are_those_of_mujoco(features: Path, imported: eurdf.convert.Import) -> None:
     there = Beside(mujoco.MjModel.from_xml_path(str(features)), imported.mechanism)
     assert there.robot.model.nv == there.model.nv
     for seed in range(3):
@@ -166,7 +166,7 @@ def test_equalities_of_all_kinds_are_as_open_as_in_mujoco(features: Path) -> Non
         there.assert_same_openings(there.at(there.random(seed)))
 
 
-def test_written_robot_is_that_of_mujoco(features: Path, imported: eurdf.Import, tmp_path: Path) -> None:
+def test_written_robot_is_that_of_mujoco(features: Path, imported: eurdf.convert.Import, tmp_path: Path) -> None:
     imported.write(tmp_path / "out")
     assert [str(found) for found in eurdf.check(tmp_path / "out").diagnostics if found.severity == "error"] == []
     robot = eurdf.load(tmp_path / "out", geometry=False)
@@ -176,10 +176,10 @@ def test_written_robot_is_that_of_mujoco(features: Path, imported: eurdf.Import,
     there.assert_same_mass_matrix(q)
     there.assert_same_openings(q)
     closed = robot.configurations["assembled"]
-    assert max(max(each.position, each.angle) for each in eurdf.closure_openings(robot, closed)) < 1e-6
+    assert max(max(each.position, each.angle) for each in eurdf.kinematics.closure_openings(robot, closed)) < 1e-6
 
 
-def test_loops_are_assembled_from_the_keyframe(imported: eurdf.Import) -> None:
+def test_loops_are_assembled_from_the_keyframe(imported: eurdf.convert.Import) -> None:
     assert imported.start == "keyframe 'home'"
     assert imported.closes
     assert max(each.position for each in imported.opened) > 0.01
@@ -187,7 +187,7 @@ def test_loops_are_assembled_from_the_keyframe(imported: eurdf.Import) -> None:
     assert imported.mechanism.configurations["home"][ROOT_JOINT] == (0, 0, 0.5, 0, 0, 0, 1)
 
 
-def test_joints_keep_type_limits_and_springs(imported: eurdf.Import) -> None:
+def test_joints_keep_type_limits_and_springs(imported: eurdf.convert.Import) -> None:
     joints = {joint.name: joint for joint in imported.mechanism.joints}
     types = {name: joints[name].type for name in ("turn", "slide", "bend", "socket", "hand_fixed")}
     assert types == {
@@ -204,7 +204,7 @@ def test_joints_keep_type_limits_and_springs(imported: eurdf.Import) -> None:
     assert turn.gear_ratio == (25.0,)
 
 
-def test_equalities_become_closures_and_couplings(imported: eurdf.Import) -> None:
+def test_equalities_become_closures_and_couplings(imported: eurdf.convert.Import) -> None:
     kinds = {each.name: type(each) for each in imported.mechanism.constraints}
     assert kinds == {
         "pin": PointClosure,
@@ -213,7 +213,7 @@ def test_equalities_become_closures_and_couplings(imported: eurdf.Import) -> Non
     }
 
 
-def test_actuators_keep_names_gears_and_ranges(imported: eurdf.Import) -> None:
+def test_actuators_keep_names_gears_and_ranges(imported: eurdf.convert.Import) -> None:
     mechanism = imported.mechanism
     assert mechanism.actuators == ("turn", "slide", "bend")
     assert mechanism.motors["turn"] == Motor("drive", (-100.0, 125.0))
@@ -223,7 +223,7 @@ def test_actuators_keep_names_gears_and_ranges(imported: eurdf.Import) -> None:
     assert [loss.name for loss in imported.losses if loss.code == "import-actuator-gain"] == ["bend"]
 
 
-def test_shapes_are_visual_or_collision(imported: eurdf.Import) -> None:
+def test_shapes_are_visual_or_collision(imported: eurdf.convert.Import) -> None:
     bodies = {body.name: body for body in imported.mechanism.bodies}
     (box, capsule) = bodies["base"].visuals
     assert (box.kind, box.size, box.color) == ("box", (0.2, 0.4, 0.6), (0.9, 0.1, 0.2, 1.0))
@@ -237,7 +237,7 @@ def test_shapes_are_visual_or_collision(imported: eurdf.Import) -> None:
     assert imported.files[made.filename].startswith(b"v ")
 
 
-def test_every_loss_is_listed(imported: eurdf.Import) -> None:
+def test_every_loss_is_listed(imported: eurdf.convert.Import) -> None:
     assert codes(imported) == {
         "import-actuator-gain",
         "import-effort-limit",
@@ -250,7 +250,7 @@ def test_every_loss_is_listed(imported: eurdf.Import) -> None:
     }
 
 
-def test_inertia_is_written_as_stated(imported: eurdf.Import) -> None:
+def test_inertia_is_written_as_stated(imported: eurdf.convert.Import) -> None:
     (base,) = (body for body in imported.mechanism.bodies if body.name == "base")
     assert base.inertia is not None
     assert base.inertia.moments == (0.3, 0.01, -0.02, 0.4, 0.03, 0.5)
@@ -348,7 +348,7 @@ def test_inertia_from_a_mesh_without_file_is_refused(tmp_path: Path) -> None:
         '<mujoco><asset><mesh name="gone" file="gone.stl"/></asset><worldbody><body name="base"><joint/>'
         '<geom type="mesh" mesh="gone"/></body></worldbody></mujoco>'
     )
-    with pytest.raises(eurdf.CannotImport, match="mesh 'gone', of which body 'base' gets its inertia: its file"):
+    with pytest.raises(eurdf.errors.CannotImport, match="mesh 'gone', of which body 'base' gets its inertia: its file"):
         eurdf.import_robot(write(tmp_path, text))
 
 
@@ -385,7 +385,7 @@ def test_bad_file_is_refused_with_one_error(
     write(tmp_path, small(ARM), "secret.xml")
     (home / "link.xml").symlink_to(tmp_path / "secret.xml")
     path = write(home, text)
-    with pytest.raises(eurdf.CannotImport) as refused:
+    with pytest.raises(eurdf.errors.CannotImport) as refused:
         eurdf.import_robot(path)
     assert message in str(refused.value)
     assert "\n" not in str(refused.value)
@@ -396,11 +396,11 @@ def test_fragment_names_the_scene_that_includes_it(tmp_path: Path) -> None:
     fragment = '<mujoco><worldbody><body><joint class="leg"/><geom size="1"/></body></worldbody></mujoco>'
     path = write(tmp_path, fragment)
     write(tmp_path, '<mujoco><include file="other.xml"/></mujoco>', "another.xml")
-    with pytest.raises(eurdf.CannotImport, match=r"line 1$"):
+    with pytest.raises(eurdf.errors.CannotImport, match=r"line 1$"):
         eurdf.import_robot(path)
     defaults = '<default><default class="leg"/></default>'
     scene = write(tmp_path, f'<mujoco>{defaults}<include file="./robot.xml"/></mujoco>', "scene.xml")
-    with pytest.raises(eurdf.CannotImport, match=r"it is included by 'scene\.xml': import that file instead"):
+    with pytest.raises(eurdf.errors.CannotImport, match=r"it is included by 'scene\.xml': import that file instead"):
         eurdf.import_robot(path)
     assert eurdf.import_robot(scene).mechanism.joints
 
@@ -408,7 +408,7 @@ def test_fragment_names_the_scene_that_includes_it(tmp_path: Path) -> None:
 def test_long_chain_of_includes_is_refused(tmp_path: Path) -> None:
     for index in range(60):
         write(tmp_path, f'<mujoco><include file="f{index + 1}.xml"/></mujoco>', f"f{index}.xml")
-    with pytest.raises(eurdf.CannotImport, match="files include each other more than 50 deep"):
+    with pytest.raises(eurdf.errors.CannotImport, match="files include each other more than 50 deep"):
         eurdf.import_robot(tmp_path / "f0.xml")
 
 
@@ -417,7 +417,7 @@ def test_compiler_that_takes_too_long_is_stopped(tmp_path: Path, monkeypatch: py
 
     monkeypatch.setattr(mjcf_model, "SECONDS", 1)
     many = small(f'<replicate count="30000000" offset="0 0 1"><body><joint/>{LINK}</body></replicate>')
-    with pytest.raises(eurdf.CannotImport, match="MuJoCo does not compile it within 1 s"):
+    with pytest.raises(eurdf.errors.CannotImport, match="MuJoCo does not compile it within 1 s"):
         eurdf.import_robot(write(tmp_path, many))
 
 
@@ -471,7 +471,7 @@ def test_what_included_files_include_is_confined(tmp_path: Path, files: dict[str
     for name, text in files.items():
         write(tmp_path / "home", f"<mujoco>{text}</mujoco>", name)
     (tmp_path / "home" / read).symlink_to(tmp_path / "secret.xml")
-    with pytest.raises(eurdf.CannotImport, match="is outside the folder"):
+    with pytest.raises(eurdf.errors.CannotImport, match="is outside the folder"):
         eurdf.import_robot(tmp_path / "home" / "robot.xml")
     assert eurdf.import_robot(tmp_path / "home" / "robot.xml", within=tmp_path).sources[1:]
 
@@ -483,7 +483,7 @@ def test_what_included_files_include_is_confined(tmp_path: Path, files: dict[str
 def test_flexible_body_elsewhere_is_refused(tmp_path: Path, compiler: str) -> None:
     name = "../a.stl" if not compiler else "etc/a.stl"
     body = f'<body name="b">{LINK}<flexcomp name="f" type="mesh" dim="2" file="{name}"/></body>'
-    with pytest.raises(eurdf.CannotImport, match="is outside the folder"):
+    with pytest.raises(eurdf.errors.CannotImport, match="is outside the folder"):
         eurdf.import_robot(write(tmp_path, f"<mujoco>{compiler}<worldbody>{body}</worldbody></mujoco>"))
 
 
@@ -503,7 +503,7 @@ def test_compiler_that_crashes_ends_no_caller(tmp_path: Path, monkeypatch: pytes
 
     program = write(tmp_path, "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)", "program.py")
     monkeypatch.setattr(mjcf_model, "_PROGRAM", program)
-    with pytest.raises(eurdf.CannotImport, match="MuJoCo crashes on it"):
+    with pytest.raises(eurdf.errors.CannotImport, match="MuJoCo crashes on it"):
         eurdf.import_robot(write(tmp_path, small(ARM)))
 
 

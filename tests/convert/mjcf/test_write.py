@@ -10,12 +10,12 @@ from typing import Any
 
 import mujoco
 import numpy as np
+import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-import pinocchio as pin
 from eurdf.mechanism.constraint import Constraint, Coupling
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import Pose
@@ -201,7 +201,7 @@ actuators:
 """
 
 
-def pair(**options: Any) -> tuple[eurdf.Export, Any]:
+def pair(**options: Any) -> tuple[eurdf.convert.Export, Any]:
     export = eurdf.export(DESCRIPTION, "mjcf", urdf=PAIR, **options)
     return export, mujoco.MjModel.from_xml_string(export.main.decode())
 

@@ -7,10 +7,10 @@ import os
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.hinge import HingeClosure
 from eurdf.closures.point import PointClosure
@@ -38,13 +38,13 @@ def sdf(*content: str, version: str = "1.11") -> str:
     return f'<sdf version="{version}"><model name="m">{"".join(content)}</model></sdf>'
 
 
-def imported(folder: Path, text: str) -> eurdf.Import:
+def imported(folder: Path, text: str) -> eurdf.convert.Import:
     path = folder / "robot.sdf"
     path.write_text(text)
     return eurdf.import_robot(path)
 
 
-def codes(found: eurdf.Import) -> set[str]:
+def codes(found: eurdf.convert.Import) -> set[str]:
     return {loss.code for loss in found.losses}
 
 
@@ -252,7 +252,7 @@ def test_shapes_have_sizes_poses_and_colors(tmp_path: Path) -> None:
     ],
 )
 def test_bad_file_is_refused_with_one_error(tmp_path: Path, text: str, message: str) -> None:
-    with pytest.raises(eurdf.CannotImport) as refused:
+    with pytest.raises(eurdf.errors.CannotImport) as refused:
         imported(tmp_path, text)
     assert message in str(refused.value)
     assert "\n" not in str(refused.value)

@@ -54,7 +54,7 @@ extended_urdf: "2.0"
 closures: [{{name: loop, type: 3d, frames: {frames}}}]
 configurations: {{assembled: {{j: 0.1, k: 0.1}}, other: {{j: 0.3, k: 0.5}}}}
 """
-    with pytest.raises(eurdf.CannotExport, match=r"closure .loop. is open by 2\.0e-02 m or rad"):
+    with pytest.raises(eurdf.errors.CannotExport, match=r"closure .loop. is open by 2\.0e-02 m or rad"):
         eurdf.export(text, "sdf", urdf=PAIR, configuration="other")
 
 

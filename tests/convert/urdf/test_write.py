@@ -20,7 +20,7 @@ from support.plain_urdf import pinocchios_own, trees
 NAMES = eurdf.collection_names()
 
 
-def read_back(export: eurdf.Export, robot: Robot) -> Robot:
+def read_back(export: eurdf.convert.Export, robot: Robot) -> Robot:
     return eurdf.load(export.main.decode(), root=robot.mechanism.root, geometry=False)
 
 

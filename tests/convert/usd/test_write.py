@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.closures.hinge import HingeClosure
 from eurdf.commands.main import main
 from eurdf.mechanism.constraint import Coupling
@@ -63,7 +63,7 @@ def assert_same_robot(there: InUsd, robot: Robot, q: Any) -> None:
             assert mass == pytest.approx(body.inertia.mass, rel=1e-6)
             np.testing.assert_allclose(centre, p, atol=CLOSE)
             np.testing.assert_allclose(moments, expected, atol=1e-6 * np.abs(expected).max())
-    coordinates = robot.coordinates(q)
+    coordinates = robot.joint_positions(q)
     for joint in mechanism.joints:
         if joint.name in joints:
             a, _ = there.frames(joints[joint.name])
@@ -193,7 +193,7 @@ configurations:
 """
 
 
-def losses(export: eurdf.Export) -> set[tuple[str, str]]:
+def losses(export: eurdf.convert.Export) -> set[tuple[str, str]]:
     return {(loss.code, loss.name) for loss in export.losses}
 
 

@@ -15,9 +15,8 @@ from types import SimpleNamespace
 
 from lxml import etree
 
-from eurdf.convert.exceptions import CannotImport
 from eurdf.convert.xml_elements import inside, read_root
-from eurdf.exceptions import MissingExtra
+from eurdf.errors import CannotImport, MissingExtra
 from eurdf.mesh_files.folders import Folders
 from eurdf.reading.source import FILE_LIMIT, begin_of_file
 from eurdf.sandbox import run

@@ -14,7 +14,6 @@ from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 
-from eurdf.convert.exceptions import CannotImport
 from eurdf.convert.import_format import SIMULATION, TEXTURE, ImportFormat, ImportInput, RobotRead, loss_kinds
 from eurdf.convert.losses import approximate, dropped, exact
 from eurdf.convert.mjcf.compiled import MjcfModel, compile_mjcf, included_files
@@ -33,6 +32,7 @@ from eurdf.convert.mjcf.read_state import (
     xyzw,
 )
 from eurdf.convert.xml_elements import places_of_names
+from eurdf.errors import CannotImport
 from eurdf.linking.configurations import beyond_limits
 from eurdf.mechanism.body import Frame
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism

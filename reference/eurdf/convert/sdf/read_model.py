@@ -6,9 +6,9 @@ import math
 
 from lxml import etree
 
-from eurdf.convert.exceptions import CannotImport
 from eurdf.convert.import_format import ImportInput
 from eurdf.convert.xml_elements import Elements, named
+from eurdf.errors import CannotImport
 from eurdf.mechanism.pose import IDENTITY, Pose
 
 WORLD = "world"

@@ -18,7 +18,6 @@ from eurdf.closures import CLOSED
 from eurdf.closures.hinge import HingeClosure
 from eurdf.convert.conventions import LIGHT, opening_of
 from eurdf.convert.coordinates import Coordinates, homogeneous
-from eurdf.convert.exceptions import CannotExport
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format, coordinates_at
 from eurdf.convert.inertia import accepted_inertia
 from eurdf.convert.losses import Losses
@@ -27,6 +26,7 @@ from eurdf.convert.names import UniqueNames
 from eurdf.convert.parts import Part, part_of
 from eurdf.convert.sdf.facts import CLOSURES, EXACT, ROWS, VERSION
 from eurdf.convert.steps import in_series, turn_type
+from eurdf.errors import CannotExport
 from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint, Mimic

@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 
 from lxml import etree
 
-from eurdf.convert.exceptions import CannotImport
 from eurdf.convert.import_format import ImportInput, continuous_if_unlimited
 from eurdf.convert.losses import Losses, LossKind, dropped
 from eurdf.convert.names import UniqueNames
 from eurdf.convert.xml_elements import Elements, inside, local, read_root
 from eurdf.diagnostics import Diagnostics, FileError
+from eurdf.errors import CannotImport
 from eurdf.format.urdf.read import read_urdf
 from eurdf.linking.link import link
 from eurdf.mechanism.body import Shape

@@ -27,7 +27,7 @@ from eurdf.convert.steps import in_series
 from eurdf.convert.usd.facts import CLOSURES, DAMPING_TIME, EXACT, LEAST_MOMENT, ROWS
 from eurdf.convert.usd.joints import KINDS, WHOLE, Freedom, axis_and_frame, freedoms
 from eurdf.diagnostics.extras import install_command
-from eurdf.exceptions import MissingExtra
+from eurdf.errors import MissingExtra
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint, JointProperties, Mimic

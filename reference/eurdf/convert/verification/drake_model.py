@@ -8,12 +8,12 @@ from importlib.metadata import version
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 from lxml import etree
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import DiscreteContactApproximation, MultibodyPlant
 from pydrake.systems.analysis import Simulator
 
-import pinocchio as pin
 from eurdf.convert.coordinates import Matrix, Vector, rotation_matrix
 from eurdf.convert.verification.read_model import (
     CannotRead,

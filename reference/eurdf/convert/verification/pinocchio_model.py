@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 from lxml import etree
 
-import pinocchio as pin
 from eurdf.convert.coordinates import Matrix, Vector
 from eurdf.convert.verification.read_model import CannotRead, Exported, Range, ReadModel, opening_between
 from eurdf.kinematics.opening import Opening

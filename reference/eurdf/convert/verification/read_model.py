@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-
 import pinocchio as pin
+
 from eurdf.convert.conventions import opening_of
 from eurdf.convert.coordinates import Coordinates, Matrix, Vector
 from eurdf.kinematics.opening import Opening

@@ -17,7 +17,7 @@ from eurdf.convert.losses import Effect, Loss
 from eurdf.convert.verification.fall import Fall, Motion, joint_of_velocity, listed, simulate, size
 from eurdf.convert.verification.read_model import CannotRead, Exported, Finding, Range, ReadModel, without_armature
 from eurdf.diagnostics.extras import install_command
-from eurdf.exceptions import MissingExtra
+from eurdf.errors import MissingExtra
 from eurdf.kinematics.dynamics import mass_matrix
 from eurdf.kinematics.opening import Opening
 from eurdf.pinocchio.robot import Robot, build_robot

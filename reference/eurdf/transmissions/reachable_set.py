@@ -14,7 +14,9 @@ import numpy as np
 
 from eurdf.array import Indices, Matrix, Vector
 from eurdf.kinematics.blocks import checked_configurations, checked_rows
+from eurdf.kinematics.named import Named
 from eurdf.kinematics.position_limit import position_limits
+from eurdf.loading import of_any_robot
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.transmissions.drive import closed_pose
 from eurdf.transmissions.grid_search import BoundaryPoint, GridSearch
@@ -141,12 +143,13 @@ class Workspace:
         return f"<Workspace of {', '.join(self.joints)}: {len(self.q)} of {math.prod(map(len, self.axes))} points>"
 
 
+@of_any_robot
 def workspace(
     robot: Robot,
     joints: str | Iterable[str],
-    q: Vector | None = None,
-    motors: str | Iterable[str] | None = None,
+    q: Named | None = None,
     *,
+    motors: str | Iterable[str] | None = None,
     grid: int | None = None,
     ranges: Mapping[str, Sequence[float]] | None = None,
 ) -> Workspace:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
-import pinocchio as pin
 from eurdf.commands.main import main
 from eurdf.diagnostics import did_you_mean
 from support.described import LIMITED, body, codes, load, revolute, written
@@ -173,9 +173,9 @@ def test_freed_joints_make_the_model_without_mimics() -> None:
 def test_freed_joint_left_out_of_a_configuration_is_neutral() -> None:
     more = "joints: {third: {mimic: false}}\nconfigurations: {bent: {first: 0.2}}\n"
     found = load(chain(), HEAD + more)
-    assert found.coordinates(found.configurations["bent"])["third"] == (0.0,)
+    assert found.joint_positions(found.configurations["bent"])["third"] == (0.0,)
     every = load(chain(), HEAD + more, mimic=False)
-    at = every.coordinates(every.configurations["bent"])
+    at = every.joint_positions(every.configurations["bent"])
     assert (at["third"], at["second"]) == ((0.0,), (pytest.approx(0.5),))
 
 

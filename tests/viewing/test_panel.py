@@ -33,13 +33,13 @@ MISSING = "viser is not installed: pip install -e '.[view]'"
 
 
 @pytest.fixture
-def viewer() -> Iterator[eurdf.Viewer]:
+def viewer() -> Iterator[eurdf.viewing.Viewer]:
     pytest.importorskip("viser", reason=MISSING)
     with eurdf.view("four_bar", port=0) as viewer:
         yield viewer
 
 
-def test_page_is_served_to_this_machine_alone(viewer: eurdf.Viewer) -> None:
+def test_page_is_served_to_this_machine_alone(viewer: eurdf.viewing.Viewer) -> None:
     assert viewer.url.startswith("http://127.0.0.1:")
     with urllib.request.urlopen(viewer.url, timeout=10) as answer:
         assert b"<html" in answer.read()
@@ -49,7 +49,7 @@ def test_page_is_served_to_this_machine_alone(viewer: eurdf.Viewer) -> None:
         assert other.connect_ex(("127.0.0.2", port)) != 0
 
 
-def test_pages_of_other_sites_are_refused(viewer: eurdf.Viewer) -> None:
+def test_pages_of_other_sites_are_refused(viewer: eurdf.viewing.Viewer) -> None:
     import viser
     from websockets.exceptions import ConnectionClosed
     from websockets.sync.client import connect
@@ -146,13 +146,13 @@ def test_missing_viser_says_what_to_install(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setitem(sys.modules, "viser", None)
-    with pytest.raises(eurdf.MissingExtra, match=r"the viewer needs viser; install it with: .*view"):
+    with pytest.raises(eurdf.errors.MissingExtra, match=r"the viewer needs viser; install it with: .*view"):
         eurdf.view("four_bar")
     assert main(["view", "four_bar", "--no-browser"]) == 2
     assert "the viewer needs viser" in capsys.readouterr().err
 
 
-def test_shown_configurations_are_those_given(viewer: eurdf.Viewer) -> None:
+def test_shown_configurations_are_those_given(viewer: eurdf.viewing.Viewer) -> None:
     robot = viewer.robot
     q = robot.tree.integrate(viewer.q, np.full(robot.tree.nv, 0.1))
     viewer.show(q)
@@ -166,7 +166,7 @@ def test_shown_configurations_are_those_given(viewer: eurdf.Viewer) -> None:
     assert (viewer.q == robot.configurations["assembled"]).all()
 
 
-def test_several_robots_share_a_scene(viewer: eurdf.Viewer) -> None:
+def test_several_robots_share_a_scene(viewer: eurdf.viewing.Viewer) -> None:
     other = eurdf.load("bennett")
     shown = viewer.add(other, xyz=(0.0, 1.0, 0.0))
     q = eurdf.forward_kinematics(other, {"motor_a": 0.3})
@@ -177,7 +177,7 @@ def test_several_robots_share_a_scene(viewer: eurdf.Viewer) -> None:
         viewer.add(other, xyz=(0.0, 1.0))
 
 
-def test_only_open_closures_are_red(viewer: eurdf.Viewer) -> None:
+def test_only_open_closures_are_red(viewer: eurdf.viewing.Viewer) -> None:
     """A distance closure has a line between its ends where it is closed, too."""
     shown = viewer.add(eurdf.load("double_wishbone", geometry=False))
     (lines, _), links = shown.figure._lines["closures"], shown.figure.scene.links
@@ -189,13 +189,13 @@ def test_only_open_closures_are_red(viewer: eurdf.Viewer) -> None:
     assert red() == set()
     closed = shown.q
     shown.show(shown.robot.tree.integrate(closed, np.full(shown.robot.tree.nv, 0.1)))
-    found = {opening.name for opening in eurdf.closure_openings(shown.robot, shown.q) if opening.is_open}
+    found = {opening.name for opening in eurdf.kinematics.closure_openings(shown.robot, shown.q) if opening.is_open}
     assert red() == found & {link.name for link in links} != set()
     shown.show(closed)
     assert red() == set()
 
 
-def test_limits_are_those_at_the_configuration_shown(viewer: eurdf.Viewer) -> None:
+def test_limits_are_those_at_the_configuration_shown(viewer: eurdf.viewing.Viewer) -> None:
     panel, robot = viewer._panel, viewer.robot
     contents = []
     for angle in (0.3, 0.9):
@@ -211,7 +211,7 @@ def test_limits_are_those_at_the_configuration_shown(viewer: eurdf.Viewer) -> No
     assert "the loops are open" in panel._limits.content
 
 
-def test_saved_page_needs_no_server(viewer: eurdf.Viewer, tmp_path: Path) -> None:
+def test_saved_page_needs_no_server(viewer: eurdf.viewing.Viewer, tmp_path: Path) -> None:
     page = viewer.save(tmp_path / "scene.html").read_text()
     assert "__VISER_EMBED_DATA__" in page
     assert viewer.url not in page
@@ -257,7 +257,7 @@ def test_pose_is_saved_to_the_description_and_comments_stay(tmp_path: Path) -> N
     text_ = (tmp_path / "robot.yaml").read_text()
     assert "# Written by build.py" in text_
     robot = eurdf.load(tmp_path, strict=True)
-    assert robot.coordinates(robot.configurations["bent knee"])["motor_crank"] == pytest.approx((0.4,))
+    assert robot.joint_positions(robot.configurations["bent knee"])["motor_crank"] == pytest.approx((0.4,))
     assert np.abs(eurdf.residual(robot, robot.configurations["bent knee"])).max() < 1e-12
     assert not files.has_changed
     assert files.save("bent knee", session).endswith("already has this configuration")
@@ -307,7 +307,7 @@ def test_text_and_plain_urdf_cannot_be_saved_to() -> None:
 
 def test_names_are_text_of_the_page() -> None:
     hostile = "<img src=x onerror=alert(1)>"
-    opening = eurdf.Opening(hostile, 0.1, 0.0)
+    opening = eurdf.results.Opening(hostile, 0.1, 0.0)
     limit = PassiveLimit(hostile, "m", np.inf, (-3.0, 2.0))
     for shown in (text.status(1.0, [opening], [hostile]), text.limits([limit])):
         assert "<img" not in shown

@@ -7,13 +7,12 @@ import re
 import sys
 from collections import defaultdict
 from collections.abc import Iterator
-from pathlib import Path
 from types import CodeType
 from typing import Any
 
 import eurdf
+from support.places import ROOT
 
-ROOT = Path(__file__).resolve().parents[1]
 SOURCES = {
     path.relative_to(ROOT / "reference").as_posix(): path.read_text(encoding="utf-8")
     for path in sorted((ROOT / "reference" / "eurdf").rglob("*.py"))

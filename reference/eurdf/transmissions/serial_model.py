@@ -15,21 +15,24 @@ import numpy as np
 from eurdf.array import Mask, Matrix, Vector
 from eurdf.convert.export import export, files_of_meshes
 from eurdf.diagnostics import enumerated
+from eurdf.errors import NoTransmission
 from eurdf.json_schema import PAIRS, ROW, ROWS, Keywords, to_json
+from eurdf.kinematics.named import Named
 from eurdf.kinematics.problem import Problem
+from eurdf.loading import as_robot
 from eurdf.mechanism.joint import JointProperties
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.robot import build_robot
+from eurdf.reading.robot_source import RobotSource
 from eurdf.transmissions.drive import closed_pose
-from eurdf.transmissions.exceptions import NoTransmission
 from eurdf.transmissions.inertia import reflected_inertia
 from eurdf.transmissions.limits import CommonLimits, serial_limits
 from eurdf.transmissions.motors import linkage_bodies, sides, unlimited_motors
 from eurdf.transmissions.polynomial_map import PolynomialMap, fitted_map
+from eurdf.transmissions.reachable_set import Workspace, workspace
 from eurdf.transmissions.selection import Selection, listed
 from eurdf.transmissions.serial_mechanism import serial_mechanism, springs_left_out, with_properties
 from eurdf.transmissions.transmission import Transmission, at_one
-from eurdf.transmissions.workspace import Workspace, workspace
 from eurdf.writing.output_folder import write_files
 
 if TYPE_CHECKING:
@@ -119,7 +122,7 @@ class SerialTwin:
 
     def report(self) -> dict[str, Any]:
         """The numbers as plain values, for JSON; infinite ones are None."""
-        q = self.workspace.robot.coordinates(self.q)
+        q = self.workspace.robot.joint_positions(self.q)
         found: dict[str, Any] = to_json(
             {
                 "joints": self.joints,
@@ -158,11 +161,11 @@ class SerialTwin:
 
 
 def serial_twin(
-    robot: Robot,
+    robot: Robot | RobotSource,
     joints: str | Iterable[str],
-    q: Vector | None = None,
-    motors: str | Iterable[str] | None = None,
+    q: Named | None = None,
     *,
+    motors: str | Iterable[str] | None = None,
     limits: Choice = "conservative",
     armature: Mapping[str, float] | None = None,
     grid: int | None = None,
@@ -197,6 +200,7 @@ def serial_twin(
             linkage has other motors.
         ValueError: An argument is wrong, as in `workspace`; or the grid is too coarse to find a range of a joint.
     """
+    robot = as_robot(robot, geometry=True)
     if limits not in ("conservative", "fitted"):
         raise ValueError(f"limits is {limits!r}; it must be 'conservative' or 'fitted'")
     if not 1 <= degree <= 30:
@@ -206,7 +210,7 @@ def serial_twin(
     grid = max(5, min(_MOST_ALONG, round(_POINTS ** (1.0 / len(serial))))) if grid is None else grid
     bodies = linkage_bodies(robot, serial, by)
     _refuse_other_motors(robot, bodies, serial, by)
-    found = workspace(robot, serial.joints, pose, by.joints, grid=grid, ranges=ranges)
+    found = workspace(robot, serial.joints, pose, motors=by.joints, grid=grid, ranges=ranges)
     plain = _without_linkage(robot, pose, bodies, serial, by)
     inside = _box(found, serial.read(pose))
     chosen = inside if limits == "conservative" else np.ones(len(found.q), dtype=bool)
@@ -219,9 +223,9 @@ def serial_twin(
                 "reached with the other joints; use a finer grid"
             )
     most, notes = _limits(robot, found, serial, by, chosen, limits)
-    terms = reflected_inertia(robot, serial.joints, found.q, by.joints, armature=armature)
+    terms = reflected_inertia(robot, serial.joints, found.q, motors=by.joints, armature=armature)
     own = np.array([_of_twin(robot, plain, each) for each in found.q])
-    lumped = reflected_inertia(plain, serial.joints, own, serial.joints).total
+    lumped = reflected_inertia(plain, serial.joints, own, motors=serial.joints).total
     needed = terms.total - lumped
     diagonal = np.maximum(np.diagonal(needed, axis1=1, axis2=2), 0.0)
     added = diagonal[chosen].max(axis=0) if limits == "conservative" else diagonal.mean(axis=0)
@@ -286,7 +290,7 @@ def _refuse_other_motors(robot: Robot, bodies: Sequence[str], joints: Selection,
 
 def _without_linkage(robot: Robot, q: Vector, bodies: Sequence[str], joints: Selection, motors: Selection) -> Robot:
     """The twin without armature of its joints."""
-    coordinates = robot.joint_coordinates(q)
+    coordinates = robot.joint_positions(q, mimic=True)
     mechanism = serial_mechanism(robot.mechanism, set(bodies), coordinates, joints.joints, set(motors.joints))
     bare = {
         joint.name: replace(joint.properties, armature=(), gear_ratio=(), rotor_inertia=())
@@ -304,7 +308,7 @@ def _found_mesh(files: Mapping[str, Path], uri: str) -> str | None:
 def _of_twin(robot: Robot, twin: Robot, q: Vector) -> Vector:
     """The configuration of the twin at one of the robot."""
     own = {*twin.slots, ROOT_JOINT}
-    return twin.configuration({name: values for name, values in robot.coordinates(q).items() if name in own})
+    return twin.configuration({name: values for name, values in robot.joint_positions(q).items() if name in own})
 
 
 def _box(found: Workspace, start: Vector) -> Mask:
@@ -345,13 +349,13 @@ def _limits(
         none = np.full(len(joints), np.inf)
         note = f"torque and velocity limits are left out: {listed(unlimited)} have no effort or no velocity limit"
         return _Limits(none, none, None, None), (note,)
-    at = cast(CommonLimits, serial_limits(robot, joints.joints, found.q, motors.joints))
+    at = cast(CommonLimits, serial_limits(robot, joints.joints, found.q, motors=motors.joints))
     alone = _extent(np.abs(at.torque_axes).min(axis=2)), _extent(np.abs(at.velocity_axes).min(axis=2))
     if choice == "fitted":
         boxes = [(each.torque_box, each.velocity_box) for each in at.each]
         torque, velocity = np.mean(boxes, axis=0)
         return _Limits(torque, velocity, *alone), ()
-    within = cast(CommonLimits, serial_limits(robot, joints.joints, found.q[chosen], motors.joints))
+    within = cast(CommonLimits, serial_limits(robot, joints.joints, found.q[chosen], motors=motors.joints))
     return _Limits(within.torque_box, within.velocity_box, *alone), ()
 
 

@@ -1,0 +1,17 @@
+"""The public names, each with the module that defines it."""
+
+from eurdf.kinematics.analysis import Analysis as Analysis
+from eurdf.kinematics.assembly import Assembly as Assembly
+from eurdf.kinematics.dynamics import ForwardDynamics as ForwardDynamics
+from eurdf.kinematics.dynamics import InverseDynamics as InverseDynamics
+from eurdf.kinematics.inverse import FrameError as FrameError
+from eurdf.kinematics.inverse import InverseKinematics as InverseKinematics
+from eurdf.kinematics.locking import LockedRobot as LockedRobot
+from eurdf.kinematics.loop_analysis import LoopAnalysis as LoopAnalysis
+from eurdf.kinematics.loop_analysis import Motion as Motion
+from eurdf.kinematics.opening import Opening as Opening
+from eurdf.kinematics.position_limit import JointAtLimit as JointAtLimit
+from eurdf.kinematics.sensitivity import FrameVelocity as FrameVelocity
+from eurdf.kinematics.simulation import Simulation as Simulation
+from eurdf.kinematics.sweep import MotionPath as MotionPath
+from eurdf.kinematics.sweep import Sweep as Sweep
