@@ -9,7 +9,7 @@ import numpy as np
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import close
 from eurdf.kinematics.problem import Problem
-from eurdf.kinematics.rank import as_numbers, at_least, choose, column, every, largest, some, square
+from eurdf.kinematics.rank import as_numbers, at_least, choose, column, every, largest, numbers, some, square
 from eurdf.kinematics.tolerances import (
     FASTEST,
     LEAST_CORRECTION,
@@ -39,19 +39,20 @@ def follow(advance: Advance, count: int = 1, *, shortest: float = SHORTEST_STEP,
     Returns:
         What fraction (count,) of each path is done: 1, or less if it ended early.
     """
-    done, step = np.zeros(count), np.full(count, first)
+    done, part, step = np.zeros(count), numbers(count, 0.0), numbers(count, first)
     on: Elements = slice(None)
-    part = done  # what is done of the elements that go on
     while True:
-        tried, accepted = advance(on, part, np.minimum(step, 1.0 - part))
+        left = 1.0 - part  # of the elements that go on
+        h = choose(step < left, step, left)
+        taken, good = advance(on, np.array(part, ndmin=1), np.array(h, ndmin=1))
+        tried, accepted = as_numbers(taken), as_numbers(good)
         part = part + accepted * tried
-        step = np.where(accepted, 2.0, 0.5) * tried
+        step = choose(accepted, 2.0, 0.5) * tried
         done[on] = part
-        going = np.where(accepted, part < 1.0, step >= shortest)
-        left = np.count_nonzero(going)
-        if not left:
+        going = choose(accepted, part < 1.0, step >= shortest)
+        if not some(going):
             return done
-        if left < len(going):
+        if not every(going):
             on = np.arange(count)[on][going]
             part, step = part[going], step[going]
 
