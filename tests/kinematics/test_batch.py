@@ -450,3 +450,11 @@ def test_wrong_argument_is_named(arguments: Any, complaint: str) -> None:
 def test_wrong_targets_are_named(targets: Any, complaint: str) -> None:
     with pytest.raises(ValueError, match=re.escape(complaint)):
         eurdf.batch.inverse_kinematics(robot_called("digit_leg"), targets)
+
+
+def test_frame_must_be_a_name() -> None:
+    robot = robot_called("digit_leg")
+    q = eurdf.assemble(robot).q
+    for function in (eurdf.actuated_jacobian, eurdf.batch.actuated_jacobian):
+        with pytest.raises(ValueError, match=r"q is 'foot'|frame is array\(.*it must be the name of a frame"):
+            function(robot, q[None], "foot")  # type: ignore[arg-type]

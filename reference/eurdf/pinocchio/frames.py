@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 from typing import Any
 
 import pinocchio as pin
@@ -39,8 +40,10 @@ def frame_index(model: Any, name: str) -> int:
     A link and a joint can have the same name if they have the same frame (EU-FRM-002).
 
     Raises:
-        ValueError: The frame is unknown, or two different frames have this name.
+        ValueError: The frame is unknown, two different frames have this name, or it is no name.
     """
+    if not isinstance(name, str):
+        raise ValueError(f"frame is {reprlib.repr(name)}; it must be the name of a frame")
     found = [(index, frame) for index, frame in enumerate(model.frames) if frame.name == name]
     if not found:
         raise ValueError(f"the model has no frame '{name}'{meant(name, (frame.name for frame in model.frames))}")
