@@ -58,7 +58,7 @@ def in_a_process(*argv: str, **options: Any) -> subprocess.CompletedProcess[str]
 
 def test_valid_robot_exits_0(folder: Path, run: Run) -> None:
     robot(folder / "arm")
-    assert run("check", "arm") == (0, "arm: sound\n", "")
+    assert run("check", "arm") == (0, "arm: valid\n", "")
 
 
 def test_error_is_shown_with_place_and_exits_1(folder: Path, run: Run) -> None:
@@ -79,16 +79,16 @@ def test_every_robot_below_a_folder_is_checked(folder: Path, run: Run) -> None:
     code, out, _ = run("check", "robots")
     assert code == 1
     assert [line for line in out.splitlines() if line.startswith("robots/") and " error: " not in line] == [
-        "robots/a: sound",
+        "robots/a: valid",
         "robots/b: 1 error",
-        "robots/deep/c: sound",
+        "robots/deep/c: valid",
     ]
     assert out.endswith("3 robots: 2 passed, 1 failed (1 error)\n")
 
 
 def test_duplicate_robot_is_checked_once(folder: Path, run: Run) -> None:
     robot(folder / "arm")
-    assert run("check", "arm", "arm")[1] == "arm: sound\n"
+    assert run("check", "arm", "arm")[1] == "arm: valid\n"
 
 
 def test_urdf_option_replaces_named_urdf(folder: Path, run: Run) -> None:
@@ -174,7 +174,7 @@ def test_closed_stream_changes_nothing_else(name: str, folder: Path) -> None:
     program = f"import sys; sys.{name} = None; from eurdf.commands.main import main; sys.exit(main(['check', '.']))"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=False)
     assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout == ("" if name == "stdout" else ".: sound\n")
+    assert done.stdout == ("" if name == "stdout" else ".: valid\n")
 
 
 # --- which robots a path refers to -----------------------------------------------------------------------------------
@@ -227,7 +227,7 @@ def test_empty_folder_is_error_unless_allowed(folder: Path, run: Run) -> None:
     assert run("check", "--allow-none", ".") == (0, ".: no robot\n", "")
     assert json.loads(run("check", "--allow-none", ".", "--format", "json")[1])["robots"] == []
     robot(folder / "arm")
-    assert run("check", "--allow-none", ".")[1] == "./arm: sound\n"
+    assert run("check", "--allow-none", ".")[1] == "./arm: valid\n"
     assert run("check", "--allow-none", "nowhere")[0] == 2
 
 
@@ -249,8 +249,8 @@ def test_folders_without_robot_among_others_are_skipped(folder: Path, run: Run) 
         1,
         "skipped 3 folders without a robot: 'robots/meshes/', 'robots/quality/', 'robots/xacros/'\n",
     )
-    assert "robots/arm/: sound" in out
-    assert "robots/group/leg: sound" in out
+    assert "robots/arm/: valid" in out
+    assert "robots/group/leg: valid" in out
     report = json.loads(run("check", *paths, "--format", "json")[1])
     jsonschema.validate(report, output_schemas()["diagnostics-report.schema.json"])
     assert report["skipped"] == ["robots/meshes/", "robots/quality/", "robots/xacros/"]
@@ -442,7 +442,7 @@ def test_pipe_is_coloured_only_on_request(folder: Path, variables: dict[str, str
     robot(folder)
     environment = {name: value for name, value in os.environ.items() if name not in ("FORCE_COLOR", "NO_COLOR")}
     result = in_a_process("check", ".", env={**environment, "TERM": "xterm-256color", **variables})
-    assert ("\x1b[32msound" in result.stdout) == coloured
+    assert ("\x1b[32mvalid" in result.stdout) == coloured
 
 
 def test_closed_pipe_ends_command_quietly(folder: Path) -> None:
@@ -511,7 +511,7 @@ def test_interrupt_ends_command_quietly(folder: Path, moment: str) -> None:
 def test_ignored_interrupt_stays_ignored(folder: Path) -> None:
     robot(folder)
     ended = interrupted("lxml", signal.SIG_IGN)
-    assert (ended.returncode, ended.stdout, ended.stderr) == (0, ".: sound\n", "")
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, ".: valid\n", "")
 
 
 def test_interrupt_of_main_gives_exit_code(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -198,7 +198,7 @@ def summary(report: Report, strict: bool = False) -> str:
 
 
 def test_summary_counts_errors_and_warnings() -> None:
-    assert summary(Report("a")) == "a: sound"
+    assert summary(Report("a")) == "a: valid"
     assert summary(Report("a", (UNKNOWN,))) == "a: 1 error"
     assert summary(Report("a", (UNKNOWN, NEAR_MISS, UNKNOWN))) == "a: 2 errors, 1 warning"
 

@@ -73,7 +73,7 @@ def test_no_line_is_a_command(
 
 
 def test_path_keeps_its_other_characters(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert printed(["check", NAME], capsys) == "\\x3a:error file=a::b: sound\n"
+    assert printed(["check", NAME], capsys) == "\\x3a:error file=a::b: valid\n"
 
 
 def test_no_line_of_an_exception_is_a_command(folder: Path) -> None:

@@ -194,7 +194,7 @@ def test_irrelevant_joint_at_limit_is_not_the_reason() -> None:
     answer = inverse_kinematics(robot, {"end": [2.0 * np.cos(0.3), 2.0 * np.sin(0.3), 1.0]}, np.array([0.5]))
     assert answer.q[0] == pytest.approx(0.3, abs=1e-4)
     assert (answer.reason, answer.at_limits) == ("out of reach", ())
-    assert "no motion of the mechanism brings the frames nearer" in repr(answer)
+    assert "target out of reach (local minimum)" in repr(answer)
 
 
 @pytest.mark.parametrize(("name", "frame"), [("four_bar", "rocker_pin_a"), ("five_bar", "tip_b")])

@@ -124,7 +124,7 @@ def test_urdf_beside_folder_without_description_is_used(folder: Path) -> None:
 
 def test_urdf_is_read_from_standard_input() -> None:
     done = eurdf_with(URDF, "check", "-")
-    assert (done.returncode, done.stdout, done.stderr) == (0, "<stdin>: sound\n", "")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "<stdin>: valid\n", "")
     assert eurdf_with(URDF, "info", "-").stdout.startswith("arm ")
 
 
@@ -139,7 +139,7 @@ def test_piped_description_shows_wrong_line(folder: Path) -> None:
 
 def test_urdf_of_description_is_read_from_stdin(folder: Path) -> None:
     (folder / "arm.yaml").write_text(DESCRIPTION, encoding="utf-8")
-    assert eurdf_with(URDF, "check", "arm.yaml", "--urdf", "-").stdout == "arm.yaml: sound\n"
+    assert eurdf_with(URDF, "check", "arm.yaml", "--urdf", "-").stdout == "arm.yaml: valid\n"
     done = eurdf_with(URDF.replace('"2"', '"two"'), "check", "arm.yaml", "--urdf", "-")
     assert done.stdout.startswith("<stdin>:4:28: error: ")
     assert '    4 |     <inertial><mass value="two"/>' in done.stdout
@@ -342,7 +342,7 @@ def test_unreadable_description_beside_urdf_is_an_error(folder: Path, name: str,
     with pytest.raises(eurdf.InvalidRobot):
         eurdf.load(folder)
     ended = eurdf_with("", "check", ".")
-    assert (ended.returncode, "sound" in ended.stdout) == (1, False)
+    assert (ended.returncode, ": valid" in ended.stdout) == (1, False)
 
 
 def test_pipe_named_as_description_is_an_error(folder: Path) -> None:

@@ -262,7 +262,7 @@ def test_xacro_warning_is_a_warning(folder: Path) -> None:
 
 def test_commands_accept_xacro_with_arguments(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", "arm.urdf.xacro", "--xacro-arg", "mass:=3"]) == 0
-    assert capsys.readouterr().out == "arm.urdf.xacro: sound\n"
+    assert capsys.readouterr().out == "arm.urdf.xacro: valid\n"
     assert main(["info", "arm.urdf.xacro", "--xacro-arg", "mass:=3"]) == 0
     assert ", 3 kg" in capsys.readouterr().out
     with pytest.raises(SystemExit):

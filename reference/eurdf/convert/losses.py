@@ -145,7 +145,7 @@ def _of_all(element: object) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class LossKind:
-    """A way in which an export or an import cannot say what it is given: by default, it cannot say a concept at all.
+    """A kind of loss in an export or an import; by default, an element is left out altogether.
 
     Attributes:
         effect: What is left.

@@ -38,7 +38,7 @@ def summary_line(report: Report, strict: bool = False) -> Line:
     """The verdict on one robot."""
     counts = _counts(report)
     style = "bold red" if not report.passes(strict) else "yellow" if counts else "green"
-    return [(f"{visible(report.path)}: ", "bold"), (counts or "sound", style)]
+    return [(f"{visible(report.path)}: ", "bold"), (counts or "valid", style)]
 
 
 def total_line(reports: Sequence[Report], strict: bool = False) -> Line:

@@ -119,7 +119,7 @@ FIGURES = {
     "mobility": "degrees of freedom of the closed mechanism, nv - rank",
     "actuated": "velocities",
     "uncontrolled": "degrees of freedom left with every actuator held",
-    "dependent": "actuated velocities that depend on the others",
+    "dependent": "actuators that cannot move independently",
 }
 
 

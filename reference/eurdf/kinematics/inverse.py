@@ -59,7 +59,7 @@ _SENTENCES: dict[InverseKinematicsReason, str] = {
     "closures open": "closures stay open",
     "joint limits": "joints are at their limits",
     "singular": "the configuration is singular, at the edge of the workspace",
-    "out of reach": "no motion of the mechanism brings the frames nearer",
+    "out of reach": "target out of reach (local minimum)",
     "steps": "the maximum number of steps was reached; start nearer, or allow more restarts",
 }
 

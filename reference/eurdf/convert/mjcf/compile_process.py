@@ -159,7 +159,7 @@ def _specification(path: str, folders: Folders) -> tuple[Any, dict[str, str]]:
 
 
 def _without_assets(spec: Any, faults: dict[str, str]) -> list[dict[str, str]]:
-    """Remove the meshes with faults, textures that are files, skins and height fields, and what uses them."""
+    """Remove the meshes with errors, textures that are files, skins and height fields, and what uses them."""
     left_out = []
     for texture in spec.textures:
         if texture.file or any(texture.cubefiles):

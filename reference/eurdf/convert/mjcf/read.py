@@ -52,7 +52,7 @@ _LOSSES = {
     "inactive-equality": dropped("equality", "is not active, and is left out", "activate it"),
     "equality": dropped(
         "equality",
-        "is left out: it is no closure of two bodies and no linear relation of joints",
+        "is left out: it does not connect two bodies or relate joints linearly",
         "describe it by a closure, a coupling or a mimic joint",
     ),
     "redundant-equality": exact(

@@ -45,7 +45,7 @@ ROWS = (
     ),
     approximate(
         "universal joint",
-        "becomes a D6 joint: USD does not state the order of its rotations; the first is about x, as Newton has it",
+        "becomes a D6 joint: USD does not state the order of its rotations; here it is x first, as in Newton",
         "check the joint away from its zero in a simulator other than Newton",
         error="none in Newton, and none at the joint's zero",
         where=lambda joint: not is_skew(joint),
