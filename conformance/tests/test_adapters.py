@@ -128,7 +128,7 @@ def test_evaluating_without_an_accepted_robot_is_errored(tmp_path: Path) -> None
 
 @pytest.fixture
 def javascript(tmp_path: Path) -> str:
-    """The example, beside the libraries that it imports, as whoever follows the page has it."""
+    """The example beside the libraries that it imports, as a reader of the page has it."""
     folder = tmp_path / "adapter"
     folder.mkdir()
     shutil.copy(JAVASCRIPT, folder)

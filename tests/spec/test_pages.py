@@ -86,7 +86,7 @@ def test_first_command_runs_main_job(monkeypatch: pytest.MonkeyPatch, capsys: py
 
 SPEC = ROOT / "spec"
 PAGES = ("solidworks", "onshape")
-#: Pages whose commands and code are run, as whoever follows them does.
+#: Pages whose commands and code are run, as a reader of the page would.
 FOLLOWED = [
     *(f"docs/{name}" for name in ("from_mjcf", "from_sdf", "from_toolbox", "from_urdf_plus")),
     pytest.param("docs/humanoids", marks=pytest.mark.slow),

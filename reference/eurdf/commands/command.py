@@ -196,7 +196,7 @@ def ending(exit_codes: str, *examples: str) -> str:
 
 @contextmanager
 def cannot_run(*errors: type[Exception], unless: tuple[type[Exception], ...] = (), by: str = "") -> Iterator[None]:
-    """Raise `CannotRun` in place of other errors, but for those that say themselves what to do.
+    """Raise `CannotRun` in place of some errors; one that says what to do by itself stays as it is.
 
     Args:
         errors: Their types.

@@ -72,7 +72,7 @@ def axis_and_frame(joint: Joint) -> tuple[str, Quaternion]:
 
 
 def freedoms(joint: Joint) -> Iterator[Freedom]:
-    """The free axes of the USD joint that a joint is; a spherical one has none that could be limited or driven."""
+    """The free axes of the USD joint for a joint; a spherical one has none, since USD neither limits nor drives it."""
     if joint.type is JointType.SPHERICAL:
         return
     for index, (step, motion) in enumerate(zip(joint.type.steps, joint.motions, strict=True)):
