@@ -32,7 +32,7 @@ from eurdf.kinematics.residual import acceleration_drift
 from eurdf.mechanism.constraint import Unit, key
 from eurdf.mechanism.same_model import differences
 from eurdf.pinocchio.robot import Robot, build_robot
-from eurdf.writing.description import describe_mechanism
+from eurdf.writing.description import NotWritable, describe_mechanism
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,3 +172,8 @@ def test_export_has_one_loss_that_names_it(robot: Robot, name: str) -> None:
 def test_pinocchio_has_no_model_of_it(robot: Robot) -> None:
     with pytest.raises(NoConstraintModel, match=robot.mechanism.closures[-1].name):
         _ = robot.constraint_models
+
+
+def test_kind_without_a_line_is_not_written(robot: Robot) -> None:
+    with pytest.raises(NotWritable, match="has the type 'in-plane', which no version of the format has"):
+        describe_mechanism(robot.mechanism)

@@ -14,6 +14,7 @@ from typing import Any, Literal
 
 from lxml import etree
 
+from eurdf.closures import REGISTRY
 from eurdf.diagnostics.wording import visible
 from eurdf.format.closure_model import (
     CLOSURE,
@@ -329,6 +330,8 @@ def _actuator(name: str, mechanism: Mechanism) -> Geared:
 
 
 def _closure(closure: Closure, anchors: _Anchors) -> ClosureEntry:
+    if closure.type not in REGISTRY:
+        raise NotWritable(f"closure '{closure.name}' has the type '{closure.type}', which no version of the format has")
     linear, angular = closure.compliance.linear or None, closure.compliance.angular or None
     return CLOSURE.entry(
         closure.type,
