@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial, wraps
+from functools import partial
 from inspect import currentframe, signature
 from typing import TYPE_CHECKING, Concatenate, ParamSpec, TypeVar
 
@@ -25,6 +25,7 @@ from eurdf.linking.mimics import warn_of_ignored_mimics
 from eurdf.linking.robot_files import ReadRobot, inertia_diagnostics, read_robot
 from eurdf.mechanism.mechanism import Root
 from eurdf.mesh_files.kinds import KINDS, suffix_of
+from eurdf.pinocchio.arguments import accepting
 from eurdf.pinocchio.meshes import Mesh, read_meshes
 from eurdf.reading.robot_source import RobotSource
 
@@ -173,17 +174,13 @@ def of_any_robot(
     Returns:
         The function, as one of the module that calls this, in which it must have the same name to be pickled.
     """
-
-    @wraps(function)
-    def of_any(robot: Robot | RobotSource, *args: _Rest.args, **options: _Rest.kwargs) -> _Result:
-        return function(as_robot(robot, geometry=geometry), *args, **options)
-
+    of_any = accepting(function, _SOURCES, partial(load, geometry=geometry))
     first, *others = signature(function).parameters.values()
     accepted = first.replace(annotation="Robot | RobotSource")
     of_any.__signature__ = signature(function).replace(parameters=[accepted, *others])  # type: ignore[attr-defined]
     caller = currentframe()
     of_any.__module__ = caller.f_back.f_globals["__name__"] if caller and caller.f_back else of_any.__module__
-    return of_any  # type: ignore[return-value] # it can also be given as robot=
+    return of_any
 
 
 def check(

@@ -97,5 +97,5 @@ def test_forward_kinematics_passes_through_few_functions() -> None:
         eurdf.forward_kinematics(robot, values, q)
     finally:
         sys.setprofile(before)
-    assert len({code.co_filename for code in seen}) <= 14, sorted({code.co_filename for code in seen})  # to become 12
-    assert len(seen) <= 82  # to become 80
+    assert len({code.co_filename for code in seen}) <= 12, sorted({code.co_filename for code in seen})
+    assert len(seen) <= 80

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from eurdf.array import Matrix, Vector
+from eurdf.kinematics.rank import damped_step
 
 # Below this, relative to the largest entry, is rounding.
 _SLIGHT = 1e-12
@@ -49,6 +50,18 @@ def bounded_step(H: Matrix, g: Vector, G: Matrix, h: Vector) -> Vector:
         if pressures[loosest] >= -slack:
             break
         active.pop(loosest)
+    return y
+
+
+def damped_step_within(
+    A: Matrix, e: Vector, damping: float, G: Matrix, h: Vector, free: Vector | None = None
+) -> Vector:
+    """The y that minimises |A y + e|² + λ|y|² subject to G y ≤ h; ``free`` is that without bounds, if it is known."""
+    y = damped_step(A[None], e[None], np.array([damping]))[0] if free is None else free
+    if (G @ y > h).any():
+        H = A.T @ A
+        H.ravel()[:: len(H) + 1] += damping
+        y = bounded_step(H, A.T @ e, G, h)
     return y
 
 

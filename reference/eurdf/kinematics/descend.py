@@ -168,22 +168,24 @@ def descend(
 
 def evaluated(groups: Sequence[Group], q: Matrix) -> tuple[list[Any], list[Matrix], list[Matrix], Numbers, Numbers]:
     """Of each group its state and its residual, as it is and dimensionless; the squares of the norms of all of both."""
-    at, r, b, error, squared = [], [], [], 0.0, 0.0
+    states, residuals, scaled, error, squared = [], [], [], 0.0, 0.0
     for group in groups:
-        at.append(group.evaluator.at(q))
-        r.append(group.evaluator.residual(at[-1]))
-        b.append(group.row_scale * r[-1])
-        error, squared = error + square(r[-1]), squared + square(b[-1])
-    return at, r, b, error, squared
+        at = group.evaluator.at(q)
+        r = group.evaluator.residual(at)
+        b = group.row_scale * r
+        states.append(at)
+        residuals.append(r)
+        scaled.append(b)
+        error, squared = error + square(r), squared + square(b)
+    return states, residuals, scaled, error, squared
 
 
 def _ended(
     q: Matrix, r: list[Matrix], error: Numbers, squared: Numbers, step: int, cut: Numbers | None = None
 ) -> Descended:
-    no: Mask = np.zeros(len(q), dtype=bool)
-    return Descended(
-        q, r, np.array(error, ndmin=1), np.array(squared, ndmin=1), no + step, no if cut is None else np.array(cut)
-    )
+    B = len(q)
+    steps, cut = np.full(B, step), np.zeros(B, dtype=bool) if cut is None else np.array(cut)
+    return Descended(q, r, np.array(error, ndmin=1), np.array(squared, ndmin=1), steps, cut)
 
 
 def _predicted(A: Sequence[Matrix], steps: Sequence[Matrix], b: Sequence[Matrix]) -> Numbers:
@@ -213,10 +215,10 @@ def _steps(
             rooms = []  # no limit is in the way
         else:
             _stay_within(A, b, np.array(damping, ndmin=1), steps, rooms)
-    longest: Numbers = 1.0
-    for step in steps:
-        longest = at_least(longest, largest(step))
-    if some(longest != 1.0):
+    if any(not every(square(step) <= 1.0) for step in steps):  # else none is longer
+        longest: Numbers = 1.0
+        for step in steps:
+            longest = at_least(longest, largest(step))
         steps = [step / column(longest) for step in steps]
     if rooms:
         steps = [np.minimum(np.maximum(step, down), up) for step, (down, up) in zip(steps, rooms, strict=True)]

@@ -276,11 +276,17 @@ class TreeFew:
         self._tree = tree
 
     def integrate(self, q: Matrix, v: Matrix) -> Matrix:
-        there = _each(self._tree.integrate, self.nq, q, v)
+        tree = self._tree
+        if len(q) != 1:
+            there = _each(tree.integrate, self.nq, q, v)
+            return there if self.nq == self.nv else _each(tree.normalized, self.nq, there)
+        moved = tree.integrate(q[0], v[0])
         # A quaternion, and a cosine and a sine, are one number more than they have velocities.
-        return there if self.nq == self.nv else _each(self._tree.normalized, self.nq, there)
+        return (moved if self.nq == self.nv else tree.normalized(moved))[None]
 
     def difference(self, q: Matrix, other: Matrix) -> Matrix:
+        if len(q) == 1:
+            return self._tree.difference(q[0], other[0])[None]
         return _each(self._tree.difference, self.nv, q, other)
 
     def integrate_derivative(self, q: Matrix, v: Matrix) -> Matrix:

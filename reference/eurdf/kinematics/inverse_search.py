@@ -7,15 +7,15 @@ exceed a limit, the bounded step of that element is computed by itself.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from collections.abc import Iterator, Sequence
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.closures.se3 import velocity_of_origin
 from eurdf.kinematics.assembly import Closed, close
-from eurdf.kinematics.bounded_step import bounded_step
+from eurdf.kinematics.bounded_step import bounded_step, damped_step_within
 from eurdf.kinematics.descend import next_damping
 from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits
 from eurdf.kinematics.problem import Problem
@@ -35,6 +35,7 @@ from eurdf.kinematics.rank import (
     some,
     square,
     squares,
+    taken,
     times,
 )
 from eurdf.kinematics.tolerances import (
@@ -50,9 +51,6 @@ from eurdf.kinematics.tolerances import (
     SOLVED,
 )
 from eurdf.mechanism.joint import LIMIT_TOLERANCE
-
-if TYPE_CHECKING:
-    pass
 
 #: Why inverse kinematics did not converge: closures stay open; joints at their limits keep the frames off target; the
 #: configuration is singular, at the edge of the workspace; no motion of the mechanism brings the frames nearer; or the
@@ -149,6 +147,7 @@ class _Search:
         self._iterations = np.zeros(count, dtype=np.intp)
         self._begun: list[tuple[Indices, Matrix]] = []  # elements and where descents of them began
         self._farthest: dict[int, tuple[int, int, float]] = {}
+        self._may_be_certain = True
 
     def run(self, start: Matrix) -> Found:
         """The configurations found from start (B, nq)."""
@@ -248,69 +247,66 @@ class _Search:
 
     def _steps(self, q: Matrix, e: Matrix, E: Matrix, damping: Numbers) -> Matrix:
         """The v (b, nv) with K v = 0 that minimise |E v + e|² + λ|v|² within the limits; at most 1 rad or length."""
-        scale = self._spaces.scale
-        A, K, _ = self._projected(q, E)
-        damping = at_least(damping, 1e-13 * square(A) + 1e-300)
-        step = damped_step(A, e, damping)
-        v = scale * step
-        if self._task.limits is not None:
-            down, up = self._task.limits.room(q)
-            over = ((v > up) & (up <= scale)) | ((v < down) & (-down <= scale))
-            if over.any():
-                for element in np.flatnonzero(over.any(axis=1)).tolist():
-                    own = e[element], float(np.broadcast_to(damping, len(q))[element])
-                    v[element] = self._bounded_step(q[element], K[element], E[element], *own)
-                step = v / scale
-        return np.asarray(v / column(at_least(largest(step), 1.0)))
+        K, scale, limits = self._problem.jacobian(q), self._spaces.scale, self._task.limits
+        v = np.empty((len(q), len(scale)))
+        for which, A, Z in self._free_motions(K, E):
+            own_damping = at_least(taken(damping, which), 1e-13 * square(A) + 1e-300)
+            y = damped_step(A, e[which], own_damping)
+            steps = y if Z is None else times(Z, y)
+            if limits is not None:
+                down, up = limits.room(q[which])
+                moved = scale * steps
+                over = ((moved > up) & (up <= scale)) | ((moved < down) & (-down <= scale))
+                for index in np.flatnonzero(over.any(axis=1)).tolist() if np.count_nonzero(over) else ():
+                    at, by = np.arange(len(q))[which][index], float(np.broadcast_to(own_damping, len(steps))[index])
+                    if Z is None:
+                        basis = self._spaces.at(K[at]).free / scale[:, None]
+                        within = damped_step_within((E[at] * scale) @ basis, e[at], by, *self._bounds(q[at], basis))
+                        steps[index] = basis @ within
+                    else:
+                        bounds = self._bounds(q[at], Z[index])
+                        steps[index] = Z[index] @ damped_step_within(A[index], e[at], by, *bounds, y[index])
+            v[which] = scale * (steps / column(at_least(largest(steps), 1.0)))
+        return v
 
-    def _bounded_step(self, q: Vector, K: Matrix, E: Matrix, e: Vector, damping: float) -> Vector:
-        """The step (nv,) of one element that limits may bound."""
-        Z = self._spaces.at(K).free
-        A = E @ Z
-        H = A.T @ A
-        H.ravel()[:: len(H) + 1] += damping
-        G, h = self._bounds(q, Z)
-        y = damped_step(A[None], e[None], np.array([damping]))[0]
-        if (G @ y > h).any():
-            y = bounded_step(H, A.T @ e, G, h)
-        return np.asarray(Z @ y)
+    def _free_motions(self, K: Matrix, E: Matrix) -> Iterator[tuple[slice | Indices, Matrix, Matrix | None]]:
+        """Some elements, the derivatives A of their errors by free motions, and these Z (b, nv, f), dimensionless.
 
-    def _projected(self, q: Matrix, E: Matrix) -> tuple[Matrix, Matrix, Indices]:
-        """Ẽ P (b, k, nv), K (b, nc, nv), and the numbers (b,) of free motions.
-
-        Where the rows of K are independent for certain, P = 1 - K̃ᵀ (K̃ K̃ᵀ)⁻¹ K̃.
+        Where the rows of K are independent for certain, Z is None and A = Ẽ P with P = 1 - K̃ᵀ (K̃ K̃ᵀ)⁻¹ K̃; else A is
+        Ẽ Z.
         """
-        spaces, nv = self._spaces, self._problem.tree.nv
-        K, B = self._problem.jacobian(q), E * spaces.scale
-        free = np.full(len(q), nv - K.shape[1])
+        spaces, B = self._spaces, E * self._spaces.scale
         if not K.shape[1]:
-            return B, K, free
-        A = K * spaces.dimensionless
-        across = A.swapaxes(1, 2)
-        inverse, sure = certain_inverse(A @ across, norms(A))
-        every = np.count_nonzero(sure) == len(q)
-        if every or sure.any():
-            projected = B - B @ across @ inverse @ A
-            projected -= projected @ across @ inverse @ A  # what rounding left
-            B = projected if every else np.where(sure[:, None, None], projected, B)
-        if not every:
-            doubtful = np.flatnonzero(~sure)
-            for space in spaces.each(K[doubtful]):
-                own, Q = doubtful[space.which], space.free / spaces.scale[:, None]
-                B[own] = B[own] @ Q @ Q.swapaxes(1, 2)
-                free[own] = Q.shape[2]
-        return B, K, free
+            yield slice(None), B, None
+            return
+        which: slice | Indices = slice(None)
+        if self._may_be_certain:  # else the rows of K depend on each other at every configuration
+            A = K * spaces.dimensionless
+            across = A.swapaxes(1, 2)
+            inverse, sure = certain_inverse(A @ across, norms(A))
+            self._may_be_certain = certain = bool(np.count_nonzero(sure))
+            if certain:
+                projected = B - B @ across @ inverse @ A
+                projected -= projected @ across @ inverse @ A  # what rounding left
+                if np.count_nonzero(sure) == len(K):
+                    yield which, projected, None
+                    return
+                yield np.flatnonzero(sure), projected[sure], None
+                which = np.flatnonzero(~sure)
+        for space in spaces.each(K[which]):
+            own = space.which if isinstance(which, slice) else which[space.which]
+            Z = space.free / spaces.scale[:, None]
+            yield (own if len(own) < len(K) else slice(None)), B[own] @ Z, Z
 
     def _bounds(self, q: Vector, Z: Matrix) -> tuple[Matrix, Vector]:
-        """G and h such that v = Z y respects the limits if G y ≤ h, for limits within a step of 1 rad or length."""
+        """G and h such that the dimensionless step Z y respects the limits within its reach if G y ≤ h."""
         if self._task.limits is None:
             return np.empty((0, Z.shape[1])), np.empty(0)
         down, up = self._task.limits.room(q)
         scale = self._spaces.scale
-        rows = Z / scale[:, None]
-        moves = np.linalg.norm(rows, axis=1) > 1e-9
+        moves = np.linalg.norm(Z, axis=1) > 1e-9
         above, below = moves & (up <= scale), moves & (-down <= scale)
-        return np.vstack([rows[above], -rows[below]]), np.concatenate([(up / scale)[above], (-down / scale)[below]])
+        return np.vstack([Z[above], -Z[below]]), np.concatenate([(up / scale)[above], (-down / scale)[below]])
 
     def _why_off_target(self, q: Matrix, element: int) -> tuple[InverseKinematicsReason, tuple[JointAtLimit, ...]]:
         """Why no descent of one element continues from a closed configuration (1, nq) at which frames are off."""
@@ -333,7 +329,7 @@ class _Search:
             singular = rank > 0 and not values[rank - 1] > _SINGULAR * smallest
             return ("singular" if singular else "out of reach"), ()
         if at_limits:
-            G, h = self._bounds(q[0], Z)
+            G, h = self._bounds(q[0], Z / self._spaces.scale[:, None])
             at_bounds = h <= LIMIT_TOLERANCE
             down = bounded_step(np.eye(len(slope)), slope, G[at_bounds], np.zeros(int(at_bounds.sum())))
             if np.linalg.norm(down) <= _FLAT * size:
@@ -346,13 +342,15 @@ class _Search:
         Only configurations with the fewest free motions count: at singular loops, there are more, and the rank can be
         larger. The singular values at this one (1, nq) are returned.
         """
-        A, _, free = self._projected(q, E)
+        K = self._problem.jacobian(q)
+        (_, A, Z), *_ = self._free_motions(K, E)
+        free = K.shape[2] - K.shape[1] if Z is None else Z.shape[2]
         values = np.linalg.svd(A[0], compute_uv=False) if A.size else np.empty(0)
         rank = int(numerical_ranks(values[None])[0])
-        met = -int(free[0]), rank, float(values[rank - 1]) if rank else 0.0
+        met = -free, rank, float(values[rank - 1]) if rank else 0.0
         before = self._farthest.get(element, (-self._problem.tree.nv, 0, 0.0))
         self._farthest[element] = max(before, met)
-        return np.asarray(values[: int(free[0])])
+        return np.asarray(values[:free])
 
     def _moved(self, q: Matrix, v: Matrix) -> Matrix:
         return self._clipped(self._problem.tree.integrate(q, v))

@@ -9,7 +9,7 @@ import numpy as np
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import close
 from eurdf.kinematics.problem import Problem
-from eurdf.kinematics.rank import as_numbers, at_least, choose, column, every, largest, numbers, some, square
+from eurdf.kinematics.rank import Numbers, as_numbers, at_least, choose, column, every, largest, numbers, some, square
 from eurdf.kinematics.tolerances import (
     FASTEST,
     LEAST_CORRECTION,
@@ -23,8 +23,8 @@ Elements = Indices | slice
 
 #: Takes a step of some elements: which, the fractions (b,) of their paths that are done, and the steps (b,) to take, in
 #: the same unit. Returns the steps that were tried, at most as long, and whether each was accepted. A step of zero that
-#: was not accepted ends the path.
-Advance = Callable[[Elements, Vector, Vector], tuple[Vector, Mask]]
+#: was not accepted ends the path. Of a single element they are floats and a bool.
+Advance = Callable[[Elements, Numbers, Numbers], tuple[Numbers, Numbers]]
 
 
 def follow(advance: Advance, count: int = 1, *, shortest: float = SHORTEST_STEP, first: float = 1.0) -> Vector:
@@ -39,13 +39,12 @@ def follow(advance: Advance, count: int = 1, *, shortest: float = SHORTEST_STEP,
     Returns:
         What fraction (count,) of each path is done: 1, or less if it ended early.
     """
-    done, part, step = np.zeros(count), numbers(count, 0.0), numbers(count, first)
+    done, part, step = np.empty(count), numbers(count, 0.0), numbers(count, first)
     on: Elements = slice(None)
     while True:
         left = 1.0 - part  # of the elements that go on
         h = choose(step < left, step, left)
-        taken, good = advance(on, np.array(part, ndmin=1), np.array(h, ndmin=1))
-        tried, accepted = as_numbers(taken), as_numbers(good)
+        tried, accepted = advance(on, part, h)
         part = part + accepted * tried
         step = choose(accepted, 2.0, 0.5) * tried
         done[on] = part
@@ -88,31 +87,30 @@ def follow_given(
     driven, ends = path[:, problem.given], goal[:, coordinates]
     q, stopped = np.array(first), np.zeros(len(first), dtype=bool)
 
-    def advance(on: Elements, done: Vector, h: Vector) -> tuple[Vector, Mask]:
+    def advance(on: Elements, done: Numbers, h: Numbers) -> tuple[Numbers, Numbers]:
         here = q[on]
         v = _followed(problem, here, driven[on], free)
         motion = v / scale
-        done, h, fastest = as_numbers(done), as_numbers(h), largest(motion)
+        fastest = largest(motion)
         while some(far := (fastest * h > LONGEST_MOTION) & (h > shortest)):
             h = choose(far, 0.5 * h, h)
         to, at = done + h, ends[on]
         if some(to < 1.0):
             between = tree.integrate(first[on], column(to) * path[on])
-            at = np.where(np.reshape(to < 1.0, (-1, 1)), between[:, coordinates], at)
+            at = np.where(column(to < 1.0), between[:, coordinates], at)
         expected = tree.integrate(here, column(h) * v)
         expected[:, coordinates] = at
         closed = close(problem, expected, tolerance)
         corrected = square(tree.difference(expected, closed.q) / scale)
         allowed = at_least((MOST_CORRECTION * h) ** 2 * square(motion), LEAST_CORRECTION**2)
-        accepted = closed.closes & (corrected <= allowed)
-        h = np.array(h, ndmin=1)
+        accepted = as_numbers(closed.closes) & (corrected <= allowed)
         if every(accepted):
             q[on] = closed.q
             return h, accepted
-        q[on] = np.where(accepted[:, None], closed.q, here)
-        lost = np.array(np.isnan(fastest), ndmin=1)
+        q[on] = np.where(column(accepted), closed.q, here)
+        lost = fastest != fastest  # NaN
         stopped[on] = lost
-        return np.where(lost, 0.0, h), accepted
+        return choose(lost, 0.0, h), accepted
 
     return q, follow(advance, len(first), shortest=shortest), stopped
 

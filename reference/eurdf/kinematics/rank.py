@@ -23,8 +23,8 @@ _ROUNDING_OF_SQUARES = 1e-15
 
 # -- numbers, one for each element ------------------------------------------------------------------------------------
 
-#: What controls the steps of a solver: an array (B,) for many elements, a scalar for a single one. The expressions are
-#: the same; NumPy takes a tenth of the time for scalars. Only the functions below distinguish the two.
+#: What controls the steps of a solver: an array (B,) for many elements, a float or bool for a single one. The
+#: expressions are the same; floats take a tenth of the time. Only the functions below distinguish the two.
 Numbers = Any
 
 
@@ -32,13 +32,14 @@ def square(rows: Matrix) -> Numbers:
     """The squared Euclidean norm of each of (B, …)."""
     if len(rows) != 1:
         return squares(rows)
-    row = rows.reshape(-1)
-    return row.dot(row)
+    row = rows.ravel()
+    return float(row.dot(row))
 
 
 def largest(rows: Matrix) -> Numbers:
     """The largest magnitude in each row (B, n), at least 0; NaN if one is."""
-    return np.maximum.reduce(np.abs(rows), axis=None if len(rows) == 1 else 1, initial=0.0)
+    found = np.abs(rows)
+    return float(np.maximum.reduce(found[0], initial=0.0)) if len(rows) == 1 else found.max(axis=1, initial=0.0)
 
 
 def total(rows: Matrix) -> Numbers:
@@ -68,9 +69,14 @@ def choose(mask: Numbers, one: Any, other: Any) -> Numbers:
     return one if mask else other
 
 
+def taken(number: Numbers, which: Any) -> Numbers:
+    """The numbers of some elements."""
+    return number[which] if isinstance(number, np.ndarray) else number
+
+
 def as_numbers(values: Vector | Mask) -> Numbers:
     """The numbers of an array (B,)."""
-    return values[0] if len(values) == 1 else values
+    return values.item() if len(values) == 1 else values
 
 
 def column(number: Numbers) -> Numbers:

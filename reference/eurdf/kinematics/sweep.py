@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from eurdf.array import Mask, Matrix, Vector
+from eurdf.array import Matrix, Vector
 from eurdf.errors import NotClosable
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.branch import Branch, Point
 from eurdf.kinematics.named import Named
 from eurdf.kinematics.path import Elements, follow
 from eurdf.kinematics.position_limit import PositionLimits, chosen_limits
+from eurdf.kinematics.rank import Numbers
 from eurdf.kinematics.scale import characteristic_length
 from eurdf.kinematics.tolerances import DEAD, START
 from eurdf.pinocchio.arguments import checked_count
@@ -221,23 +222,23 @@ def _follow(branch: Branch, start: Point, reach: float, steps: int, largest: flo
     end: End | None = None
     joint, done, part = None, 0.0, 1.0  # fraction of a step that is done, and that is tried next
 
-    def advance(_: Elements, so_far: Vector, h: Vector) -> tuple[Vector, Mask]:
+    def advance(_: Elements, so_far: Numbers, h: Numbers) -> tuple[Numbers, Numbers]:
         nonlocal end, joint, done, part, largest
-        done = float(so_far[0])
-        there = branch.step(points[-1], float(h[0]) * reach / steps)
+        done = so_far
+        there = branch.step(points[-1], h * reach / steps)
         if there is None:
-            return h, np.zeros(1, dtype=bool)
+            return h, False
         met = branch.passive_limit(points[-1], there)
         if met:
             end, (joint, until) = "passive limit", met
-            done += float(h[0]) * until
+            done += h * until
         elif there.rank != start.rank or there.smallest < DEAD * max(largest, there.smallest):
             end = "dead point"
         if end is not None:
-            return np.zeros(1), np.zeros(1, dtype=bool)
+            return 0.0, False
         points.append(there)
-        largest, part = max(largest, there.smallest), 2.0 * float(h[0])
-        return h, np.ones(1, dtype=bool)
+        largest, part = max(largest, there.smallest), 2.0 * h
+        return h, True
 
     while len(configurations) <= steps and reach:
         if follow(advance, shortest=_SHORTEST_STEP, first=min(part, 1.0))[0] < 1.0:

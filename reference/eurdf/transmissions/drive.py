@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eurdf.array import Indices, Mask, Matrix, Vector
+from eurdf.array import Indices, Matrix, Vector
 from eurdf.errors import NotClosable, NoTransmission, TooFar, shown
 from eurdf.kinematics.assembly import assemble, closed_start, start
 from eurdf.kinematics.derived import borrowed, derived
@@ -16,7 +16,7 @@ from eurdf.kinematics.loop import independent_groups, merged, moving_velocities
 from eurdf.kinematics.named import Named
 from eurdf.kinematics.path import Elements, follow
 from eurdf.kinematics.problem import Problem
-from eurdf.kinematics.rank import least_solution, norms, numerical_rank
+from eurdf.kinematics.rank import Numbers, least_solution, norms, numerical_rank
 from eurdf.kinematics.residual import all_openings
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.kinematics.tolerances import (
@@ -132,15 +132,15 @@ class Drive:
         path = self.given.nearest(positions, first) - first
         here, left, found = q, MOST_SUBSTEPS, None
 
-        def advance(_: Elements, done: Vector, h: Vector) -> tuple[Vector, Mask]:
+        def advance(_: Elements, done: Numbers, h: Numbers) -> tuple[Numbers, Numbers]:
             nonlocal here, left, found
             left -= 1
             if left < 0:
-                return np.zeros(1), np.zeros(1, dtype=bool)
-            to = float(done[0] + h[0])
+                return 0.0, False
+            to = done + h
             found = self._newton(here, positions if to >= 1.0 else first + to * path)
             here = here if found is None else found[0]
-            return h, np.array([found is not None])
+            return h, found is not None
 
         if follow(advance)[0] < 1.0 or found is None:
             raise self._unreached(here, positions)

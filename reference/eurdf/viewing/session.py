@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from eurdf.array import Mask, Vector
+from eurdf.array import Vector
 from eurdf.kinematics.analysis import Analysis, analyze
 from eurdf.kinematics.assembly import Assembly, assemble, start
 from eurdf.kinematics.branch import Branch, Point
@@ -19,6 +19,7 @@ from eurdf.kinematics.inverse import inverse_kinematics
 from eurdf.kinematics.named import Named, configuration_of
 from eurdf.kinematics.path import Elements, follow
 from eurdf.kinematics.position_limit import position_limits
+from eurdf.kinematics.rank import Numbers
 from eurdf.kinematics.residual import residual
 from eurdf.kinematics.sweep import sweep
 from eurdf.kinematics.tolerances import CLOSED, DEAD, START
@@ -289,20 +290,20 @@ class Session:
         here = branch.at(q)
         largest, stop = max(self._largest.get(velocity, 0.0), here.smallest), None
 
-        def advance(_: Elements, done: Vector, h: Vector) -> tuple[Vector, Mask]:
+        def advance(_: Elements, done: Numbers, h: Numbers) -> tuple[Numbers, Numbers]:
             nonlocal here, largest, stop
-            part = float(h[0]) * distance
+            part = h * distance
             there = branch.step(here, part)
             if there is None:
-                return h, np.zeros(1, dtype=bool)
+                return h, False
             if branch.passive_limit(here, there) is not None:
                 here, stop = self._to_limit(branch, here, part)
             elif there.rank != here.rank or (there.smallest < here.smallest and there.smallest < DEAD * largest):
-                stop = self._dead_point(slider, begin + float(done[0]) * distance, float(done[0]) == 0.0)
+                stop = self._dead_point(slider, begin + done * distance, done == 0.0)
             if stop is not None:
-                return np.zeros(1), np.zeros(1, dtype=bool)
+                return 0.0, False
             here, largest = there, max(largest, there.smallest)
-            return h, np.ones(1, dtype=bool)
+            return h, True
 
         done = 1.0
         if distance:
@@ -349,16 +350,16 @@ class Session:
         pressed: tuple[int, ...] = ()
         met: list[int] = []
 
-        def advance(_: Elements, done: Vector, h: Vector) -> tuple[Vector, Mask]:
+        def advance(_: Elements, done: Numbers, h: Numbers) -> tuple[Numbers, Numbers]:
             nonlocal q, pressed, met
-            h = np.minimum(h, longest)
+            h = min(h, longest)
             v = np.zeros(tree.nv)
-            v[velocity] = float(h[0]) * distance
+            v[velocity] = h * distance
             there = rest.near(tree.integrate(q, v))
             met = [each for each in there.pressed if each not in pressed]
             if there.q is not None:
                 q, pressed = there.q, there.pressed
-            return h, np.array([there.q is not None])
+            return h, there.q is not None
 
         done = follow(advance, shortest=min(_SHORTEST_REST_STEP * longest, 1.0))[0] if distance else 1.0
         if done == 1.0:
