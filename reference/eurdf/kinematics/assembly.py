@@ -256,12 +256,16 @@ class _Closing:
         self._ended[which, index] |= ~found.cut
         errors = norms(found.residuals[0])
         better = errors < self._errors[which, index]
-        own = which[better]
-        self._errors[own, index] = errors[better]
-        self._sure[own, index] = _well_closed(self._problem, found)[better]
         if self._best is self._q:
             self._best = np.array(self._q)
-        self._best[own[:, None], group.loops.coordinates] = found.q[better][:, group.loops.coordinates]
+        if np.count_nonzero(better) == len(self._q):
+            better, own = slice(None), slice(None)
+            self._best[:, group.loops.coordinates] = found.q[:, group.loops.coordinates]
+        else:
+            own = which[better]
+            self._best[own[:, None], group.loops.coordinates] = found.q[better][:, group.loops.coordinates]
+        self._errors[own, index] = errors[better]
+        self._sure[own, index] = _well_closed(self._problem, found)[better]
 
     def _descended(self, groups: Sequence[Group], which: Indices, q: Matrix) -> Descended:
         """The descents of some elements from q (b, nq), within the bound of the work."""

@@ -24,6 +24,7 @@ from eurdf.kinematics.rank import (
     every,
     largest,
     numbers,
+    product,
     solutions,
     some,
     square,
@@ -231,7 +232,7 @@ def _damped(A: Sequence[Matrix], b: Sequence[Matrix], damping: Numbers) -> list[
     trace: Numbers = 0.0
     for own, is_wide in zip(A, wide, strict=True):
         back = own.swapaxes(1, 2)
-        gram = own @ back if is_wide else back @ own
+        gram = product(own, back) if is_wide else product(back, own)
         diagonal = diagonals(gram)
         grams.append((gram, diagonal))
         trace = trace + total(diagonal)

@@ -172,9 +172,9 @@ class _Search:
         place, going = first.q[first.closes], going[first.closes]
         best[going], errors[going] = self._descend(place, going, IDLE)
         off = going[~self._reached(errors[going])]
-        random = np.random.default_rng(0)
+        random = np.random.default_rng(0) if len(off) else None  # making it takes as long as a step
         for attempt in range(task.restarts):
-            if not len(off):
+            if random is None or not len(off):
                 break
             spread = _SPREADS[min(attempt, len(_SPREADS) - 1)]
             away = self._spaces.scale * random.uniform(-spread, spread, self._problem.tree.nv)

@@ -12,7 +12,7 @@ from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.evaluate import evaluator, few_tree, many_tree
 from eurdf.kinematics.loop import LoopGroup, independent_groups, merged, moving_velocities
-from eurdf.kinematics.rank import least_solution, norms
+from eurdf.kinematics.rank import least_solution, norms, product
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.kinematics.tolerances import MOST_VELOCITIES_AT_ONCE
 from eurdf.pinocchio.tree_few import as_slice
@@ -76,7 +76,7 @@ class Group:
         K = self.evaluator.jacobian(self.evaluator.at(q)) * self.row_scale[:, None]
         norm = self.spread * norms(K)
         n = len(self.unit)
-        return least_solution(K[:, :, :n], -(K[:, :, n:] @ driven), norm)
+        return least_solution(K[:, :, :n], -product(K[:, :, n:], driven), norm)
 
     def holding(self, direction: Vector) -> Group:
         """The same group, whose derivative is zero along a direction (n,) of unit length: no step moves along it."""

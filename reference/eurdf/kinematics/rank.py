@@ -91,6 +91,12 @@ def at_least(number: Numbers, least: Numbers) -> Numbers:
     return max(number, least)
 
 
+def product(A: Matrix, B: Matrix) -> Matrix:
+    """A B (B, m, k), of (B, m, n) and (B, n, k)."""
+    found: Matrix = A[0].dot(B[0])[None] if len(A) == len(B) == 1 else A @ B
+    return found
+
+
 def times(A: Matrix, x: Matrix) -> Matrix:
     """A x (B, m), of (B, m, n) and (B, n)."""
     found: Matrix = A[0].dot(x[0])[None] if len(A) == 1 else (A @ x[:, :, None])[:, :, 0]
@@ -199,11 +205,11 @@ def least_solution(A: Matrix, b: Matrix, norm: Vector) -> tuple[Matrix, Mask]:
     m, n = A.shape[1:]
     if m <= n:
         transposed = A.swapaxes(1, 2)
-        gram = A @ transposed
+        gram = product(A, transposed)
         inverse, sure = certain_inverse(gram, norm)
-        y = inverse @ b
-        y += inverse @ (b - gram @ y)
-        x = transposed @ y
+        y = product(inverse, b)
+        y += product(inverse, b - product(gram, y))
+        x = product(transposed, y)
         if np.count_nonzero(sure) == len(A):
             return x, sure
     else:

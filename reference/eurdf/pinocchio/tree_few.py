@@ -149,7 +149,7 @@ class FewPairs:
             (bundle,) = self._bundles
             self.placed(at.q, 0)
             J = bundle.jacobian()
-            part: Matrix = (rows @ (J if k == self.count else J[which])).reshape(1, k * r, -1)
+            part: Matrix = (rows @ (J if k == self.count else J[which])).reshape(1, k * r, J.shape[2])
             if bundle.is_whole:
                 return part
             K = np.zeros((1, k * r, self.n))
@@ -214,8 +214,6 @@ def _bundled(model: pin.Model, paths: Iterable[set[int]]) -> Iterator[tuple[list
         open_[0].extend(which)
         open_[1].update(joints)
         size += own
-    if not size:  # Jacobians of Pinocchio 4.1 without velocities read memory that is not their own
-        raise NotImplementedError("no joint is between the frames")
     yield open_
 
 
@@ -275,9 +273,12 @@ class _Bundle:
     def jacobian(self) -> Matrix:
         """The twists (k, 6, own n) of B against A where `placements` last was, by the velocities."""
         if self._J is None:
-            J = pin.getConstraintsJacobian(self._model, self._data, self._models, self._datas)
-            J = -J.reshape(len(self._each), 6, self._model.nv)  # of A against B
-            self._J = J if self._own is None else J[..., self._own]
+            if self._model.nv:
+                J = pin.getConstraintsJacobian(self._model, self._data, self._models, self._datas)
+                J = -J.reshape(len(self._each), 6, self._model.nv)  # of A against B
+                self._J = J if self._own is None else J[..., self._own]
+            else:  # those of Pinocchio 4.1 without velocities read memory that is not their own
+                self._J = np.empty((len(self._each), 6, 0))
         return self._J
 
     def within(self, which: slice) -> tuple[slice | Indices, slice]:
