@@ -12,7 +12,6 @@ import pinocchio as pin
 from eurdf.array import Vector
 from eurdf.diagnostics.wording import meant
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, root_joint
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.pinocchio.joint_model import is_circular
@@ -87,14 +86,14 @@ def configuration_vector(
     for name, given in coordinates.items():
         values = np.atleast_1d(np.asarray(given, dtype=np.float64)).tolist()
         if name == ROOT_JOINT and mechanism.root == "floating":
-            q[:7] = _checked(name, values, root_joint("").type)
+            q[:7] = root_joint("").normalized(values)
             continue
         slot = at.get(name)
         if slot is None:
             if name in mimics:
                 continue
             raise ValueError(f"'{name}' is not a joint with coordinates{meant(name, at)}")
-        values = _checked(name, values, slot.joint.type)
+        values = [*slot.joint.normalized(values)]
         if slot.nq > len(values):  # the last of them is an angle, which Pinocchio has as (cos, sin)
             values[-1:] = math.cos(values[-1]), math.sin(values[-1])
         q[slot.idx_q : slot.idx_q + slot.nq] = values
@@ -134,18 +133,3 @@ def joint_coordinates(mechanism: Mechanism, model: pin.Model, q: Vector) -> dict
             mimic = mimics[joint.name]
             found[joint.name] = (mimic.multiplier * own[mimic.joint][0] + mimic.offset,)
     return found
-
-
-def _checked(name: str, values: list[float], kind: JointType) -> list[float]:
-    if len(values) != len(kind.coordinates):
-        raise ValueError(
-            f"joint '{name}' is given {len(values)} coordinates; it has {len(kind.coordinates)}: "
-            + ", ".join(kind.coordinates)
-        )
-    start = kind.quaternion
-    if start is not None:
-        norm = math.hypot(*values[start : start + 4])
-        if norm == 0.0:
-            raise ValueError(f"the quaternion of joint '{name}' has length 0")
-        values[start : start + 4] = [value / norm for value in values[start : start + 4]]
-    return values
