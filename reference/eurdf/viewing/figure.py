@@ -102,7 +102,7 @@ class Figure:
         if scene.links:
             self._dots = self._api.add_point_cloud(
                 f"{root}/closure_frames",
-                self._closure_dots(),
+                self._closure_lines(placed)[1::3].reshape(-1, 3),
                 colors=_CLOSURE,
                 point_size=0.012 * scene.size,
                 point_shape="circle",
@@ -178,9 +178,6 @@ class Figure:
             node.position[:], node.wxyz[:] = np.nan, np.nan
             node.position, node.wxyz = origins[number], wxyzs[number]
 
-    def _closure_dots(self) -> Matrix:
-        return self.scene.closure_lines(self._placed)[:, 1].reshape(-1, 3)
-
     def _closure_lines(self, placed: Placed) -> Matrix:
         return self.scene.closure_lines(placed).reshape(-1, 2, 3)
 
@@ -191,7 +188,7 @@ class Figure:
             if self.shown[layer]:
                 node.points = at(placed)
         if self._dots is not None and self.shown["closures"]:
-            self._dots.points = self._closure_dots()
+            self._dots.points = self._closure_lines(placed)[1::3].reshape(-1, 3)
             self._color_closures(placed)
         if self.shown["link frames"]:
             self._axes.batched_positions, self._axes.batched_wxyzs = placed.origins, placed.wxyzs
