@@ -65,14 +65,8 @@ class InverseSolver:
     ) -> Torques | None:
         """Solve M a + h = S u + τ + Kᵀ λ; None if the rank of K_o or the possibility of the motion is in doubt.
 
-        Args:
-            solver: Solves forward dynamics.
-            q: Normalized configuration (nq,).
-            v: Velocity (nv,).
-            a: Acceleration (nv,).
-            force: τ (nv,).
-            tolerance: Accepted difference of v and a from the nearest possible ones, as in `inverse_dynamics`.
-            dynamics: Those of the tree.
+        The arguments are those of `inverse_dynamics`, with q (nq,) normalized and τ (nv,) in ``force``; ``solver``
+        solves forward dynamics.
         """
         if not self._is_possible:
             return None
@@ -117,14 +111,7 @@ class InverseSolver:
         """A bound of the part of a change of the acceleration along motions that no motor controls.
 
         That part is a projection in the metric of the mass matrix, so that its energy is at most that of the change.
-
-        Args:
-            q: Configuration (nq,).
-            v: Velocity (nv,).
-            a: Acceleration (nv,) after the change.
-            change: Change (nv,).
-            before: M a + h (nv,) before the change.
-            dynamics: Those of the tree.
+        a (nv,) is the acceleration after the change, and ``before`` is M a + h (nv,) before it.
         """
         energy = change.dot(dynamics.inverse_dynamics(q, v, a) - before)
         lightest = (dynamics.inverse_mass_diagonal(q) / self._scale**2).max()

@@ -43,14 +43,9 @@ class Figure:
     """
 
     def __init__(self, server: viser.ViserServer, scene: Scene, placed: Placed, root: str, origin: Vector) -> None:
-        """Add the nodes where they are: pages show what is sent bit by bit.
+        """Add the nodes where they are, since pages show what is sent bit by bit: below a node of their own.
 
-        Args:
-            server: The server of the page.
-            scene: What there is to draw.
-            placed: Where it is.
-            root: Name of the node above all of its nodes.
-            origin: Where the world of the robot has its origin (3,), m.
+        Its name is ``root``, and the world of the robot has its origin (3,), m, there.
         """
         self.scene = scene
         self._api = server.scene

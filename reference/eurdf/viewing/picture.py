@@ -189,12 +189,7 @@ def _nearest(colors: Image, palette: npt.NDArray[np.float64]) -> npt.NDArray[np.
 
 
 def drawn(robot: Robot, q: Vector | None, loops: bool) -> Drawn:
-    """What is shown of a robot; see `picture`.
-
-    Raises:
-        InvalidRobot: A mesh is missing.
-        ValueError: There is nothing to draw.
-    """
+    """What is shown of a robot; see `picture`, also for the errors."""
     visual_model = robot.visual_model  # raises if a mesh is missing
     if q is None:
         q = robot.configurations.get(ASSEMBLED)
@@ -236,11 +231,7 @@ def _lightened(color: Color) -> Color:
 
 
 def _renderer() -> Any:
-    """The renderer, pyvista.
-
-    Raises:
-        MissingExtra: It is not installed.
-    """
+    """The renderer, pyvista, or `MissingExtra`."""
     if not os.environ.get("DISPLAY"):
         # Else VTK looks for a screen first, and says so.
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")

@@ -143,12 +143,7 @@ class Scene:
     """
 
     def __init__(self, robot: Robot, q: Vector) -> None:
-        """Collect what there is.
-
-        Args:
-            robot: The robot, with the shapes that it was loaded with; none if a mesh is missing.
-            q: A configuration (nq,) that shows its size.
-        """
+        """Collect what there is, with the shapes that were loaded; q (nq,) is a configuration that shows the size."""
         mechanism = robot.mechanism
         self.robot = robot
         self.bodies = tuple(body.name for body in mechanism.bodies)
