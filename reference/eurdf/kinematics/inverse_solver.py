@@ -12,7 +12,7 @@ the motions that no motor controls. Whether it is possible, forward dynamics dec
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -30,13 +30,6 @@ if TYPE_CHECKING:
 
 # Bounds of the deviations up to this fraction of the tolerance are below it beyond doubt.
 _CERTAIN = 0.5
-
-
-class Torques(NamedTuple):
-    """Motor torques u (nu,), N·m and N, and the forces λ (nc,) of all constraints."""
-
-    u: Vector
-    lambdas: Vector
 
 
 class InverseSolver:
@@ -62,8 +55,8 @@ class InverseSolver:
         force: Vector,
         tolerance: float,
         dynamics: TreeDynamics,
-    ) -> Torques | None:
-        """Solve M a + h = S u + τ + Kᵀ λ; None if the rank of K_o or the possibility of the motion is in doubt.
+    ) -> tuple[Vector, Vector] | None:
+        """Solve M a + h = S u + τ + Kᵀ λ for u (nu,) and λ (nc,); None if the rank of K_o, or the motion, is in doubt.
 
         The arguments are those of `inverse_dynamics`, with q (nq,) normalized and τ (nv,) in ``force``; ``solver``
         solves forward dynamics.
@@ -103,7 +96,7 @@ class InverseSolver:
             return None
         if self._uncontrolled and not self._uncontrolled_part(q, v, forward.a, change, taken, dynamics) <= accepted:
             return None
-        return Torques(u, lambdas)
+        return u, lambdas
 
     def _uncontrolled_part(
         self, q: Vector, v: Vector, a: Vector, change: Vector, before: Vector, dynamics: TreeDynamics

@@ -28,7 +28,7 @@ LAYERS = {
 
 _LAYER_OF = {"visual": "visual shapes", "collision": "collision shapes", "inertia": "inertia ellipsoids"}
 
-# Red, green, blue, 0 to 255.
+_Color = tuple[int, int, int]  # red, green, blue, 0 to 255
 _SKELETON = (90, 90, 90)
 _CLOSURE, _OPEN = (140, 60, 200), (230, 30, 30)
 _PASSIVE, _ACTUATED, _DEPENDENT = (60, 130, 230), (20, 160, 60), (240, 140, 0)
@@ -87,12 +87,12 @@ class Figure:
             f"{root}/link_frames", placed.wxyzs, placed.origins, axes_length=length, axes_radius=0.03 * length
         )
         self._add("link frames", self._axes)
-        self._add_lines(f"{root}/skeleton", "skeleton", len(scene.parents) - 1, _SKELETON, 3.0, scene.skeleton)
+        self._add_lines(f"{root}/skeleton", "skeleton", [_SKELETON] * (len(scene.parents) - 1), 3.0, scene.skeleton)
         colors = [_ACTUATED if axis.actuated else _PASSIVE for axis in scene.axes]
-        self._add_lines(f"{root}/axes", "joint axes", len(scene.axes), colors, 3.0, scene.axis_lines)
+        self._add_lines(f"{root}/axes", "joint axes", colors, 3.0, scene.axis_lines)
         self._are_open = np.zeros(len(scene.links), dtype=bool)
-        count = 3 * len(scene.links)
-        self._add_lines(f"{root}/closures", "closures", count, [_CLOSURE] * count, 2.0, self._closure_lines)
+        colors = [_CLOSURE] * (3 * len(scene.links))
+        self._add_lines(f"{root}/closures", "closures", colors, 2.0, self._closure_lines)
         self._dots: Any = None
         if scene.links:
             self._dots = self._api.add_point_cloud(
@@ -151,14 +151,14 @@ class Figure:
         self._nodes[layer].append(node)
 
     def _add_lines(
-        self, name: str, layer: str, count: int, colors: Any, pixels: float, at: Callable[[Placed], Matrix]
+        self, name: str, layer: str, colors: list[_Color], pixels: float, at: Callable[[Placed], Matrix]
     ) -> None:
-        if not count:
+        if not colors:
             return
         node = self._api.add_line_segments(
             name,
             at(self._placed),
-            colors=_line_colors(colors) if isinstance(colors, list) else colors,
+            colors=_line_colors(colors),
             thickness=pixels,
             thickness_units="screen",
         )
@@ -215,5 +215,5 @@ class Figure:
                 label.visible = visible
 
 
-def _line_colors(colors: list[tuple[int, int, int]]) -> Any:
+def _line_colors(colors: list[_Color]) -> Any:
     return np.repeat(np.array(colors, dtype=np.uint8)[:, None], 2, axis=1)
