@@ -63,14 +63,14 @@ def spring_energy(robot: Robot, q: Named) -> float:
     return robot.tree.springs.energy(configuration_of(robot, q))
 
 
-class Resting(NamedTuple):
-    """Joints whose springs are at rest.
+class JointValues(NamedTuple):
+    """Joints at given coordinates.
 
     Attributes:
         joints: Their names.
         coordinates: Indices in q of all their coordinates.
         velocities: Indices in v of all their velocities.
-        values: Their coordinates at rest, rad or m.
+        values: These coordinates, as in q.
     """
 
     joints: tuple[str, ...]
@@ -79,7 +79,7 @@ class Resting(NamedTuple):
     values: Vector
 
 
-def joints_at_rest(robot: Robot, given: Indices) -> Resting | None:
+def joints_at_rest(robot: Robot, given: Indices) -> JointValues | None:
     """The joints with springs, but for given ones (indices in v), at the coordinates where no spring stores energy.
 
     None if there are none, if a joint has springs on some of its coordinates only, or if two springs act on one.
@@ -90,7 +90,7 @@ def joints_at_rest(robot: Robot, given: Indices) -> Resting | None:
         return None
     names, coordinates, velocities, values = zip(*free, strict=True)
     chain = itertools.chain.from_iterable
-    return Resting(
+    return JointValues(
         names,
         np.fromiter(chain(coordinates), np.intp),
         np.fromiter(chain(velocities), np.intp),
@@ -99,7 +99,7 @@ def joints_at_rest(robot: Robot, given: Indices) -> Resting | None:
 
 
 def _sprung(robot: Robot) -> list[tuple[str, list[int], list[int], list[float]]] | None:
-    """Each joint with springs as in `Resting`; None as for `joints_at_rest`."""
+    """Each joint with springs as in `JointValues`; None as for `joints_at_rest`."""
     springs = robot.tree.springs
     velocities = springs.idx_v.tolist()
     found = []

@@ -16,7 +16,7 @@ from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
 from eurdf.mechanism.constraint import Closure, Constraint, Coupling
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, root_joint
-from eurdf.mechanism.pose import IDENTITY, Pose, direction
+from eurdf.mechanism.pose import Pose, direction
 from eurdf.viewing.scene import Scene
 from eurdf.viewing.session import Session
 from eurdf.viewing.surface import Surface
@@ -201,4 +201,4 @@ def _triangles(surface: Surface) -> dict[str, Any]:
 
 
 def _pose(pose: Pose) -> list[float]:
-    return [0.0] * 3 + [0.0, 0.0, 0.0, 1.0] if pose is IDENTITY else [*pose.xyz, *pose.quaternion]
+    return [*pose.xyz, *pose.quaternion]

@@ -14,11 +14,12 @@ import pinocchio as pin
 
 from eurdf.array import Matrix, Vector
 from eurdf.closures.se3 import quaternion_of
+from eurdf.convert.inertia import along_principal_axes
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.evaluate import Frames, frames_at
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.residual import all_openings
-from eurdf.mechanism.body import Anchor, Inertia
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.pose import X, Y, Z, direction
 from eurdf.pinocchio.frames import body_frame_ids, placement_of
@@ -248,23 +249,13 @@ def _ellipsoids(robot: Robot) -> list[Part]:
     for number, body in enumerate(robot.mechanism.bodies):
         if body.inertia is None or not body.inertia.mass > 0.0:
             continue
-        half_axes, rotation = _ellipsoid(body.inertia)
-        pose = placement_of(body.inertia.pose) * pin.SE3(rotation, np.zeros(3))
-        parts.append(Part("inertia", number, pose, sphere().scaled(half_axes), INERTIA))
+        found = along_principal_axes(body.inertia)
+        moments = np.array(found.moments)[[0, 3, 5]]
+        # Of half axes a, b, c: a² = 5/2 (I_b + I_c - I_a) / m. Moments that no body can have, which a diagnostic
+        # reports, make a half axis of 0.
+        half_axes = np.sqrt(np.maximum(2.5 * (moments.sum() - 2.0 * moments) / found.mass, 0.0))
+        parts.append(Part("inertia", number, placement_of(found.pose), sphere().scaled(half_axes), INERTIA))
     return parts
-
-
-def _ellipsoid(inertia: Inertia) -> tuple[Vector, Matrix]:
-    """The half axes (3,), m, and the rotation from its axes: a² = 5/2 (I_b + I_c - I_a) / m.
-
-    Moments that no body can have, which a diagnostic reports, make a half axis of 0.
-    """
-    xx, xy, xz, yy, yz, zz = inertia.moments
-    moments, axes = np.linalg.eigh(np.array(((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))))
-    squares = 2.5 * (moments.sum() - 2.0 * moments) / inertia.mass
-    if np.linalg.det(axes) < 0.0:
-        axes[:, 0] = -axes[:, 0]
-    return np.sqrt(np.maximum(squares, 0.0)), axes
 
 
 def _axes(joint: Joint, body: int, actuated: bool) -> list[Axis]:
