@@ -4,16 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
-    from eurdf.pinocchio.tree import Tree
 
 _T = TypeVar("_T")
 
 
-def derived(robot: Robot | Tree, compute: Callable[..., _T], *key: Hashable) -> _T:
+class _Keeper(Protocol):
+    @property
+    def derived(self) -> dict[Any, Any]: ...
+
+
+_Kept = TypeVar("_Kept", bound=_Keeper)
+
+
+def derived(robot: _Kept, compute: Callable[..., _T], *key: Hashable) -> _T:
     """What a function computes from a robot or a tree, and a key, computed when first asked for.
 
     Threads that ask at once all get the same.

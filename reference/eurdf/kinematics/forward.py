@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
@@ -15,7 +16,7 @@ from eurdf.kinematics.named import ByJoint, Named, unknown_joint
 from eurdf.kinematics.path import follow_given
 from eurdf.kinematics.problem import Problem, for_many
 from eurdf.kinematics.residual import all_openings
-from eurdf.kinematics.springs import JointValues, joints_at_rest, spring_equilibrium
+from eurdf.kinematics.springs import Resting, joints_at_rest, spring_equilibrium
 from eurdf.kinematics.tolerances import RESTARTS, SHORTEST_STEP, SOLVED
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array, checked_tolerance
@@ -129,7 +130,7 @@ class Driving(NamedTuple):
     free: Problem
     driven: Problem
     coordinates: Indices
-    resting: JointValues | None
+    resting: Resting | None
     at_rest: Problem | None
     tolerance: float
 
@@ -164,7 +165,7 @@ class Driving(NamedTuple):
         return follow_given(self.driven, first, goal, self.coordinates, self.tolerance, shortest, free=self.free)
 
 
-def _with_driving(robot: Robot, given: JointValues, tolerance: float, use: Callable[[Driving], _T]) -> _T:
+def _with_driving(robot: Robot, given: _Given, tolerance: float, use: Callable[[Driving], _T]) -> _T:
     """What a function makes of a robot with given joints, for one element."""
     velocities = tuple(given.velocities.tolist())
     resting = joints_at_rest(robot, given.velocities) if len(robot.tree.springs.idx_v) else None
@@ -245,15 +246,32 @@ def moved_many(
     return found, np.linalg.norm(driving.free.residual(found), axis=1), code, rests
 
 
-def _given(robot: Robot, values: Named) -> JointValues:
+@dataclass(frozen=True, slots=True, eq=False)
+class _Given:
+    """The joints whose coordinates are given.
+
+    Attributes:
+        joints: Their names.
+        coordinates: Indices in q of all their coordinates.
+        velocities: Indices in v of all their velocities.
+        values: The given coordinates.
+    """
+
+    joints: Sequence[str]
+    coordinates: Indices
+    velocities: Indices
+    values: Vector
+
+
+def _given(robot: Robot, values: Named) -> _Given:
     if isinstance(values, Mapping):
         return _given_by_name(robot, values)
     actuation = robot.actuation
     values = checked_array("actuated", values, (len(actuation.idx_q),))
-    return JointValues(actuation.joints, actuation.idx_q, actuation.idx_v, values)
+    return _Given(actuation.joints, actuation.idx_q, actuation.idx_v, values)
 
 
-def _given_by_name(robot: Robot, by_name: ByJoint) -> JointValues:
+def _given_by_name(robot: Robot, by_name: ByJoint) -> _Given:
     # For each joint: index of its first coordinate, their number, index of its first velocity, their number, and the
     # number of its coordinates in files.
     at = {
@@ -275,7 +293,7 @@ def _given_by_name(robot: Robot, by_name: ByJoint) -> JointValues:
         velocities += range(first_v, first_v + nv)
     q = robot.configuration(as_in_files)
     indices = np.array(coordinates, dtype=np.intp)
-    return JointValues(tuple(by_name), indices, np.array(velocities, dtype=np.intp), q[indices])
+    return _Given(tuple(by_name), indices, np.array(velocities, dtype=np.intp), q[indices])
 
 
 def _stopped(robot: Robot, driving: Driving, q: Vector, goal: Vector) -> NotClosable:

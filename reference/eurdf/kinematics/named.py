@@ -50,7 +50,7 @@ def velocity_of(robot: Robot, given: Named, argument: str = "v") -> Vector:
     return vector_of(given, names, argument)
 
 
-def motor_values_of(robot: Robot, given: Named) -> Vector:
+def motor_values_of(robot: Robot, given: Named, argument: str = "u") -> Vector:
     """Values (nu,) of the actuated velocities, in the order of the actuation; zero for joints that are not named.
 
     Raises:
@@ -58,8 +58,8 @@ def motor_values_of(robot: Robot, given: Named) -> Vector:
     """
     actuation = robot.actuation
     if not isinstance(given, Mapping):
-        return checked_array("u", given, actuation.idx_v.shape)
-    return vector_of(given, [name for name in actuation.joints for _ in range(robot.slots[name].nv)], "u")
+        return checked_array(argument, given, actuation.idx_v.shape)
+    return vector_of(given, [name for name in actuation.joints for _ in range(robot.slots[name].nv)], argument)
 
 
 def vector_of(given: Named, names: Sequence[str], argument: str) -> Vector:

@@ -63,14 +63,14 @@ def spring_energy(robot: Robot, q: Named) -> float:
     return robot.tree.springs.energy(configuration_of(robot, q))
 
 
-class JointValues(NamedTuple):
-    """Joints at given coordinates.
+class Resting(NamedTuple):
+    """Joints whose springs are at rest.
 
     Attributes:
         joints: Their names.
         coordinates: Indices in q of all their coordinates.
         velocities: Indices in v of all their velocities.
-        values: These coordinates, as in q.
+        values: Their coordinates at rest, rad or m.
     """
 
     joints: tuple[str, ...]
@@ -79,7 +79,7 @@ class JointValues(NamedTuple):
     values: Vector
 
 
-def joints_at_rest(robot: Robot, given: Indices) -> JointValues | None:
+def joints_at_rest(robot: Robot, given: Indices) -> Resting | None:
     """The joints with springs, but for given ones (indices in v), at the coordinates where no spring stores energy.
 
     None if there are none, if a joint has springs on some of its coordinates only, or if two springs act on one.
@@ -90,7 +90,7 @@ def joints_at_rest(robot: Robot, given: Indices) -> JointValues | None:
         return None
     names, coordinates, velocities, values = zip(*free, strict=True)
     chain = itertools.chain.from_iterable
-    return JointValues(
+    return Resting(
         names,
         np.fromiter(chain(coordinates), np.intp),
         np.fromiter(chain(velocities), np.intp),
@@ -99,7 +99,7 @@ def joints_at_rest(robot: Robot, given: Indices) -> JointValues | None:
 
 
 def _sprung(robot: Robot) -> list[tuple[str, list[int], list[int], list[float]]] | None:
-    """Each joint with springs as in `JointValues`; None as for `joints_at_rest`."""
+    """Each joint with springs as in `Resting`; None as for `joints_at_rest`."""
     springs = robot.tree.springs
     velocities = springs.idx_v.tolist()
     found = []
