@@ -9,14 +9,11 @@ from functools import reduce
 from operator import mul
 
 import numpy as np
-import numpy.typing as npt
 
+from eurdf.array import Matrix, Vector
 from eurdf.convert.parts import UPRIGHT, OwnVectors, Part
 from eurdf.mechanism.pose import Pose, Quaternion
 from eurdf.writing.xml_text import rpy_of
-
-Vector = npt.NDArray[np.float64]
-Matrix = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, repr=False)

@@ -13,15 +13,7 @@ from eurdf.array import Vector
 from eurdf.convert.common_losses import BEYOND_LIMITS, UNKNOWN
 from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.export_format import ExportInput, Triangles, export_format
-from eurdf.convert.formats import (
-    ACTUATORS,
-    CLOSURES,
-    EXPORTS,
-    MESH_FILES,
-    Actuators,
-    ClosureChoice,
-    MeshFileChoice,
-)
+from eurdf.convert.formats import ACTUATORS, CLOSURES, EXPORTS, MESH_FILES, Actuators, ClosureChoice, MeshFileChoice
 from eurdf.convert.hinges import with_hinges
 from eurdf.convert.losses import Effect, Loss, Losses
 from eurdf.convert.parts import OwnVectors, VectorPlace
@@ -197,11 +189,7 @@ def export(
 
 
 def export_linked(
-    read: ReadRobot,
-    choices: Choices,
-    package_dirs: Sequence[str | os.PathLike[str]],
-    *,
-    allow_outside: bool = False,
+    read: ReadRobot, choices: Choices, package_dirs: Sequence[str | os.PathLike[str]], *, allow_outside: bool = False
 ) -> Export:
     """Export a robot that was read; see `export`."""
     files = find_meshes(read.urdf, package_dirs, allow_outside=allow_outside)

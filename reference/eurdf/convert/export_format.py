@@ -66,11 +66,6 @@ class ExportInput:
         """The configuration to start from; empty, where all coordinates are neutral, if none is known."""
         return next(iter(self.configurations.values()), {})
 
-    @property
-    def mimics(self) -> dict[str, Mimic]:
-        """For each mimic joint, the joint at the end of its chain of leaders, and the relation between the two."""
-        return self.mechanism.leaders
-
 
 def coordinates_at(
     configuration: Mapping[str, tuple[float, ...]], joint: Joint, mimic: Mimic | None

@@ -83,7 +83,7 @@ class _DrakeTree(UrdfTree):
         if _WORLD in self.links and not (mechanism.root == "fixed" and self.base == _WORLD):
             self.links[_WORLD] = self.names.new(_WORLD)
         self.without_mass = _moved_without_mass(mechanism)
-        self.mimics = given.mimics
+        self.mimics = given.mechanism.leaders
 
     def write(self) -> None:
         mechanism = self.mechanism

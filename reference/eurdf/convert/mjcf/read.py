@@ -126,9 +126,7 @@ _LOSSES = {
     "texture": TEXTURE,
     "frame": dropped("frame", "a site without a name is left out", "give it a name in the file"),
     "configuration": dropped(
-        "configuration",
-        "is left out: a coordinate is beyond its limits",
-        "correct the keyframe or the limits",
+        "configuration", "is left out: a coordinate is beyond its limits", "correct the keyframe or the limits"
     ),
     "simulation": SIMULATION,
 }

@@ -72,17 +72,13 @@ _LOSSES = {
         "let another joint of the loop close it",
     ),
     "loop-properties": dropped(
-        "joint",
-        "closes a loop: its limits, springs and losses are left out",
-        "let another joint of the loop close it",
+        "joint", "closes a loop: its limits, springs and losses are left out", "let another joint of the loop close it"
     ),
     "gearbox": dropped(
         "joint", "is a gearbox and is left out", "describe it by a coupling of the joints that it relates"
     ),
     "default-inertia": exact(
-        "inertia",
-        "is not stated: the link has the default of SDFormat, 1 kg and 1 kg·m²",
-        "state the inertia",
+        "inertia", "is not stated: the link has the default of SDFormat, 1 kg and 1 kg·m²", "state the inertia"
     ),
     "ball-properties": dropped(
         "joint",
@@ -91,9 +87,7 @@ _LOSSES = {
     ),
     "locked-joint": LOCKED,
     "mimic": dropped(
-        "mimic joint",
-        "is left out: one of the joints has several axes, or none",
-        "describe the relation by a coupling",
+        "mimic joint", "is left out: one of the joints has several axes, or none", "describe the relation by a coupling"
     ),
     "shape": dropped(
         "shape", "is left out: URDF has no such shape", "replace it by boxes, spheres, capsules, cylinders or a mesh"

@@ -59,11 +59,7 @@ PLAIN_ROWS = (
         "where it relates two joints, let one of them mimic the other in the URDF",
         code="export-coupling-dropped",
     ),
-    dropped(
-        "floating root",
-        "is left out: in URDF, who reads the file decides",
-        "load the URDF with a floating root",
-    ),
+    dropped("floating root", "is left out: in URDF, who reads the file decides", "load the URDF with a floating root"),
     approximate(
         "spherical joint",
         "becomes three continuous joints about x, y and z",

@@ -34,9 +34,7 @@ URDF_LOSSES = {
     ),
     "texture": dropped("texture", "its file is not copied; its name is kept", "copy the file"),
     "actuator": dropped(
-        "actuator",
-        "is left out: it names no joint that can be actuated",
-        "name the actuated joint in the description",
+        "actuator", "is left out: it names no joint that can be actuated", "name the actuated joint in the description"
     ),
     "later-version": dropped(
         "element",
@@ -200,9 +198,6 @@ def _geared(joint: Joint, actuator: etree._Element, elements: Elements) -> Joint
         return joint
     nv = joint.type.nv
     own = replace(
-        joint.properties,
-        gear_ratio=(ratio,) * nv,
-        rotor_inertia=(rotor,) * nv,
-        armature=(ratio * ratio * rotor,) * nv,
+        joint.properties, gear_ratio=(ratio,) * nv, rotor_inertia=(rotor,) * nv, armature=(ratio * ratio * rotor,) * nv
     )
     return replace(joint, properties=own)

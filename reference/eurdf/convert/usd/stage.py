@@ -13,13 +13,11 @@ import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
-import numpy.typing as npt
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, UsdShade
 
+from eurdf.array import Matrix
 from eurdf.convert.export_format import Triangles
 from eurdf.mechanism.pose import IDENTITY, Pose, Quaternion, Vector3
-
-Matrix = npt.NDArray[np.float64]
 
 #: m/s² along -z.
 GRAVITY = 9.81

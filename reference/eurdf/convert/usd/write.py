@@ -71,7 +71,7 @@ class _UsdWriter:
         self.jointed: set[frozenset[str]] = set()
         self.followers: set[str] = set()
         self.parts: list[Part] = []
-        self.mimics = given.mimics
+        self.mimics = given.mechanism.leaders
         self.meshes = MeshFiles(given, losses, lambda name, content: False, (".usdc", mesh_file))
 
     def write(self) -> ExportOutput:

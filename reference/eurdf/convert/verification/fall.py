@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eurdf.convert.coordinates import Coordinates, Matrix, Vector
+from eurdf.array import Matrix, Vector
+from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.verification.read_model import Diverged, Finding, Instant, ReadModel
 from eurdf.diagnostics import enumerated
 from eurdf.kinematics.dynamics import mass_matrix

@@ -11,8 +11,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import pinocchio as pin
 
+from eurdf.array import Matrix, Vector
 from eurdf.convert.conventions import opening_of
-from eurdf.convert.coordinates import Coordinates, Matrix, Vector
+from eurdf.convert.coordinates import Coordinates
 from eurdf.kinematics.opening import Opening
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Closure

@@ -10,8 +10,9 @@ from importlib.util import find_spec
 
 import numpy as np
 
+from eurdf.array import Matrix, Vector
 from eurdf.convert.common_losses import BEYOND_LIMITS
-from eurdf.convert.coordinates import Coordinates, Matrix, Vector
+from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.inertia import physical
 from eurdf.convert.losses import Effect, Loss
 from eurdf.convert.verification.fall import Fall, Motion, joint_of_velocity, listed, simulate, size
