@@ -255,7 +255,8 @@ def _export(
 
 def _triangles(folders: Folders, path: Path) -> Triangles | None:
     meshes, _ = read_meshes([("", (1.0, 1.0, 1.0))], {"": os.fspath(path)}, folders)
-    return meshes.get(os.fspath(path))
+    mesh = meshes.get(os.fspath(path))
+    return None if mesh is None else (mesh.vertices, mesh.triangles)
 
 
 def _own_vectors(robot: Robot) -> OwnVectors:

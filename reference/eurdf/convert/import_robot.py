@@ -15,8 +15,8 @@ from types import MappingProxyType
 import numpy as np
 
 from eurdf.array import Vector
+from eurdf.convert.hinges import allowed_axes, with_axes
 from eurdf.convert.import_format import ImportFormat, ImportInput, RobotRead, import_format, loss_kinds
-from eurdf.convert.loop_axes import allowed_axes, with_axes
 from eurdf.convert.losses import Effect, Loss, Losses, dropped, exact
 from eurdf.convert.readme import licence_file, readme
 from eurdf.convert.xml_elements import places_of_names, recognized

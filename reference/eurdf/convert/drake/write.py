@@ -25,7 +25,7 @@ from eurdf.convert.inertia import accepted_inertia, has_inertia
 from eurdf.convert.losses import Losses
 from eurdf.convert.parts import part_of
 from eurdf.convert.steps import AXES, ExportedJoint
-from eurdf.convert.urdf.tree import UrdfTree
+from eurdf.convert.urdf.write import UrdfTree
 from eurdf.mechanism.body import Body, Inertia
 from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint
@@ -211,4 +211,4 @@ class _DrakeTree(UrdfTree):
             etree.SubElement(tendon, _tag(f"tendon_constraint_{what}"), value=numbers((value,)))
 
 
-FORMAT = Format("drake", "URDF with the joints and constraints of Drake", write, ROWS, EXACT)
+FORMAT = Format(write, ROWS, EXACT)

@@ -391,4 +391,4 @@ def _placed(pose: Pose) -> dict[str, str]:
     return attributes
 
 
-FORMAT = Format("mjcf", "MJCF, for MuJoCo and what reads its format", write, facts.ROWS, facts.EXACT)
+FORMAT = Format(write, facts.ROWS, facts.EXACT)

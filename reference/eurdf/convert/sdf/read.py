@@ -34,8 +34,7 @@ from eurdf.convert.import_format import (
 )
 from eurdf.convert.losses import dropped, exact
 from eurdf.convert.names import UniqueNames
-from eurdf.convert.sdf.read_bodies import read_body
-from eurdf.convert.sdf.read_model import WORLD, SdfModel, is_true, text_of
+from eurdf.convert.sdf.read_model import WORLD, SdfModel, is_true, read_body, text_of
 from eurdf.convert.xml_elements import inside, read_root
 from eurdf.mechanism.body import Anchor, Body, Frame
 from eurdf.mechanism.constraint import Closure

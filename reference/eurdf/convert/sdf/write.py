@@ -322,4 +322,4 @@ def _allowed(name: str) -> str:
     return f"_{allowed}_" if allowed.startswith("__") and allowed.endswith("__") else allowed
 
 
-FORMAT = Format("sdf", f"SDFormat {VERSION}, for Gazebo", write, ROWS, EXACT)
+FORMAT = Format(write, ROWS, EXACT)

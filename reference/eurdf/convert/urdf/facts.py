@@ -78,10 +78,9 @@ PLAIN_ROWS = (
     *_on_axes("friction", "friction"),
     dropped(
         "acceleration limit",
-        "limits of acceleration, deceleration and jerk are left out: the three joints that it becomes have none",
+        "limits of acceleration, deceleration and jerk are left out: joints of one axis alone have them",
         ACCELERATION.hint,
         types=("spherical", "planar", "floating"),
-        only="spherical joints",
     ),
     dropped(
         "position limit",

@@ -270,10 +270,11 @@ def mesh_file(triangles: Triangles) -> bytes:
     UsdGeom.SetStageMetersPerUnit(stage, 1.0)
     mesh = UsdGeom.Mesh.Define(stage, "/mesh")
     stage.SetDefaultPrim(mesh.GetPrim())
-    points = triangles.vertices.astype(np.float32)
+    vertices, faces = triangles
+    points = vertices.astype(np.float32)
     mesh.CreatePointsAttr(points)
-    mesh.CreateFaceVertexCountsAttr(np.full(len(triangles.triangles), 3, np.int32))
-    mesh.CreateFaceVertexIndicesAttr(triangles.triangles.astype(np.int32).ravel())
+    mesh.CreateFaceVertexCountsAttr(np.full(len(faces), 3, np.int32))
+    mesh.CreateFaceVertexIndicesAttr(faces.astype(np.int32).ravel())
     mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
     mesh.CreateExtentAttr(np.array((points.min(axis=0), points.max(axis=0))))
     with tempfile.TemporaryDirectory(prefix="eurdf-") as folder:

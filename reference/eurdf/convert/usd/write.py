@@ -349,4 +349,4 @@ def _identifier(name: str) -> str:
     return found if re.match(r"[A-Za-z_]", found) else f"_{found}"
 
 
-FORMAT = Format("usd", "USD with UsdPhysics, for Isaac Sim, Newton and others", write, ROWS, EXACT)
+FORMAT = Format(write, ROWS, EXACT)
