@@ -27,6 +27,7 @@ from eurdf.convert.mjcf.read_state import (
     NoDirection,
     flat,
     must_have_direction,
+    name_of,
     pose_from,
     usable,
     xyzw,
@@ -289,7 +290,7 @@ def _leave_out_rest(reading: MjcfReading) -> None:
     for tendon in model["tendon"]:
         passive = (tendon.limited, tendon.stiffness, tendon.damping, tendon.frictionloss)
         if tendon.index not in used or any(any(flat(each)) for each in passive):
-            losses.add("import-tendon", tendon.name or f"tendon {tendon.index}")
+            losses.add("import-tendon", name_of(tendon, "tendon"))
     shown = [f"{count} {_COUNTED[name]}" for name, count in model.counts.items() if count]
     if shown:
         losses.add("import-simulation", reading.name, f"left out: {', '.join(shown)}")

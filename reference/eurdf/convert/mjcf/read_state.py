@@ -90,7 +90,7 @@ class MjcfReading:
         stated = usable(element.name)
         name = names.new(stated or made)
         if not stated or stated != element.name:
-            self.losses.add("import-name", element.name or f"{kind} {element.index}", f"becomes '{name}'")
+            self.losses.add("import-name", name_of(element, kind), f"becomes '{name}'")
         return name
 
     @property
@@ -164,6 +164,11 @@ def must_have_direction(what: str, values: Sequence[float]) -> float:
         shown = " ".join(f"{value:g}" for value in values)
         raise NoDirection(f"the {what} {shown}; its length must be finite, and not zero")
     return length
+
+
+def name_of(element: Element, kind: str) -> str:
+    """How a loss names an element of a kind."""
+    return element.name or f"{kind} {element.index}"
 
 
 def usable(name: str) -> str:

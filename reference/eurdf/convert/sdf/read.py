@@ -219,11 +219,8 @@ class _SdfReader:
         if to_world:
             (first, *others) = to_world
             placed, _ = self.model.pose(self.model.element)
-            if (
-                first.type == "fixed"
-                and not others
-                and placed * self.model.in_model(first.child, first.element) == IDENTITY
-            ):
+            at = placed * self.model.in_model(first.child, first.element)
+            if first.type == "fixed" and not others and at == IDENTITY:
                 return first.child, "fixed"
             return WORLD, "fixed"
         free = [name for name in self.model.links if name not in hanging]

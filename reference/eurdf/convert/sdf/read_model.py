@@ -87,16 +87,8 @@ class SdfModel:
             raise self.refuse(element, f"the pose of '{seen[0]}' refers to more than {DEPTH_LIMIT} others in turn")
         if name in seen:
             raise self.refuse(element, f"poses refer to each other in a circle: {' -> '.join((*seen, name))}")
-        if name in self.links:
-            found, base = self.pose(self.links[name])
-        elif name in self.joints:
-            joint = self.joints[name]
-            found, base = self.pose(joint, text_of(joint, "child"))
-        elif name in self.frames:
-            frame = self.frames[name]
-            found, base = self.pose(frame, frame.get("attached_to", ""))
-        else:
-            raise self.refuse(element, f"there is no link, joint or frame '{name}'")
+        base = self._base(name, element)
+        found, base = self.pose({**self.frames, **self.joints, **self.links}[name], base)
         pose = self.poses[name] = self.in_model(base, element, (*seen, name)) * found
         return pose
 
@@ -117,10 +109,16 @@ class SdfModel:
             raise self.refuse(element, f"frames are attached in a circle: {' -> '.join((*seen, name))}")
         if name in ("", "__model__"):
             return self.canonical()
-        if name in self.frames:
-            return self.link_of(self.frames[name].get("attached_to", ""), element, (*seen, name))
+        return self.link_of(self._base(name, element), element, (*seen, name))
+
+    def _base(self, name: str, element: etree._Element) -> str:
+        """What a link, joint or frame is attached to, which an element names; empty for the model."""
+        if name in self.links:
+            return ""
         if name in self.joints:
-            return self.link_of(text_of(self.joints[name], "child"), element, (*seen, name))
+            return text_of(self.joints[name], "child")
+        if name in self.frames:
+            return self.frames[name].get("attached_to", "")
         raise self.refuse(element, f"there is no link, joint or frame '{name}'")
 
     def canonical(self) -> str:

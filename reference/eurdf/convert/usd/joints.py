@@ -51,10 +51,10 @@ class Freedom:
     index: int
     lead: float | None = None
 
-    @property
-    def turns(self) -> bool:
-        """Whether it is a rotation."""
-        return self.axis == "angular" or self.axis.startswith("rot")
+
+def turns(axis: str) -> bool:
+    """Whether an axis of a joint is one of rotation: its numbers are in degrees."""
+    return axis == "angular" or axis.startswith("rot")
 
 
 def axis_and_frame(joint: Joint) -> tuple[str, Quaternion]:

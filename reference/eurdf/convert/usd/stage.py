@@ -17,6 +17,7 @@ from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, UsdShade
 
 from eurdf.array import Matrix
 from eurdf.convert.export_format import Triangles
+from eurdf.convert.usd.joints import turns
 from eurdf.mechanism.pose import IDENTITY, Pose, Quaternion, Vector3
 
 #: m/s² along -z.
@@ -151,7 +152,7 @@ class UsdStage:
             limit.CreateLowAttr(lower * scale)
             limit.CreateHighAttr(upper * scale)
             return
-        found = (UsdPhysics.RevoluteJoint if _turns(axis) else UsdPhysics.PrismaticJoint)(self._prim(joint))
+        found = (UsdPhysics.RevoluteJoint if turns(axis) else UsdPhysics.PrismaticJoint)(self._prim(joint))
         if math.isfinite(lower):
             found.CreateLowerLimitAttr(lower * scale)
         if math.isfinite(upper):
@@ -304,13 +305,8 @@ def _quaternion(quaternion: Quaternion) -> Gf.Quatd:
     return Gf.Quatd(w, x, y, z)
 
 
-def _turns(axis: str) -> bool:
-    """Whether an axis of a joint is one of rotation: its numbers are in degrees."""
-    return axis == "angular" or axis.startswith("rot")
-
-
 def _scale(axis: str) -> float:
-    return 180.0 / math.pi if _turns(axis) else 1.0
+    return 180.0 / math.pi if turns(axis) else 1.0
 
 
 def _linear(value: float) -> float:
