@@ -16,7 +16,7 @@ from eurdf.convert.export_format import ExportInput, Triangles, export_format
 from eurdf.convert.formats import ACTUATORS, CLOSURES, EXPORTS, MESH_FILES, Actuators, ClosureChoice, MeshFileChoice
 from eurdf.convert.hinges import with_hinges
 from eurdf.convert.losses import Effect, Loss, Losses
-from eurdf.convert.parts import OwnVectors, VectorPlace
+from eurdf.convert.parts import OwnVectors
 from eurdf.convert.verification.verify import Verification, verify
 from eurdf.diagnostics import did_you_mean
 from eurdf.errors import CannotExport, InvalidRobot
@@ -260,9 +260,9 @@ def _triangles(folders: Folders, path: Path) -> Triangles | None:
 
 
 def _own_vectors(robot: Robot) -> OwnVectors:
-    places = {name: VectorPlace(slot.idx_q, slot.nq, slot.idx_v) for name, slot in robot.slots.items()}
+    places = {name: (slice(slot.idx_q, slot.idx_q + slot.nq), slot.idx_v) for name, slot in robot.slots.items()}
     if robot.mechanism.root == "floating":
-        places[ROOT_JOINT] = VectorPlace(0, 7, 0)
+        places[ROOT_JOINT] = (slice(0, 7), 0)
     return OwnVectors(robot.model.nq, robot.model.nv, MappingProxyType(places))
 
 

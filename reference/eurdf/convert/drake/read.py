@@ -89,7 +89,7 @@ def read(given: ImportInput) -> RobotRead:
         lambda joint: without_locks(_as_in_drake(joint, joints), given.losses),
     )
     tree = replace(tree, mechanism=_on_the_world(tree.mechanism))
-    names = tree.names()
+    names = UniqueNames(tree.losses)
     mechanism = replace(
         tree.mechanism, frames=_frames(tree), closures=_closures(tree, names), couplings=_couplings(tree, names)
     )
@@ -239,4 +239,4 @@ def _couplings(tree: UrdfTree, names: UniqueNames) -> tuple[Coupling, ...]:
     return tuple(found)
 
 
-FORMAT = ImportFormat("drake", read, loss_kinds(_LOSSES))
+FORMAT = ImportFormat(read, loss_kinds(_LOSSES))

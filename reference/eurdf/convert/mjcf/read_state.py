@@ -65,9 +65,9 @@ class MjcfReading:
 
     def __init__(self, given: ImportInput, model: MjcfModel) -> None:
         self.given, self.losses, self.model = given, given.losses, model
-        self.links = self.names("universe")
-        self.joint_names = self.names("universe", ROOT_JOINT)
-        self.equalities = self.names()
+        self.links = UniqueNames(self.losses, "universe")
+        self.joint_names = UniqueNames(self.losses, "universe", ROOT_JOINT)
+        self.equalities = UniqueNames(self.losses)
         self.children: dict[int, list[int]] = {body.index: [] for body in model["body"]}
         for body in model["body"][1:]:
             self.children[body.parentid].append(body.index)
@@ -80,10 +80,6 @@ class MjcfReading:
         self.joints: dict[str, Joint] = {}
         self.whole: dict[int, WholeJoint] = {}
         self.consumed: set[int] = set()
-
-    def names(self, *reserved: str) -> UniqueNames:
-        """Names of elements of one kind."""
-        return UniqueNames(self.losses, *reserved, code="import-name")
 
     def new_name(self, names: UniqueNames, element: Element, kind: str, made: str) -> str:
         """The name of an element that needs one; made if it has none."""

@@ -137,7 +137,7 @@ class _SdfReader:
 
     def __init__(self, model: SdfModel) -> None:
         self.model, self.losses = model, model.losses
-        self.names = UniqueNames(self.losses, "universe", ROOT_JOINT, code="import-name")
+        self.names = UniqueNames(self.losses, "universe", ROOT_JOINT)
 
     def read(self) -> RobotRead:
         """Read all parts of the robot."""
@@ -359,7 +359,7 @@ class _SdfReader:
     # -- the rest ---------------------------------------------------------------------------------------------------
 
     def _frames(self, *taken: str) -> tuple[Frame, ...]:
-        names, found = UniqueNames(self.losses, *taken, code="import-name"), []
+        names, found = UniqueNames(self.losses, *taken), []
         for name, element in self.model.frames.items():
             link = self.model.link_of(name, element)
             pose = self.model.in_model(link, element).inverse() * self.model.in_model(name, element)
@@ -379,4 +379,4 @@ class _SdfReader:
             self.losses.add("import-simulation", self.model.element.get("name") or "", f"left out: {', '.join(shown)}")
 
 
-FORMAT = ImportFormat("sdf", read, loss_kinds(_LOSSES))
+FORMAT = ImportFormat(read, loss_kinds(_LOSSES))

@@ -83,13 +83,9 @@ class UrdfTree:
         """The elements of the robot with a tag, in any namespace."""
         return [element for element in self.root if isinstance(element.tag, str) and local(element) == tag]
 
-    def names(self, *reserved: str) -> UniqueNames:
-        """Names of elements of one kind."""
-        return UniqueNames(self.losses, *reserved, code="import-name")
-
     def frame_names(self) -> UniqueNames:
         """Names of frames."""
-        return self.names(*self.links, *(joint.name for joint in self.mechanism.joints))
+        return UniqueNames(self.losses, *self.links, *(joint.name for joint in self.mechanism.joints))
 
 
 def read_tree(
