@@ -5,21 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import zip_longest
-from typing import TYPE_CHECKING
 
 from eurdf.advice.hinges import LikelyHinge, likely_hinge
 from eurdf.advice.passive import PassiveMotions
-from eurdf.diagnostics import quoted
+from eurdf.array import Vector
+from eurdf.diagnostics import Diagnostics, Place, quoted
 from eurdf.kinematics.analysis import Analysis, analyze
 from eurdf.kinematics.loop_analysis import LoopAnalysis
-from eurdf.pinocchio.robot import build_robot
-
-if TYPE_CHECKING:
-    from eurdf.array import Vector
-    from eurdf.diagnostics import Diagnostics, Place
-    from eurdf.linking.robot_files import ReadRobot
-    from eurdf.mechanism.mechanism import Mechanism
-    from eurdf.pinocchio.robot import Robot
+from eurdf.linking.robot_files import ReadRobot
+from eurdf.mechanism.mechanism import Mechanism
+from eurdf.pinocchio.robot import Robot, build_robot
 
 # Warnings of what changes which joints are actuated or constrained.
 _REASONS = frozenset({"near-miss-key", "closure-type-unknown", "urdf-closure-ignored"})

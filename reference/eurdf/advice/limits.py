@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from eurdf.array import Vector
+from eurdf.diagnostics import Diagnostics
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.loop import joints_of_loops
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.linking.configurations import BeyondLimit, beyond_limits
-
-if TYPE_CHECKING:
-    from eurdf.array import Vector
-    from eurdf.diagnostics import Diagnostics
-    from eurdf.linking.robot_files import ReadRobot
-    from eurdf.pinocchio.robot import Robot
+from eurdf.linking.robot_files import ReadRobot
+from eurdf.pinocchio.robot import Robot
 
 # Joints that a hint lists.
 _JOINTS_LISTED = 4

@@ -9,10 +9,10 @@ from eurdf.advice.quaternions import closes_w_first
 from eurdf.diagnostics import Diagnostics
 from eurdf.kinematics.opening import Opening, widest
 from eurdf.linking.robot_files import ReadRobot
+from eurdf.mechanism.mechanism import Mechanism
 
 if TYPE_CHECKING:
     from eurdf.kinematics.assembly import Assembly
-    from eurdf.mechanism.mechanism import Mechanism
     from eurdf.pinocchio.robot import Robot
 
 #: Loops that are open by no more than this, in rad and of the length of the longest loop, may be so because numbers in

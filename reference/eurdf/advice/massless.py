@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
 
 from eurdf.array import Matrix, Vector
+from eurdf.diagnostics import Diagnostics
 from eurdf.kinematics.loop import joints_of_loops
 from eurdf.kinematics.scale import characteristic_length
+from eurdf.linking.robot_files import ReadRobot
 from eurdf.mechanism.mechanism import ROOT_JOINT
-
-if TYPE_CHECKING:
-    from eurdf.diagnostics import Diagnostics
-    from eurdf.linking.robot_files import ReadRobot
-    from eurdf.pinocchio.robot import Robot
+from eurdf.pinocchio.robot import Robot
 
 # How far from the closed configuration the joints are moved for a second look, rad and characteristic lengths: what is
 # singular at one configuration alone is a gimbal lock, and no missing mass.

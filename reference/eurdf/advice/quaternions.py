@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from eurdf.mechanism.mechanism import ROOT_JOINT
+from eurdf.diagnostics import Diagnostics
+from eurdf.linking.robot_files import ReadRobot
+from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 
 if TYPE_CHECKING:
-    from eurdf.diagnostics import Diagnostics
-    from eurdf.linking.robot_files import ReadRobot
-    from eurdf.mechanism.mechanism import Mechanism
     from eurdf.pinocchio.robot import Robot
 
 # Numbers of a quaternion that differ by less are one.

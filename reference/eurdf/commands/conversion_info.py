@@ -6,13 +6,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
-from eurdf.convert.losses import Effect
+from eurdf.convert.losses import Effect, Loss
 from eurdf.convert.verification.read_model import Finding
 from eurdf.json_schema import Keywords, NullIfInfinite
 from eurdf.kinematics.opening import Opening
 
 if TYPE_CHECKING:
-    from eurdf.convert.losses import Loss
     from eurdf.convert.verification.verify import Verification
     from eurdf.diagnostics import Place
 

@@ -13,11 +13,10 @@ from eurdf.commands.conversion_lines import loss_lines, verification_lines
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import writing
 from eurdf.commands.terminal import progress_bar, write_lines, write_notes, write_refusal
-from eurdf.convert.formats import ACTUATORS, CLOSURES, EXPORTS, MESH_FILES
+from eurdf.convert.formats import ACTUATORS, CLOSURES, EXPORTS, MESH_FILES, Actuators, ClosureChoice, MeshFileChoice
 from eurdf.errors import CannotRun
 
 if TYPE_CHECKING:
-    from eurdf.convert.formats import Actuators, ClosureChoice, MeshFileChoice
     from eurdf.convert.losses import Loss
     from eurdf.diagnostics import Place
     from eurdf.linking.robot_files import ReadRobot

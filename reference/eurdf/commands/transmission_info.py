@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 
 from eurdf.array import Matrix, Vector
 from eurdf.json_schema import PAIRS, ROW, Count
+from eurdf.pinocchio.robot import Robot
 from eurdf.transmissions.inertia import reflected_inertia
 from eurdf.transmissions.limits import CommonLimits, SerialLimits, serial_limits
 from eurdf.transmissions.motors import linkage_bodies
@@ -18,9 +19,6 @@ from eurdf.transmissions.positions import beyond_limits
 from eurdf.transmissions.selection import Selection
 from eurdf.transmissions.serial_model import Choice, Neglected
 from eurdf.transmissions.transmission import at_one
-
-if TYPE_CHECKING:
-    from eurdf.pinocchio.robot import Robot
 
 Rows = tuple[tuple[float, ...], ...]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from eurdf.diagnostics import Diagnostic, Place, did_you_mean
 from eurdf.format.closure_model import CLOSURE
@@ -15,9 +15,7 @@ from eurdf.format.model import VERSION1, VERSION2
 from eurdf.format.value_types import Violation
 from eurdf.format.wording import described, likeliest_key, near, quoted
 from eurdf.reading.yaml_node import Pointer
-
-if TYPE_CHECKING:
-    from eurdf.reading.yaml_reader import YamlDocument
+from eurdf.reading.yaml_reader import YamlDocument
 
 #: Maximum number of reported errors per file; a file with more is not a description.
 MOST = 100

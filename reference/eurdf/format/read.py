@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from eurdf.diagnostics import Diagnostics
 from eurdf.format.closure_model import Closure, NamedFrame
@@ -21,9 +21,7 @@ from eurdf.format.model import DESCRIPTION, VERSION1, VERSION2, Description, Ver
 from eurdf.format.wording import described, near, quoted
 from eurdf.reading.other_formats import of_mapping
 from eurdf.reading.reporter import YamlReporter
-
-if TYPE_CHECKING:
-    from eurdf.reading.yaml_reader import YamlDocument
+from eurdf.reading.yaml_reader import YamlDocument
 
 _KEYS1, _KEYS2 = VERSION1.all_keys, VERSION2.all_keys
 
