@@ -196,12 +196,9 @@ def ending(exit_codes: str, *examples: str) -> str:
 
 @contextmanager
 def cannot_run(*errors: type[Exception], unless: tuple[type[Exception], ...] = (), by: str = "") -> Iterator[None]:
-    """Raise `CannotRun` in place of some errors; one that says what to do by itself stays as it is.
+    """Raise `CannotRun` in place of some errors, with ``by`` before their texts.
 
-    Args:
-        errors: Their types.
-        unless: Types of errors that stay as they are, too.
-        by: What comes before their texts.
+    An error that says what to do by itself stays as it is, and one of the types ``unless``.
     """
     try:
         yield

@@ -59,14 +59,7 @@ SCHEMA: Any = option(
 def schema_beside(
     output: str | os.PathLike[str], version: SchemaVersion, choice: str, urdf: Urdf, force: bool = False
 ) -> EditorSchema | None:
-    """The schema to write beside a description, or None; nothing is written yet.
-
-    Args:
-        output: Path of the description.
-        version: Its version.
-        choice: ``format``, ``robot`` or ``none``.
-        urdf: The URDF whose names the schema of the robot contains.
-        force: Whether to replace a different file of the same name.
+    """The schema to write beside a description, by a choice of `SCHEMA`, or None; nothing is written yet.
 
     Raises:
         CannotRun: A different file of the same name exists and ``force`` is False, or it is the description.

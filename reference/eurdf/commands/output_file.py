@@ -16,12 +16,7 @@ def refuse_to_replace(path: str | os.PathLike[str], force: bool) -> None:
 
 
 def write_new(path: str | os.PathLike[str], content: str | bytes, force: bool = False) -> None:
-    """Write a file, completely or not at all.
-
-    Args:
-        path: Path of the file; a symbolic link is followed.
-        content: Content of the file; a text is written in UTF-8.
-        force: Whether to replace an existing file.
+    """Write a file, completely or not at all; a symbolic link is followed, and a text is written in UTF-8.
 
     Raises:
         CannotRun: The file exists and ``force`` is False, or it cannot be written.

@@ -113,14 +113,9 @@ def transmission_info(
     configurations: Sequence[Vector | None],
     positions: Sequence[Sequence[float]],
 ) -> TransmissionInfo:
-    """A transmission as ``eurdf transmission`` shows it.
+    """A transmission as ``eurdf transmission`` shows it, at closed configurations (nq,) and positions of the joints.
 
-    Args:
-        robot: The robot.
-        joints: The joints.
-        motors: The motors that move them.
-        configurations: Closed configurations (nq,); None where the joints cannot be reached.
-        positions: Of the joints at each of them.
+    A configuration is None where the joints cannot be reached.
     """
     reasons: list[str] = []
     poses = [_pose(robot, joints, motors, q, own, reasons) for q, own in zip(configurations, positions, strict=True)]

@@ -38,6 +38,11 @@ def quoted(names: Sequence[str], most: int = 3) -> str:
     return ", ".join(f"'{name}'" for name in names[:most]) + (", ..." if len(names) > most else "")
 
 
+def plural(number: int, noun: str) -> str:
+    """A number of things: "1 joint", "2 joints"."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
 def enumerated(names: Sequence[str], most: int = 6) -> str:
     """Quoted names for a sentence: the first ones, and how many more there are: "'a', 'b' and 2 more"."""
     items = [f"'{name}'" for name in names[:most]]

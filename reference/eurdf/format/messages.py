@@ -42,13 +42,7 @@ _NAMED = {"joints": "joint", "configurations": "configuration"}
 
 
 def diagnostics_of(found: Sequence[Violation], version: Version, document: YamlDocument) -> list[Diagnostic]:
-    """The diagnostics of the errors of a file, in file order.
-
-    Args:
-        found: The errors.
-        version: The version that the file is checked against.
-        document: The file.
-    """
+    """The diagnostics of the errors of a file, which was checked against a version, in file order."""
     return _Messages(found, version, document).diagnostics()
 
 
@@ -120,9 +114,7 @@ class _Messages:
     def unknown_key(self, violation: Violation, meant: str | None) -> Diagnostic:
         """The diagnostic of a key that the mapping does not have, or that does not go with its others.
 
-        Args:
-            violation: The error.
-            meant: The required key that it misspells, or None.
+        ``meant`` is the required key that it misspells.
         """
         record: Record
         union: OneOf | None

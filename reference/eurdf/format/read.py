@@ -29,12 +29,7 @@ _KEYS1, _KEYS2 = VERSION1.all_keys, VERSION2.all_keys
 def read_description(document: YamlDocument, diagnostics: Diagnostics) -> Description | None:
     """The description in a YAML file, of whichever version it is, before any name in it is looked up.
 
-    Args:
-        document: The file.
-        diagnostics: Where findings are added.
-
-    Returns:
-        The description, or None if an error was found.
+    None if an error was found.
     """
     data = document.data
     reporter = YamlReporter(document, diagnostics)

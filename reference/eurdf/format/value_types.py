@@ -10,6 +10,7 @@ import sys
 from collections.abc import Collection
 from typing import Any, Literal, NamedTuple
 
+from eurdf.diagnostics.wording import plural
 from eurdf.format.conventions import (
     LARGEST,
     OWN_KEY,
@@ -270,14 +271,14 @@ class ListOf(ValueType):
             file.report(at, "wrong-type", "must be a list", value)
         elif self.most is not None and len(value) > self.most:
             bound = "" if self.least == self.most else "at most "
-            file.report(at, "wrong-length", f"must have {bound}{_items(self.most)}, not {len(value)}")
+            file.report(at, "wrong-length", f"must have {bound}{plural(self.most, 'item')}, not {len(value)}")
         else:
             before = len(file.found)
             for index, item in enumerate(value):
                 self.item.check(item, (*at, index), file)
             if len(value) < self.least and len(file.found) == before:
                 bound = "" if self.least == self.most else "at least "
-                file.report(at, "wrong-length", f"must have {bound}{_items(self.least)}, not {len(value)}")
+                file.report(at, "wrong-length", f"must have {bound}{plural(self.least, 'item')}, not {len(value)}")
 
     def read(self, value: list[Any], at: Pointer) -> tuple[Any, ...]:
         read = self.item.read
@@ -292,10 +293,6 @@ class ListOf(ValueType):
 
     def default(self, value: tuple[Any, ...]) -> list[Any] | None:
         return [*value] if len(value) >= self.least else None
-
-
-def _items(number: int) -> str:
-    return f"{number} {'item' if number == 1 else 'items'}"
 
 
 class ByName(ValueType):

@@ -63,13 +63,8 @@ def check_leaves(
 ) -> None:
     """EU-INR-004: what a joint moves at the end of the tree has inertia along every motion of that joint.
 
-    Elsewhere massless bodies describe joints of several axes; at a leaf they make the mass matrix singular.
-
-    Args:
-        mechanism: The mechanism.
-        urdf: The URDF, for places in diagnostics.
-        diagnostics: Gets what is found.
-        faulty: Links whose own inertia is invalid: leaves that they are part of are skipped.
+    Elsewhere massless bodies describe joints of several axes; at a leaf they make the mass matrix singular. Leaves with
+    a link whose own inertia is invalid, one of ``faulty``, are skipped.
     """
     root = mechanism.bodies[0].name
     rigid = rigid_roots(root, mechanism.joints)

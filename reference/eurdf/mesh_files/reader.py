@@ -69,11 +69,7 @@ class MeshFile(NamedTuple):
     left_out: dict[str, str]
 
     def place(self, path: str, files: MutableMapping[str, bytes]) -> dict[str, str]:
-        """Add it to files to write, and the files that it names where the copy looks for them.
-
-        Args:
-            path: Path of the copy, relative to the folder to write to.
-            files: Content of each file, by such a path.
+        """Add it to files to write, by path from the folder to write to, and what it names where the copy looks for it.
 
         Returns:
             For each file that it names and that is not among them: its name, and why.

@@ -137,11 +137,5 @@ def of_binary(data: bytes) -> OtherFormat | None:
 
 
 def other_format(code: str, found: OtherFormat, place: Place) -> FileError:
-    """The error of a file that has another format.
-
-    Args:
-        code: The code of what is wrong with it as a file of this format.
-        found: Its format.
-        place: Its begin.
-    """
+    """The error, with a code, of a file that has another format and begins at a place."""
     return FileError(code, f"the file is {found.title}", place, found.hint)

@@ -83,14 +83,9 @@ class Source:
 
 
 def read_source(path: str | os.PathLike[str], limit: int = FILE_LIMIT, *, is_quoted: bool = True) -> Source:
-    """Read a text file.
+    """Read a text file; lines of it are shown in diagnostics if ``is_quoted``.
 
     Never reads more than ``limit`` bytes, and nothing that is not a regular file: a pipe or a device could block.
-
-    Args:
-        path: Path of the file.
-        limit: Largest size accepted, in bytes.
-        is_quoted: Whether diagnostics show lines of the file.
 
     Raises:
         FileError: ``file-unreadable``, ``file-too-large`` or ``file-not-utf8``.
@@ -100,13 +95,7 @@ def read_source(path: str | os.PathLike[str], limit: int = FILE_LIMIT, *, is_quo
 
 
 def decoded(data: bytes, file: str, base: Path | None = None, *, is_quoted: bool = True) -> Source:
-    """The text that is in some bytes, EU-FIL-003.
-
-    Args:
-        data: The bytes.
-        file: What diagnostics call the text.
-        base: Folder that relative paths start from, for a text that is not in a file.
-        is_quoted: Whether diagnostics show lines of the text.
+    """The text that is in some bytes, EU-FIL-003; for the arguments see `Source`.
 
     Raises:
         FileError: ``file-not-utf8``.
@@ -167,11 +156,7 @@ def read_bytes(file: str, limit: int = FILE_LIMIT) -> bytes:
 
 
 def begin_of_file(path: str | os.PathLike[str], size: int) -> bytes:
-    """The first bytes of a file.
-
-    Args:
-        path: Path of the file.
-        size: How many bytes, at most.
+    """The first bytes of a file, so many at most.
 
     Raises:
         OSError: It cannot be read, or is not a regular file.

@@ -25,29 +25,19 @@ _Path = TypeVar("_Path", bound="str | os.PathLike[str]")
 
 
 def write_atomically(path: str | os.PathLike[str], content: str | bytes, *, replace: bool = True) -> None:
-    """Write a file, completely or not at all, also if the process is killed; an existing one keeps its permissions.
-
-    Args:
-        path: Path of the file; a symbolic link is followed.
-        content: Content of the file; a text is written in UTF-8.
-        replace: Whether to replace an existing file.
-
-    Raises:
-        FileExistsError: It exists, and ``replace`` is False; a link counts, wherever it leads.
-        OSError: It cannot be written; ``filename`` is the path.
-    """
+    """Write one file as `write_together` does; an existing one keeps its permissions."""
     write_together({path: content}, replace=replace)
 
 
 def write_together(files: Mapping[_Path, str | bytes], *, replace: bool = True, follow: bool = True) -> None:
-    """Write files as `write_atomically` does: all of them, or none.
+    """Write files, by path, completely or not at all, also if the process is killed: all of them, or none.
 
     Each takes its name only when all are on the disk, in the order given. If the process is killed between the first
-    and the last of these steps, only the first files are written.
+    and the last of these steps, only the first files are written. A text is written in UTF-8.
 
     Args:
         files: Content of each file, by its path.
-        replace: Whether to replace existing files.
+        replace: Whether to replace existing files; a link counts as one, wherever it leads.
         follow: Whether a symbolic link is followed, or is itself what is replaced.
 
     Raises:
@@ -139,10 +129,7 @@ def _link_or_copy(path: Path, to: Path) -> None:
 def write_to_disk(path: Path, content: str | bytes, like: os.stat_result | None = None) -> None:
     """Write a new file, and wait until it is on the disk.
 
-    Args:
-        path: Path of the file, which does not exist.
-        content: Its content; a text is written in UTF-8.
-        like: Status of the file whose owner and permissions it gets; by default those of a new file.
+    It gets the owner and permissions that are in the status ``like``, by default those of a new file.
 
     Raises:
         OSError: It cannot be written.
@@ -179,11 +166,7 @@ def naming(path: str | os.PathLike[str]) -> Iterator[None]:
 
 
 def replaceable(path: str | os.PathLike[str], *, follow: bool = False) -> os.stat_result | None:
-    """The status of what has a path; None if nothing has it.
-
-    Args:
-        path: The path.
-        follow: Whether a symbolic link is followed.
+    """The status of what has a path, a symbolic link followed or not; None if nothing has it.
 
     Raises:
         OSError: It is no file.

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from eurdf.closures import REGISTRY
-from eurdf.diagnostics import enumerated
+from eurdf.diagnostics import enumerated, plural
 from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.writing.naming_conventions import ClosureType
@@ -164,7 +164,7 @@ def _effect(candidate: _Candidate) -> str:
         return "no configuration closes the loops"
     if not candidate.mobility:
         return "the loops close, but nothing in them can move"
-    many = f"{candidate.mobility} {'motion' if candidate.mobility == 1 else 'motions'}"
+    many = plural(candidate.mobility, "motion")
     if candidate.dependent:
         return f"the loops close and keep {many}, but {'; '.join(map(_dependent, candidate.dependent[:3]))}"
     if candidate.locked:

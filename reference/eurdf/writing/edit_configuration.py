@@ -23,13 +23,9 @@ class NotEditable(Exception):  # noqa: N818 - shown to the user as it is
 def with_configuration(document: YamlDocument, name: str, coordinates: Mapping[str, Sequence[float]]) -> str:
     """The text of a description of version 2 with a named configuration added, or its coordinates replaced.
 
-    Comments, also those inside a configuration that is replaced, and the rest of the text stay as they are. A joint
-    that the file states and ``coordinates`` does not is an error: where it is at its neutral, state that.
-
-    Args:
-        document: The description.
-        name: Name of the configuration.
-        coordinates: For each joint to state, its coordinates as files have them.
+    The coordinates are given by joint, as files have them. Comments, also those inside a configuration that is
+    replaced, and the rest of the text stay as they are. A joint that the file states and ``coordinates`` does not is an
+    error: where it is at its neutral, state that.
 
     Raises:
         NotEditable: The result does not read back as it should, such as where an anchor is involved.

@@ -25,18 +25,13 @@ _MOST_OTHERS = 1000
 
 
 def write_files(folder: str | os.PathLike[str], files: Mapping[str, bytes], *, force: bool = False) -> tuple[Path, ...]:
-    """Write files to a folder, which is made if it does not exist: all of them or none.
+    """Write files, by their path relative to a folder, with ``/``: all of them or none. The folder is made if need be.
 
     A process that is killed leaves all the old files or all the new ones: a folder with the new files, and links to the
     other files of the old one, takes the place of the old one in one step. A program whose working folder it is has to
     enter it again. The step is not possible for the working folder of this process, a mount point, a folder of another
     user, one with more than 1,000 other files, and on Windows: there, the files are replaced one after the other when
     all are on the disk, and a process that is killed in that moment leaves old and new files.
-
-    Args:
-        folder: Where to write.
-        files: Content of each file, by its path relative to the folder, with ``/``.
-        force: Whether to replace files that exist; other files in the folder are kept.
 
     Returns:
         Paths of the files.

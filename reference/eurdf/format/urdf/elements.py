@@ -11,7 +11,7 @@ from eurdf.diagnostics import Hint, did_you_mean
 from eurdf.format.conventions import HINT, LARGEST, too_large
 from eurdf.format.wording import near
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
+from eurdf.mechanism.pose import IDENTITY, ORIGIN, Pose
 from eurdf.reading.reporter import Element, XmlReporter
 
 #: The types a URDF may give a joint.
@@ -63,8 +63,6 @@ _LIMITS = dict.fromkeys(_KNOWN_ATTRIBUTES["limit"], 1.0) | {"lower": -1.0}
 #: Name of the world.
 RESERVED = "universe"
 
-_ZERO: Vector3 = (0.0, 0.0, 0.0)
-
 #: White space of XML. A name can consist of other blanks, such as no-break spaces.
 WHITE = " \t\r\n"
 
@@ -92,11 +90,9 @@ def _how_to_add(element: Element, attribute: str) -> str | None:
 
 
 def _floats(text: str, pieces: Iterable[str]) -> tuple[float, ...] | None:
-    """Finite decimal numbers in ASCII. What else `float` accepts (nan, inf, 1_0, other digits) is not URDF.
+    """Finite decimal numbers in ASCII, of a text and its pieces.
 
-    Args:
-        text: All of them.
-        pieces: One each.
+    What else `float` accepts (nan, inf, 1_0, other digits) is not URDF.
     """
     if "_" in text or not text.isascii():
         return None
@@ -187,14 +183,13 @@ class UrdfReader:
             hint,
         )
 
-    def number(self, element: Element, attribute: str) -> float | None:
-        """A required attribute of one number."""
+    def required(self, element: Element, attribute: str, count: int) -> tuple[float, ...] | None:
+        """EU-URD-005: a required attribute of numbers."""
         text = element.get(attribute)
         if text is None:
             self.missing_attribute(element, attribute)
             return None
-        values = self.numbers(element, attribute, text, 1)
-        return None if values is None else values[0]
+        return self.numbers(element, attribute, text, count)
 
     def single_numbers(
         self, element: Element, attributes: Mapping[str, str | None], optional: tuple[str, ...] | None = None
@@ -331,8 +326,8 @@ class UrdfReader:
         text = (xyz_text, rpy_text, quaternion_text)
         pose = self._poses.get(text)
         if pose is None:
-            xyz = _ZERO if xyz_text is None else self.numbers(element, "xyz", xyz_text, 3)
-            rpy = _ZERO if rpy_text is None else self.numbers(element, "rpy", rpy_text, 3)
+            xyz = ORIGIN if xyz_text is None else self.numbers(element, "xyz", xyz_text, 3)
+            rpy = ORIGIN if rpy_text is None else self.numbers(element, "rpy", rpy_text, 3)
             if xyz is None or rpy is None:
                 return IDENTITY
             if quaternion_text is None:

@@ -69,11 +69,7 @@ def _type(reader: UrdfReader, element: Element) -> JointType | None:
 
 def _axis(reader: UrdfReader, name: str | None, kind: JointType, element: Element) -> Vector3 | None:
     """EU-URD-013, EU-URD-035: the axis of a joint that turns about it or slides along it; x if left out."""
-    text = element.get("xyz")
-    if text is None:
-        reader.missing_attribute(element, "xyz")
-        return None
-    axis = reader.numbers(element, "xyz", text, 3)
+    axis = reader.required(element, "xyz", 3)
     if axis is None:
         return None
     x, y, z = axis

@@ -69,11 +69,7 @@ class Materials:
         found = reader.children(element)
         rgba: tuple[float, ...] | None = None
         if "color" in found:
-            text = found["color"].get("rgba")
-            if text is None:
-                reader.missing_attribute(found["color"], "rgba")
-            else:
-                rgba = reader.numbers(found["color"], "rgba", text, 4)
+            rgba = reader.required(found["color"], "rgba", 4)
         texture = self._file(found["texture"]) if "texture" in found else ""
         return rgba, texture  # type: ignore[return-value]
 

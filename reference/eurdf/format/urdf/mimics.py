@@ -16,12 +16,7 @@ _Joints = Mapping[str, UrdfJoint]
 
 
 def check_mimics(reader: UrdfReader, joints: _Joints) -> None:
-    """Check what each mimic joint names as its leader.
-
-    Args:
-        reader: Gets what is found.
-        joints: The joints by name, in file order.
-    """
+    """Check what each mimic joint names as its leader; the joints are in file order."""
     done: set[str] = set()
     for joint in joints.values():
         if joint.mimic is None:
