@@ -53,7 +53,13 @@ def advise_on_actuation(read: ReadRobot, robot: Robot, q: Vector, diagnostics: D
     shaky = [loop for loop in analysis.loops if loop.mobility and loop.finite_mobility == 0]
     if shaky:  # what actuators do there says little about another configuration
         for loop in shaky:
-            _report_shaky(read, robot, loop, diagnostics)
+            diagnostics.report(
+                "x-shaky-loops",
+                f"the loops of {_constraints(mechanism, loop)} have {plural(loop.mobility, 'motion')} to first order, "
+                "but are rigid",
+                read.place_of_constraint(loop.closures[0]),
+                "check the lengths at this configuration, or state another one as 'assembled'",
+            )
         return
     dependent = [loop for loop in analysis.loops if loop.dependent_actuators]
     if dependent:
@@ -61,17 +67,6 @@ def advise_on_actuation(read: ReadRobot, robot: Robot, q: Vector, diagnostics: D
             hinge = None if locking else _freeing_hinge(robot, analysis.q, loop)
             _report_dependent(read, robot, loop, locking, hinge, diagnostics)
     _report_uncontrolled(read, robot, analysis, diagnostics)
-
-
-def _report_shaky(read: ReadRobot, robot: Robot, loop: LoopAnalysis, diagnostics: Diagnostics) -> None:
-    """Report loops that are rigid although their rank leaves motions."""
-    diagnostics.report(
-        "x-shaky-loops",
-        f"the loops of {_constraints(robot.mechanism, loop)} have {plural(loop.mobility, 'motion')} to first order, "
-        "but are rigid",
-        read.place_of_constraint(loop.closures[0]),
-        "check the lengths at this configuration, or state another one as 'assembled'",
-    )
 
 
 def _report_dependent(
@@ -101,7 +96,9 @@ def _report_dependent(
         place = read.place_of_constraint(hinge.closure)
         hint = f"if closure '{hinge.closure}' is a pin, {hinge} frees the actuators"
     else:
-        place = _place_of_last_actuator(read, dependent)
+        # Of several actuators the one that is listed last, as what was added most likely.
+        entry = next(entry for entry in reversed(read.description.actuators) if entry.joint in dependent)
+        place = read.description.document.place(entry.pointer)
         hint = f"list only actuators that can move{'' if locked else ' independently'}, or correct the closures"
     diagnostics.report("x-dependent-actuators", message, place, hint)
 
@@ -207,19 +204,11 @@ def _place_of_key(read: ReadRobot, key: str) -> Place:
     return read.description.document.place((key,), True)
 
 
-def _place_of_last_actuator(read: ReadRobot, joints: Sequence[str]) -> Place:
-    """Of several actuators the one that is listed last, as what was added most likely."""
-    entry = next(entry for entry in reversed(read.description.actuators) if entry.joint in joints)
-    return read.description.document.place(entry.pointer)
-
-
 def _constraints(mechanism: Mechanism, loop: LoopAnalysis) -> str:
     """The closures and the couplings of a group of loops."""
-    couplings = {coupling.name for coupling in mechanism.couplings}
-    closures = [name for name in loop.closures if name not in couplings]
-    coupled = [name for name in loop.closures if name in couplings]
-    parts = [_counted(noun, names) for noun, names in (("closure", closures), ("coupling", coupled)) if names]
-    return " and ".join(parts)
+    kinds = {"closure": mechanism.closures, "coupling": mechanism.couplings}
+    named = {noun: [each.name for each in kind if each.name in loop.closures] for noun, kind in kinds.items()}
+    return " and ".join(_counted(noun, names) for noun, names in named.items() if names)
 
 
 def _counted(noun: str, names: Sequence[str]) -> str:

@@ -120,9 +120,8 @@ class PassiveMotions:
 def _turns_about_one_line(twists: list[Vector], length: float) -> bool:
     """Whether twists are such, except those of bodies that do not move.
 
-    Args:
-        twists: Of bodies, each (6,), linear and angular, rad/s and m/s; the velocities that they come from are about 1.
-        length: Characteristic length, m.
+    Each is (6,), linear and angular, m/s and rad/s; the velocities that they come from are about 1. The characteristic
+    length is in m.
     """
     if not twists:
         return True

@@ -32,7 +32,9 @@ def advise_on_quaternions(read: ReadRobot, robot: Robot | None, diagnostics: Dia
         looped: set[str] = set()
         closed = by_turned = False
         if robot is not None:
-            looped = _looped(robot)
+            from eurdf.kinematics.loop import joints_of_loops
+
+            looped = {robot.model.names[joint] for joint in joints_of_loops(robot)}
             closed = _closes(robot, coordinates)
             by_turned = not closed and _closes(robot, {**coordinates, **turned})
         for joint, values in turned.items():
@@ -79,11 +81,3 @@ def _closes(robot: Robot, coordinates: _Coordinates) -> bool:
 
     q = robot.configuration(coordinates)
     return not any(opening.is_open for opening in all_openings(robot, q))
-
-
-def _looped(robot: Robot) -> set[str]:
-    """Names of the joints of the loops."""
-    from eurdf.kinematics.loop import joints_of_loops
-
-    model = robot.model
-    return {model.names[joint] for joint in joints_of_loops(robot)}

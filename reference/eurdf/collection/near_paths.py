@@ -16,13 +16,7 @@ _COMPARED = 2000
 
 
 def near_path(path: str, names: Collection[str] = (), endings: tuple[str, ...] = ENDINGS) -> str | None:
-    """What a path may mean that leads nowhere, or None.
-
-    Args:
-        path: Such a path.
-        names: Names of robots, for a path that is no more than a name.
-        endings: Endings of the files that may be meant.
-    """
+    """What a path may mean that leads nowhere, or None: a file with an ending, or by a name alone a robot."""
     if not path.strip() or "\0" in path:
         return None
     place = Path(path)

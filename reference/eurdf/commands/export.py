@@ -105,7 +105,8 @@ def export(
     else:
         losses = exported.losses
         with writing():
-            folder = output or f"{_file_name(read.mechanism.name)}_{to}"
+            name = re.sub(r"[^A-Za-z0-9._-]", "_", read.mechanism.name).strip(".") or "robot"
+            folder = output or f"{name}_{to}"
             paths = [os.fspath(each) for each in exported.write(folder, force=force)]
         if verify:
             with progress_bar("simulating") as progress:
@@ -123,10 +124,6 @@ def export(
         if verification is not None:
             write_lines(verification_lines(verification), sys.stdout)
     return 1 if refusal or (verification is not None and verification.findings) else 0
-
-
-def _file_name(robot: str) -> str:
-    return re.sub(r"[^A-Za-z0-9._-]", "_", robot).strip(".") or "robot"
 
 
 def _place(read: ReadRobot, loss: Loss) -> Place | None:

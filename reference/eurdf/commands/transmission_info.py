@@ -132,12 +132,7 @@ def transmission_info(
 
 
 def _pose(
-    robot: Robot,
-    joints: Selection,
-    motors: Selection,
-    q: Vector | None,
-    positions: Sequence[float],
-    reasons: list[str],
+    robot: Robot, joints: Selection, motors: Selection, q: Vector | None, positions: Sequence[float], reasons: list[str]
 ) -> PoseInfo:
     if q is None:
         return PoseInfo(tuple(positions), reached=False)

@@ -236,7 +236,7 @@ x-urdf-outside-folder      The URDF that a description names is outside the fold
 x-file-outside-folder      A mesh or texture is outside the folder of the robot and the packages that are given.
 x-mesh-format              A mesh has a format that this parser does not read.
 x-loops-not-checked        The loops were not checked in full: there are too many, or too many of them share joints.
-""",
+"""
     ),
 ]
 

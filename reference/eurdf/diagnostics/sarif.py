@@ -67,14 +67,9 @@ def _result(found: Diagnostic, index: int, folder: str) -> dict[str, Any]:
         "ruleId": found.code,
         "ruleIndex": index,
         "level": found.severity.value,
-        "message": {"text": _message_text(text)},
+        "message": {"text": _LINK.sub(r"\\[", _BRACE.sub(lambda brace: 2 * brace.group(), encodable(text)))},
         "locations": [_location(found.place, folder)],
     }
-
-
-def _message_text(text: str) -> str:
-    doubled = _BRACE.sub(lambda brace: 2 * brace.group(), encodable(text))
-    return _LINK.sub(r"\\[", doubled)
 
 
 def _location(place: Place, folder: str) -> dict[str, Any]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable, Sequence
+from functools import partial
 
 #: Number of similar names that are compared with the name of the element.
 _CLOSE = 20
@@ -81,7 +82,10 @@ def did_you_mean(wrong: str, known: Iterable[str], beside: str = "") -> str | No
             first, second = wrong[:half], wrong[size - half :]
             candidates = [name for name in candidates if name.startswith(first) or name.endswith(second)][:most]
         close = difflib.get_close_matches(wrong, candidates, n=_CLOSE)
-        nearest = _most_alike(beside, _about_as_near(wrong, close)) if beside else next(iter(close), None)
+        nearest = next(iter(close), None)
+        if beside and nearest is not None:
+            least = _ratio(wrong, nearest) - _ABOUT
+            nearest = max((name for name in close if _ratio(wrong, name) >= least), key=partial(_ratio, beside))
     return None if nearest is None else f"did you mean '{nearest}'?"
 
 
@@ -89,16 +93,6 @@ def meant(wrong: object, known: Iterable[str]) -> str:
     """The hint of `did_you_mean` as the end of a message: after a semicolon, or empty."""
     hint = did_you_mean(wrong, known) if isinstance(wrong, str) else None
     return f"; {hint}" if hint else ""
-
-
-def _about_as_near(wrong: str, close: list[str]) -> list[str]:
-    """Of similar names, sorted by similarity, those about as similar as the first."""
-    ratios = [_ratio(wrong, name) for name in close]
-    return [name for name, ratio in zip(close, ratios, strict=True) if ratio >= ratios[0] - _ABOUT]
-
-
-def _most_alike(beside: str, names: list[str]) -> str | None:
-    return max(names, key=lambda name: _ratio(beside, name), default=None)
 
 
 def _ratio(one: str, other: str) -> float:

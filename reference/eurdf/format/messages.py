@@ -25,8 +25,7 @@ _JOINT_TYPE_HINTS = {
     "universal": "a universal joint needs its axes: {type: universal, axes: xy}",
     "helical": "a helical joint needs its pitch: {type: helical, pitch: 0.005}",
     **dict.fromkeys(
-        ("revolute", "continuous", "prismatic", "planar", "floating"),
-        "a joint without a type keeps its URDF type",
+        ("revolute", "continuous", "prismatic", "planar", "floating"), "a joint without a type keeps its URDF type"
     ),
 }
 

@@ -38,13 +38,17 @@ class BeyondLimit(NamedTuple):
     upper: float
 
     @property
+    def unit(self) -> str:
+        """Of its numbers."""
+        return "m" if self.coordinate == "length" else "rad"
+
+    @property
     def limits(self) -> str:
         """The limits, with their unit."""
-        return f"{self.lower:.12g} to {self.upper:.12g} {'m' if self.coordinate == 'length' else 'rad'}"
+        return f"{self.lower:.12g} to {self.upper:.12g} {self.unit}"
 
     def __str__(self) -> str:
-        unit = "m" if self.coordinate == "length" else "rad"
-        return f"'{self.joint}' at {self.value:.6g} {unit} (limits {self.lower:g} to {self.upper:g})"
+        return f"'{self.joint}' at {self.value:.6g} {self.unit} (limits {self.lower:g} to {self.upper:g})"
 
 
 def link_configurations(
@@ -105,19 +109,14 @@ def within_limits(value: float, lower: float, upper: float) -> bool:
 def beyond_limits(joints: Iterable[Joint], coordinates: Mapping[str, Sequence[float]]) -> list[BeyondLimit]:
     """EU-CFG-004: the coordinates of a configuration that are beyond their limits.
 
-    Args:
-        joints: The joints to check; those with a quaternion have no limits.
-        coordinates: Coordinates by joint; a joint that is left out is at its neutral, or mimics another.
+    A joint that is left out is at its neutral, or mimics another; joints with a quaternion have no limits.
     """
     return [
         BeyondLimit(joint.name, name, value, lower, upper)
         for joint in joints
         if joint.type.quaternion is None and (joint.mimic is None or joint.name in coordinates)
         for name, value, (lower, upper) in zip(
-            joint.type.coordinates,
-            coordinates.get(joint.name, joint.type.neutral),
-            joint.ranges,
-            strict=True,
+            joint.type.coordinates, coordinates.get(joint.name, joint.type.neutral), joint.ranges, strict=True
         )
         if not within_limits(value, lower, upper)
     ]

@@ -64,7 +64,10 @@ def check_ranges(urdf: Urdf, joints: Mapping[str, Joint], diagnostics: Diagnosti
         for joint in urdf.joints.values()
         if (limit := joint.limit) is not None
         and is_no_range(limit.lower, limit.upper)
-        and _has_no_range(joint, joints.get(joint.name))
+        and joint.type.is_ranged
+        and (made := joints.get(joint.name)) is not None
+        and made.type.is_ranged
+        and made.lacks_range
     ]
     hint = "state 'lower' and 'upper', or use type 'continuous' if there are no limits"
     report_of_joints("urdf-no-range", found, "the position limits 0 and 0", "limit", hint, urdf, diagnostics)
@@ -79,11 +82,6 @@ def report_of_joints(
         has = f"{plural(len(found), 'joint')} {'has' if len(found) == 1 else 'have'}"
         place = partial(urdf.document.place, next(found[0].element.iterchildren(tag)))
         diagnostics.report(code, f"{has} {what}: {names}", place, hint)
-
-
-def _has_no_range(joint: UrdfJoint, made: Joint | None) -> bool:
-    """Whether the range from 0 to 0 of a joint of the URDF is that of its joint in the mechanism."""
-    return joint.type.is_ranged and made is not None and made.type.is_ranged and made.lacks_range
 
 
 @dataclass(slots=True, eq=False, repr=False)

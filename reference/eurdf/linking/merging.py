@@ -57,11 +57,7 @@ class Chain(NamedTuple):
 
 
 def check_chain(
-    chain: tuple[Joint, Joint, Joint],
-    urdf: Urdf,
-    closure_links: Collection[str],
-    *,
-    rotary: Collection[str] = ROTARY,
+    chain: tuple[Joint, Joint, Joint], urdf: Urdf, closure_links: Collection[str], *, rotary: Collection[str] = ROTARY
 ) -> Chain:
     """EU-JNT-011 to -014: the joints follow one another, nothing else hangs or weighs between them, their axes meet.
 

@@ -13,14 +13,7 @@ from typing import Any
 
 from yaml import CSafeLoader
 from yaml.error import MarkedYAMLError, YAMLError
-from yaml.events import (
-    AliasEvent,
-    Event,
-    MappingStartEvent,
-    ScalarEvent,
-    SequenceStartEvent,
-    StreamEndEvent,
-)
+from yaml.events import AliasEvent, Event, MappingStartEvent, ScalarEvent, SequenceStartEvent, StreamEndEvent
 
 from eurdf.diagnostics import FileError, Place
 from eurdf.reading.core_schema import TAG_PREFIX, resolve, resolve_tagged
@@ -99,6 +92,14 @@ def read_yaml(source: Source) -> YamlDocument:
         if found := of_text(source.text):
             raise other_format(error.diagnostic.code, found, source.place(0)) from None
         raise
+
+
+def plain_data(text: str) -> dict[str, Any] | None:
+    """The plain values of a text; None if it is not one YAML mapping."""
+    try:
+        return read_yaml(Source("", text, text.encode())).data
+    except FileError:
+        return None
 
 
 def _read_nodes(source: Source) -> Collection:

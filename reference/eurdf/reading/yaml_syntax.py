@@ -35,8 +35,7 @@ _UNUSUAL_NAME = _Meaning("this is not a valid anchor name", "use only ASCII lett
 _TAB = _Meaning("a tab is used as indentation", "indent with spaces")
 _MEANINGS = {
     "mapping values are not allowed in this context": _Meaning(
-        "a ':' is not allowed here",
-        "quote a value that has ': ' in it, and indent the keys of one mapping equally",
+        "a ':' is not allowed here", "quote a value that has ': ' in it, and indent the keys of one mapping equally"
     ),
     "mapping keys are not allowed in this context": _Meaning("a '?' is not allowed here"),
     "block sequence entries are not allowed in this context": _Meaning(

@@ -7,13 +7,11 @@ from collections.abc import Mapping, Sequence
 from itertools import takewhile
 from typing import Any
 
-from eurdf.diagnostics import FileError
 from eurdf.diagnostics.lines import BREAK
 from eurdf.format.model import VERSION2
 from eurdf.format.yaml_text import Value, flow, lines_of
-from eurdf.reading.source import Source
 from eurdf.reading.yaml_node import Collection, Node, Span
-from eurdf.reading.yaml_reader import YamlDocument, read_yaml
+from eurdf.reading.yaml_reader import YamlDocument, plain_data
 
 
 class NotEditable(Exception):  # noqa: N818 - shown to the user as it is
@@ -164,9 +162,8 @@ def _same(old: object, new: Value) -> bool:
 
 def _reads_back(text: str, before: Mapping[str, Any], name: str, value: Mapping[str, Value]) -> bool:
     """Whether a text has the data of before, and the coordinates in the configuration."""
-    try:
-        after = read_yaml(Source("", text, text.encode())).data
-    except FileError:
+    after = plain_data(text)
+    if after is None:
         return False
     found = after["configurations"].pop(name)
     others = {key: other for key, other in before.get("configurations", {}).items() if key != name}

@@ -11,14 +11,7 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path, PurePosixPath
 
-from eurdf.writing.atomic_file import (
-    naming,
-    replaceable,
-    scratch_folder,
-    sync_folder,
-    write_to_disk,
-    write_together,
-)
+from eurdf.writing.atomic_file import naming, replaceable, scratch_folder, sync_folder, write_to_disk, write_together
 
 #: Files and folders of others that a folder may contain to be exchanged: each is linked from the new one.
 _MOST_OTHERS = 1000

@@ -39,11 +39,7 @@ class Materials:
                     return None, ""
                 message = f"material '{name}' is not defined" if name else f"{named(element)} has no name and no color"
                 self._reader.report(
-                    "urdf-unknown-material",
-                    message,
-                    element,
-                    "name",
-                    partial(did_you_mean, name, self._known),
+                    "urdf-unknown-material", message, element, "name", partial(did_you_mean, name, self._known)
                 )
                 return None, ""
             return self._known[name]
