@@ -9,7 +9,8 @@ from collections.abc import Collection, Iterable
 from pathlib import Path
 
 #: Endings of files that a robot may be given by.
-ENDINGS = (".yaml", ".yml", ".urdf", ".xml", ".xacro")
+YAML_ENDINGS, URDF_ENDINGS = (".yaml", ".yml"), (".urdf", ".xml", ".xacro")
+ENDINGS = (*YAML_ENDINGS, *URDF_ENDINGS)
 
 #: Files and folders that a name is compared with.
 _COMPARED = 2000

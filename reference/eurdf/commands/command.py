@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from eurdf.collection.near_paths import near_path
+from eurdf.collection.near_paths import URDF_ENDINGS, near_path
 from eurdf.commands.selection import select_one
 from eurdf.commands.terminal import write_refusal
 from eurdf.errors import CannotRun, InvalidRobot, MissingExtra
@@ -21,17 +21,14 @@ from eurdf.reading.robot_source import is_stream, is_text
 STDOUT = "-"
 
 _PATH = "a robot: a folder, a .yaml, .urdf or .xacro file, - for standard input, or a name of the collection"
-_URDF_ENDINGS = (".urdf", ".xml", ".xacro")
 
 
 @dataclass(slots=True, eq=False, repr=False)
 class Option:
     """An argument of a command: the default of a parameter of its function.
 
-    Attributes:
-        names: Its names; those of an option are made of that of the parameter if there are none.
-        group: Options in succession that have the same one exclude each other.
-        settings: The other parameters of `argparse.ArgumentParser.add_argument`.
+    Without names, that of an option is made of the parameter's. Options in succession that have the same group exclude
+    each other. The settings are other parameters of `argparse.ArgumentParser.add_argument`.
     """
 
     names: tuple[str, ...]
@@ -215,7 +212,7 @@ def require_urdf(path: str) -> None:
         CannotRun: It does not exist.
     """
     if not (os.path.exists(path) or is_stream(path) or is_text(path)):
-        raise CannotRun(f"the URDF '{path}' does not exist{_hint(near_path(path, endings=_URDF_ENDINGS))}")
+        raise CannotRun(f"the URDF '{path}' does not exist{_hint(near_path(path, endings=URDF_ENDINGS))}")
 
 
 def _file_options(values: dict[str, Any]) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eurdf.collection import find_robot, has_urdf
+from eurdf.collection.near_paths import YAML_ENDINGS
 from eurdf.diagnostics import FileError
 from eurdf.errors import CannotRun, RobotNotFound
 from eurdf.reading.robot_source import is_stream, is_text
@@ -22,10 +23,9 @@ if TYPE_CHECKING:
 #: The name of the neutral configuration, unless the description has one of this name.
 NEUTRAL = "neutral"
 
-_DESCRIPTIONS = ("robot.yaml", "robot.yml")
-_YAML_SUFFIXES = (".yaml", ".yml")
+_DESCRIPTIONS = tuple(f"robot{ending}" for ending in YAML_ENDINGS)
 # The file name ending of descriptions in a folder with other YAML files; schema catalogs know it.
-_OWN_SUFFIXES = (".eurdf.yaml", ".eurdf.yml")
+_OWN_SUFFIXES = tuple(f".eurdf{ending}" for ending in YAML_ENDINGS)
 
 # Top-level keys that only descriptions of robots have, in version 2 or version 1.
 _FORMAT_KEY = re.compile(rb"""^(["']?)(?:extended_urdf|closed_loop)\1[ \t]*:""", re.MULTILINE)
@@ -138,7 +138,7 @@ def _robots_below(folder: str) -> list[str]:
         found += [
             os.path.join(place, name)
             for name in sorted(files)
-            if name.endswith(_OWN_SUFFIXES) or (name.endswith(_YAML_SUFFIXES) and _describes_robot(Path(place, name)))
+            if name.endswith(_OWN_SUFFIXES) or (name.endswith(YAML_ENDINGS) and _describes_robot(Path(place, name)))
         ]
     return found
 

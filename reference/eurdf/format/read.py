@@ -20,8 +20,7 @@ from eurdf.format.joint_model import Fixed, Geared, Joint, Spherical, Universal
 from eurdf.format.model import DESCRIPTION, VERSION1, VERSION2, Description, Version1, violations
 from eurdf.format.wording import described, near, quoted
 from eurdf.reading.other_formats import of_mapping
-from eurdf.reading.reporter import YamlReporter
-from eurdf.reading.yaml_reader import YamlDocument
+from eurdf.reading.yaml_reader import YamlDocument, YamlReporter
 
 _KEYS1, _KEYS2 = VERSION1.all_keys, VERSION2.all_keys
 

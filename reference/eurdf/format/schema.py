@@ -34,13 +34,7 @@ _OTHER_THAN_TEXT = {"not": {"type": "string"}}
 
 @dataclass(frozen=True, slots=True)
 class Names:
-    """The names in the URDF of one robot.
-
-    Attributes:
-        links: Names of its links.
-        joints: Names of its joints, the fixed ones too.
-        movable_joints: Names of its joints that can move.
-    """
+    """The names in the URDF of one robot: its links, its joints, fixed ones too, and those that can move."""
 
     links: Sequence[str]
     joints: Sequence[str]

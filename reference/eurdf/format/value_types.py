@@ -53,12 +53,7 @@ class Violation(NamedTuple):
 
 
 class Check:
-    """The check of one file.
-
-    Attributes:
-        version: Of the file.
-        found: Its errors.
-    """
+    """The check of one file of some version, and its errors."""
 
     def __init__(self, version: Version) -> None:
         self.version = version
@@ -70,12 +65,7 @@ class Check:
 
 
 class Schemas:
-    """The JSON Schemas of the types in one version.
-
-    Attributes:
-        version: The version.
-        definitions: Of the types that have a name, by that name.
-    """
+    """The JSON Schemas of the types in one version; the definitions are of those that have a name, by that name."""
 
     def __init__(self, version: Version) -> None:
         self.version = version

@@ -11,7 +11,7 @@ from eurdf.diagnostics import Hint, did_you_mean
 from eurdf.format.yaml_text import Value, flow
 from eurdf.linking.joints import Joints
 from eurdf.mechanism.joint import LIMIT_TOLERANCE, Joint
-from eurdf.reading.reporter import YamlReporter
+from eurdf.reading.yaml_reader import YamlReporter
 
 #: A quaternion in a file may be off unit length by this much; it is normalised when read (EU-CFG-003).
 QUATERNION_TOLERANCE = 1e-6
@@ -21,15 +21,7 @@ _MOST_TOLD = 4
 
 
 class BeyondLimit(NamedTuple):
-    """A coordinate beyond the limits of its joint.
-
-    Attributes:
-        joint: Name of the joint.
-        coordinate: What the coordinate is: an angle or a length.
-        value: rad or m.
-        lower: Lower limit.
-        upper: Upper limit.
-    """
+    """A coordinate, an angle or a length, that is beyond the limits of its joint; rad or m."""
 
     joint: str
     coordinate: str

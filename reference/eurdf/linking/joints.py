@@ -11,7 +11,7 @@ from eurdf.diagnostics import Diagnostics, Hint, did_you_mean, plural, quoted
 from eurdf.format.urdf.data import Limit, Urdf, UrdfJoint
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint, JointProperties, is_no_range
-from eurdf.reading.reporter import YamlReporter
+from eurdf.reading.yaml_reader import YamlReporter
 
 _NONE = JointProperties()
 _UNLIMITED = Limit(-math.inf, math.inf, math.inf, math.inf)

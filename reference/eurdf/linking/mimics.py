@@ -12,7 +12,7 @@ from eurdf.format.urdf.data import Urdf
 from eurdf.linking.joints import report_of_joints
 from eurdf.mechanism.joint import Mimic, drivers
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.reading.reporter import YamlReporter
+from eurdf.reading.yaml_reader import YamlReporter
 
 
 def freed_joints(entries: Iterable[Joint], urdf: Urdf, reporter: YamlReporter) -> set[str]:

@@ -21,13 +21,7 @@ _HINGE = "type: hinge and axes: [AXIS_IN_A, AXIS_IN_B] of version 2.1"
 
 
 class OtherFormat(NamedTuple):
-    """A format that is not Extended URDF.
-
-    Attributes:
-        title: What it is.
-        hint: What to do with a file of the format.
-        importer: Name of the format for ``eurdf import``; empty if no import reads it.
-    """
+    """A format that is not Extended URDF, what to do with a file of it, and its name for ``eurdf import``, or ""."""
 
     title: str
     hint: str

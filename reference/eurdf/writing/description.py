@@ -47,13 +47,7 @@ class NotWritable(ValueError):  # noqa: N818 - named as the other refusals are
 
 @dataclass(frozen=True, slots=True)
 class DescriptionFiles:
-    """The two files of a robot.
-
-    Attributes:
-        urdf: Content of the URDF.
-        yaml: Text of the YAML file.
-        version: Version of the YAML file, the lowest that can say what the mechanism says.
-    """
+    """The URDF of a robot, and its YAML file, of the lowest version that can say what the mechanism says."""
 
     urdf: bytes
     yaml: str

@@ -13,20 +13,14 @@ from eurdf.linking.robot_files import ReadRobot
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.same_model import differences, with_universal_joints
-from eurdf.reading.reporter import XmlReporter
+from eurdf.reading.xml_reader import XmlReporter
 from eurdf.reading.yaml_node import json_pointer
 from eurdf.writing.migrated_text import MigratedText, NotMigratable, own_keys
 
 
 @dataclass(frozen=True, slots=True)
 class Migration:
-    """A description in version 2.
-
-    Attributes:
-        text: Of the YAML file.
-        notes: What was done, one sentence each.
-        mechanism: That the text describes.
-    """
+    """A description in version 2: its text, what was done, one sentence each, and the mechanism that it describes."""
 
     text: str
     notes: tuple[str, ...]

@@ -18,8 +18,6 @@ Color = tuple[float, float, float, float]
 
 NO_MATERIALS: Mapping[Color, str] = MappingProxyType({})
 
-NO_RATES: Mapping[str, float] = MappingProxyType({})
-
 #: What is written where there is no limit, but the file wants a number (EU-FIL-006): rad, m, their rates, N·m or N.
 UNLIMITED = sys.float_info.max
 
@@ -105,7 +103,7 @@ def add_limit(
     position: tuple[float, float] | None,
     effort: float,
     velocity: float,
-    rates: Mapping[str, float] = NO_RATES,
+    rates: Mapping[str, float],
 ) -> None:
     """Add the limits of a joint, which may be infinite: position (rad or m) unless continuous, effort, velocity.
 

@@ -12,7 +12,7 @@ from eurdf.format.conventions import HINT, LARGEST, too_large
 from eurdf.format.wording import near
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import IDENTITY, ORIGIN, Pose
-from eurdf.reading.reporter import Element, XmlReporter
+from eurdf.reading.xml_reader import Element, XmlReporter
 
 #: The types a URDF may give a joint.
 URDF_JOINT_TYPES = {kind.value: kind for kind in JointType if not kind.replaces}

@@ -12,7 +12,7 @@ from eurdf.format.urdf.elements import RATES, RESERVED, URDF_JOINT_TYPES, UrdfRe
 from eurdf.mechanism.joint import Mimic
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import IDENTITY, Vector3
-from eurdf.reading.reporter import Element
+from eurdf.reading.xml_reader import Element
 
 _X: Vector3 = (1.0, 0.0, 0.0)
 

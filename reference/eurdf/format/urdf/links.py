@@ -10,8 +10,7 @@ from eurdf.format.urdf.elements import RESERVED, UrdfReader
 from eurdf.format.urdf.materials import Look, Materials
 from eurdf.mechanism.body import Inertia, Shape
 from eurdf.mechanism.pose import Pose
-from eurdf.reading.reporter import Element
-from eurdf.reading.xml_reader import written_name
+from eurdf.reading.xml_reader import Element, written_name
 
 _Primitive = Literal["box", "cylinder", "sphere", "capsule"]
 

@@ -6,7 +6,7 @@ from functools import partial
 
 from eurdf.diagnostics import did_you_mean
 from eurdf.format.urdf.elements import WHITE, UrdfReader, named
-from eurdf.reading.reporter import Element
+from eurdf.reading.xml_reader import Element
 
 #: Red, green, blue, alpha, or None; and the file name of a texture, or an empty text.
 Look = tuple[tuple[float, float, float, float] | None, str]

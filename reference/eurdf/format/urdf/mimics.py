@@ -10,7 +10,7 @@ from eurdf.diagnostics import did_you_mean
 from eurdf.format.urdf.data import UrdfJoint
 from eurdf.format.urdf.elements import UrdfReader
 from eurdf.mechanism.joint import Mimic
-from eurdf.reading.reporter import Element
+from eurdf.reading.xml_reader import Element
 
 _Joints = Mapping[str, UrdfJoint]
 

@@ -10,8 +10,7 @@ from eurdf.format.urdf.links import read_link
 from eurdf.format.urdf.materials import Materials
 from eurdf.format.urdf.tree import build_tree
 from eurdf.reading.other_formats import of_element, of_root
-from eurdf.reading.reporter import Element, XmlReporter
-from eurdf.reading.xml_reader import XmlDocument, written_name
+from eurdf.reading.xml_reader import Element, XmlDocument, XmlReporter, written_name
 
 #: Elements by which other dialects state a closure or a coupling; a parser of this format would ignore them.
 _CLOSURE_DIALECTS = frozenset({"loop", "loop_joint", "constraint", "coupling"})
