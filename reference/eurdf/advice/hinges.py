@@ -48,12 +48,8 @@ def likely_hinge(
 ) -> LikelyHinge | None:
     """The first 3d or 6d closure of a group of loops that is better as a hinge, about the first axis that is.
 
-    Args:
-        robot: The robot.
-        q: A closed configuration (nq,).
-        loop: The group.
-        is_better: Whether the group is, in a robot with the hinge; asked only if the loops can move as far as their
-            rank says.
+    The configuration (nq,) is closed. Whether the group ``is_better`` in a robot with the hinge is asked only if the
+    loops can move as far as their rank says.
     """
     mechanism = robot.mechanism
     group = [closure for closure in mechanism.closures if closure.name in loop.closures]

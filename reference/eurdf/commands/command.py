@@ -206,11 +206,7 @@ def cannot_run(*errors: type[Exception], unless: tuple[type[Exception], ...] = (
 
 
 def require_urdf(path: str) -> None:
-    """Check that a URDF exists.
-
-    Raises:
-        CannotRun: It does not exist.
-    """
+    """Raise `CannotRun` if a URDF does not exist."""
     if not (os.path.exists(path) or is_stream(path) or is_text(path)):
         raise CannotRun(f"the URDF '{path}' does not exist{_hint(near_path(path, endings=URDF_ENDINGS))}")
 
@@ -218,8 +214,7 @@ def require_urdf(path: str) -> None:
 def _file_options(values: dict[str, Any]) -> dict[str, Any]:
     """Take the values of options that say which files to read; as keyword arguments of `eurdf.load`.
 
-    Raises:
-        CannotRun: A file or a folder does not exist.
+    A file or a folder that does not exist is refused by `CannotRun`.
     """
     taken: dict[str, Any] = {}
     if "confined" in values:

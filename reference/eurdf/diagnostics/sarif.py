@@ -24,13 +24,10 @@ _BRACE = re.compile(r"[{}]")
 
 
 def sarif_log(reports: Iterable[Report], version: str, folder: str | None = None) -> dict[str, Any]:
-    """One log with one run that contains the diagnostics of all robots.
+    """One log with one run that contains the diagnostics of all robots, and the version of eurdf.
 
-    Args:
-        reports: One for each robot. A diagnostic of a URDF that several robots share occurs once.
-        version: Version of eurdf.
-        folder: Paths are relative to this folder; the working directory by default. A file outside of it has an
-            absolute path.
+    A diagnostic of a URDF that several robots share occurs once. Paths are relative to the folder, by default the
+    working directory; a file outside of it has an absolute path.
     """
     found = list(dict.fromkeys(found for report in reports for found in report.diagnostics))
     used = {one.code for one in found}

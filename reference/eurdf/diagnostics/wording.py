@@ -55,16 +55,12 @@ def enumerated(names: Sequence[str], most: int = 6) -> str:
 def did_you_mean(wrong: str, known: Iterable[str], beside: str = "") -> str | None:
     """The hint for a misspelt name: the most similar known name, or None if none is similar.
 
-    If several names are about equally similar, it is the one most similar to ``beside``: if joint 'right_knee' mimics
-    'hip', the hint is 'right_hip', although 'left_hip' needs fewer added letters.
+    If several names are about equally similar, it is the one most similar to ``beside``, the element that contains the
+    wrong name: if joint 'right_knee' mimics 'hip', the hint is 'right_hip', although 'left_hip' needs fewer added
+    letters.
 
     The time is bounded. If there are too many names, only those that share the first or second half of the wrong name
     are compared; this includes every name that differs in one place.
-
-    Args:
-        wrong: The unknown name.
-        known: The known names.
-        beside: Name of the element that contains the wrong name.
     """
     if " - " in wrong:
         known = list(known)

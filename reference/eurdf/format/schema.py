@@ -48,16 +48,12 @@ def names_of(urdf: Urdf) -> Names:
 
 
 def json_schema(version: SchemaVersion, names: Names | None = None) -> Schema:
-    """The schema of a version, as the models say it.
+    """The schema of a version, as the models say it, for any robot or with the names of one.
 
-    With the names of one robot, an editor completes them. A file can itself define names that the URDF does not have:
-    by the key ``frames``, and by giving joints another type. Where a file can define names, the schema offers those of
-    the URDF and accepts others. It rejects unknown names in a file that has neither key, and where a file cannot define
-    names (links, joints to merge).
-
-    Args:
-        version: Version of the format.
-        names: Names of one robot, or None for the schema of any.
+    With names, an editor completes them. A file can itself define names that the URDF does not have: by the key
+    ``frames``, and by giving joints another type. Where a file can define names, the schema offers those of the URDF
+    and accepts others. It rejects unknown names in a file that has neither key, and where a file cannot define names
+    (links, joints to merge).
     """
     number = NUMBERS[version]
     schemas = Schemas(number)

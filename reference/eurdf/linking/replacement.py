@@ -27,14 +27,10 @@ _BY_VELOCITY = (*_RATES, *_FORCES, "damping", "armature", "gear_ratio", "rotor_i
 def replace_joints(
     joints: Joints, entries: Iterable[JointEntry], closure_links: Collection[str], *, version: str
 ) -> None:
-    """Apply every entry of the description, then the three-revolute rule of version 1.
+    """Apply every entry of the description to the URDF's joints, in place, then the three-revolute rule of version 1.
 
-    Args:
-        joints: The URDF's joints; changed in place.
-        entries: As written.
-        closure_links: Links that carry a frame of a closure.
-        version: Version of the description: version 1 merges revolutes by itself; since version 2.1, a description
-            may state springs and losses of mimic joints.
+    Only version 1 merges revolutes by itself, but for those that carry a frame of a closure; since version 2.1, a
+    description may state springs and losses of mimic joints.
     """
     urdf, diagnostics = joints.urdf, joints.reporter.diagnostics
     mimicking = {joint.name: joint.mimic.joint for joint in urdf.joints.values() if joint.mimic}

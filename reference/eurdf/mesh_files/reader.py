@@ -122,9 +122,7 @@ class MeshReader:
     def alone(self, path: str, scratch: Callable[[], Path]) -> tuple[str, int]:
         """A file with the same triangles that names no other file, and its size in bytes.
 
-        Args:
-            path: A mesh file.
-            scratch: Gives the path, without an ending, at which such a file is written if the mesh is none itself.
+        If the mesh is none itself, it is written at the path that ``scratch`` gives, without an ending.
 
         Raises:
             RefusedFile: As for `read`, or the mesh loader does not know its format.

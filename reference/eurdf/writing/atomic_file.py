@@ -211,11 +211,7 @@ def scratch_folder(beside: Path) -> Iterator[Path]:
 
 @contextlib.contextmanager
 def _locked(folder: Path) -> Iterator[bool]:
-    """Lock a folder; False if another one has the lock, or has removed the folder.
-
-    Raises:
-        OSError: It cannot be locked.
-    """
+    """Lock a folder, or raise `OSError`; False if another one has the lock, or has removed the folder."""
     if fcntl is None:
         raise OSError("no locks")
     try:

@@ -54,11 +54,7 @@ def migrate(read: ReadRobot, urdf_path: str = "robot.urdf", schema: str | None =
 
 
 def _refuse_wrong_mimics(urdf: Urdf) -> None:
-    """Refuse mimic joints that are errors in version 2, where version 1 ignores them (EU-ONE-009).
-
-    Raises:
-        NotMigratable: There are some.
-    """
+    """Refuse, by `NotMigratable`, mimic joints that are errors in version 2; version 1 ignores them (EU-ONE-009)."""
     diagnostics = Diagnostics()
     reporter = XmlReporter(urdf.document, diagnostics)
     check_mimics(UrdfReader(reporter, reporter), urdf.joints)

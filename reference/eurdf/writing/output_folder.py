@@ -137,11 +137,7 @@ def _refuse(error: OSError) -> None:
 
 
 def _exchange(one: Path, other: Path) -> None:
-    """Let two folders change places in one step.
-
-    Raises:
-        _NotPossible: The system, or the file system, cannot do that.
-    """
+    """Let two folders change places in one step; `_NotPossible` if the system, or the file system, cannot do that."""
     ours, theirs = os.fsencode(one), os.fsencode(other)
     try:
         library = ctypes.CDLL(None, use_errno=True)
