@@ -153,11 +153,7 @@ def _diagnostics(read: ReadRobot, of_meshes: Sequence[Diagnostic], loops: bool, 
 
 
 def as_robot(given: Robot | RobotSource, *, geometry: bool = False) -> Robot:
-    """The robot that a caller gave, or the one that `load` makes of the path, text or name that was given.
-
-    Raises:
-        RobotNotFound, InvalidRobot, CannotExpand, MissingExtra: See `load`.
-    """
+    """The robot that a caller gave, or the one that `load` makes of the path, text or name that was given."""
     return load(given, geometry=geometry) if isinstance(given, _SOURCES) else given
 
 
@@ -259,8 +255,7 @@ def _check_loops(read: ReadRobot) -> None:
 def _read_mesh_files(urdf: Urdf, files: FoundFiles) -> tuple[dict[str, Mesh], Diagnostics]:
     """EU-URD-034: every mesh file that `find_meshes` found can be read as a mesh.
 
-    Returns:
-        The meshes, by path; one diagnostic for each mesh that cannot be read, and one for all of other formats.
+    The meshes, by path; one diagnostic for each mesh that cannot be read, and one for all of other formats.
     """
     paths = files.paths
     scaled = [(shape.filename, shape.size) for shape in urdf.shapes if shape.kind == "mesh" and shape.filename in paths]

@@ -93,11 +93,7 @@ def has_urdf(folder: Path) -> bool:
 
 
 def _files(folder: Path) -> list[Path]:
-    """What is in a folder, except folders: a link to nothing, or a pipe, is an error where it is read.
-
-    Raises:
-        FileError: The folder cannot be read.
-    """
+    """What is in a folder, except folders: a link to nothing, or a pipe, is an error where it is read."""
     try:
         names = os.listdir(folder)
     except OSError as error:

@@ -28,8 +28,7 @@ Member = tuple[Pose, Inertia]
 def check_inertias(urdf: Urdf, diagnostics: Diagnostics) -> set[str]:
     """EU-INR-001 to -003, link by link: mass not negative, inertia positive semidefinite, triangle inequality.
 
-    Returns:
-        Names of the links with an error, of which nothing more can be said.
+    The result is the names of the links with an error, of which nothing more can be said.
     """
     faulty: set[str] = set()
     valid: list[tuple[UrdfLink, Inertia]] = []

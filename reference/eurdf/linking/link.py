@@ -83,8 +83,7 @@ def link(
 def reread(text: str, urdf: Urdf, file: str) -> tuple[Mechanism | None, Diagnostics]:
     """Read and link the text of a description, before it is written to a file.
 
-    Returns:
-        The mechanism, or None where an error was found; and what was found.
+    The mechanism, or None where an error was found; and what was found.
     """
     diagnostics = Diagnostics()
     try:

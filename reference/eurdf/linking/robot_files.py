@@ -318,8 +318,7 @@ def _read_description(path: Path | Source, diagnostics: Diagnostics, confined: b
 def _own_source(path: Path | Source, confined: bool = False) -> Source:
     """The text of a file of the robot that the caller named, or found in a folder.
 
-    Raises:
-        FileError: It cannot be read; or files are confined to their folder, and it is a link to one elsewhere.
+    `FileError` if it cannot be read; or if files are confined to their folder, and it is a link to one elsewhere.
     """
     if isinstance(path, Source):
         return path

@@ -71,8 +71,7 @@ class MeshFile(NamedTuple):
     def place(self, path: str, files: MutableMapping[str, bytes]) -> dict[str, str]:
         """Add it to files to write, by path from the folder to write to, and what it names where the copy looks for it.
 
-        Returns:
-            For each file that it names and that is not among them: its name, and why.
+        The result is for each file that it names and that is not among them: its name, and why.
         """
         files[path] = self.content
         missing = dict(self.left_out)

@@ -95,11 +95,7 @@ def read_source(path: str | os.PathLike[str], limit: int = FILE_LIMIT, *, is_quo
 
 
 def decoded(data: bytes, file: str, base: Path | None = None, *, is_quoted: bool = True) -> Source:
-    """The text that is in some bytes, EU-FIL-003; for the arguments see `Source`.
-
-    Raises:
-        FileError: ``file-not-utf8``.
-    """
+    """The text that is in some bytes, or ``file-not-utf8``, EU-FIL-003; for the arguments see `Source`."""
     if found := of_binary(data):
         raise other_format("file-not-utf8", found, Place(file, 1, 1))
     # The first bytes distinguish UTF-16 and UTF-32 from UTF-8, with or without a byte order mark (YAML 1.2.2, 5.2).
@@ -119,11 +115,7 @@ def decoded(data: bytes, file: str, base: Path | None = None, *, is_quoted: bool
 
 
 def read_bytes(file: str, limit: int = FILE_LIMIT) -> bytes:
-    """Read a file as `read_source` does; its text may have any encoding.
-
-    Raises:
-        FileError: ``file-unreadable`` or ``file-too-large``.
-    """
+    """Read a file as `read_source` does, with the same errors; its text may have any encoding."""
     place = Place(file)
     try:
         descriptor = open_now(file)
@@ -156,12 +148,7 @@ def read_bytes(file: str, limit: int = FILE_LIMIT) -> bytes:
 
 
 def begin_of_file(path: str | os.PathLike[str], size: int) -> bytes:
-    """The first bytes of a file, so many at most.
-
-    Raises:
-        OSError: It cannot be read, or is not a regular file.
-        ValueError: The path has a NUL.
-    """
+    """The first bytes of a file, so many at most; the errors are those of `open_regular`."""
     with open_regular(path) as stream:
         return stream.read(size)
 

@@ -130,9 +130,6 @@ def write_to_disk(path: Path, content: str | bytes, like: os.stat_result | None 
     """Write a new file, and wait until it is on the disk.
 
     It gets the owner and permissions that are in the status ``like``, by default those of a new file.
-
-    Raises:
-        OSError: It cannot be written.
     """
     with path.open("xb") as stream:
         stream.write(content.encode() if isinstance(content, str) else content)
@@ -166,11 +163,7 @@ def naming(path: str | os.PathLike[str]) -> Iterator[None]:
 
 
 def replaceable(path: str | os.PathLike[str], *, follow: bool = False) -> os.stat_result | None:
-    """The status of what has a path, a symbolic link followed or not; None if nothing has it.
-
-    Raises:
-        OSError: It is no file.
-    """
+    """The status of what has a path, a symbolic link followed or not, or None; `OSError` if it is no file."""
     try:
         status = os.stat(path, follow_symlinks=follow)
     except FileNotFoundError:
@@ -188,9 +181,6 @@ def scratch_folder(beside: Path) -> Iterator[Path]:
 
     A lock shows whether the process that made such a folder still runs. Windows has no such lock: what a killed process
     left stays there.
-
-    Raises:
-        OSError: It cannot be made.
     """
     with contextlib.suppress(OSError):
         for entry in filter(_NAME.fullmatch, os.listdir(beside)):

@@ -101,11 +101,8 @@ def _replaced(home: Path, targets: Mapping[Path, bytes]) -> bool:
 def _link_others(old: Path, new: Path, own: set[Path]) -> dict[Path, os.stat_result]:
     """Link every file of a folder that is not ``own`` from a new folder, with the folders that contain it.
 
-    Returns:
-        The status of each file that was linked, by its path in the folder.
-
-    Raises:
-        _NotPossible: They cannot be linked, or are too many.
+    The result has the status of each file that was linked, by its path in the folder. `_NotPossible` if they cannot be
+    linked, or are too many.
     """
     count = 0
     folders = []

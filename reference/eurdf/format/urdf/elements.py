@@ -278,11 +278,7 @@ class UrdfReader:
             self.report("urdf-unknown-element", f"<{parent.tag}> has an unknown element <{tag}>", child, hint=hint)
 
     def attributes(self, element: Element, optional: tuple[str, ...] | None = None) -> bool:
-        """EU-URD-026: warn of an unknown attribute whose name is near that of an optional one.
-
-        Returns:
-            Whether there is one.
-        """
+        """EU-URD-026: whether an unknown attribute has a name near that of an optional one, which is warned of."""
         tag = str(element.tag)
         known, optional = _KNOWN_ATTRIBUTES[tag], optional or _KNOWN[tag].attributes
         is_misspelt = False
