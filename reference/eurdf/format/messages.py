@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from eurdf.diagnostics import Diagnostic, Place, did_you_mean
+from eurdf.diagnostics import Diagnostic, did_you_mean
 from eurdf.format.closure_model import CLOSURE
 from eurdf.format.conventions import HINT, VERSION2_0, VERSION2_1, VERSION_KEY, Version
 from eurdf.format.joint_model import ACTUATOR, JOINT, Limits
@@ -60,7 +60,7 @@ class _Messages:
 
     def __init__(self, found: Sequence[Violation], version: Version, document: YamlDocument) -> None:
         self.version = version
-        self.document = document
+        self.document, self.place = document, document.place
         self.omitted = len(found) - MOST
         mistyped = {each.pointer[:2] for each in found[:MOST] if each.pointer[::2] == ("closures", "type")}
         # A key that some type or version does not have may go with the type that was meant.
@@ -97,9 +97,6 @@ class _Messages:
             hint = f"{last.hint}; {more}" if last.hint else more
             diagnostics.append(Diagnostic(last.code, last.message, last.place, hint))
         return diagnostics
-
-    def place(self, pointer: Pointer, key: bool = False) -> Place:
-        return self.document.place(pointer, key)
 
     # -- missing and unknown keys ---------------------------------------------------------------------------------
 

@@ -58,10 +58,7 @@ class Source:
         return Path(self.file).parent if self.base is None else self.base
 
     def position(self, index: int) -> tuple[int, int]:
-        r"""Line and column, both from 1, of a character (EU-DIA-011, EU-DIA-012).
-
-        A line ends at ``\n``, ``\r\n`` or ``\r``, as in YAML 1.2, XML and most editors; other Unicode breaks are text.
-        """
+        """Line and column, both from 1, of a character (EU-DIA-012); see `Lines`."""
         return self.lines.position(index)
 
     def place(self, start: int, end: int | None = None, pointer: str = "") -> Place:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from functools import partial
 from typing import NamedTuple
 
-from eurdf.diagnostics import Hint, did_you_mean
+from eurdf.diagnostics import did_you_mean
 from eurdf.format.conventions import HINT, LARGEST, too_large
 from eurdf.format.wording import near
 from eurdf.mechanism.joint_types import JointType
@@ -110,13 +110,13 @@ class UrdfReader:
     It caches texts that occur often in a file: numbers, poses, and names that URDF does not have.
 
     Attributes:
-        reporter: Gets what is found.
+        reporter: Gets what is found, by its `report`.
         mimic_reporter: Gets what is wrong with mimic joints.
         version: The version of URDF that the robot states, empty if it states none. Versions compare as texts.
     """
 
     def __init__(self, reporter: XmlReporter, mimic_reporter: XmlReporter) -> None:
-        self.reporter = reporter
+        self.reporter, self.report = reporter, reporter.report
         self.mimic_reporter = mimic_reporter
         self.version = ""
         self._later: dict[tuple[str, str], list[tuple[Element, str | None]]] = {}
@@ -124,12 +124,6 @@ class UrdfReader:
         self._joined: dict[str, tuple[float, ...] | None] = {}
         self._poses: dict[tuple[str | None, ...], Pose] = {}
         self._strange: dict[tuple[str, tuple[str, ...]], str | None] = {}
-
-    def report(
-        self, code: str, message: str, element: Element, attribute: str | None = None, hint: Hint = None
-    ) -> None:
-        """Report what is wrong with an element, or with one of its attributes."""
-        self.reporter.report(code, message, element, attribute, hint)
 
     def numbers(self, element: Element, attribute: str, text: str, count: int) -> tuple[float, ...] | None:
         """EU-URD-007, EU-FIL-005: an attribute of numbers has the right number of decimal numbers within bounds."""
