@@ -477,8 +477,7 @@ def test_robot_in_millimetres_is_reported_once(advice) -> None:
 
 
 @pytest.mark.parametrize(
-    ("xyz", "mass", "expected"),
-    [("300 0 0", 1.0, 1), ("12 0 0", 1.0, 1), ("12 0 0", 4000.0, 0), ("9 0 0", 1.0, 0)],
+    ("xyz", "mass", "expected"), [("300 0 0", 1.0, 1), ("12 0 0", 1.0, 1), ("12 0 0", 4000.0, 0), ("9 0 0", 1.0, 0)]
 )
 def test_heavy_crane_can_be_long(tmp_path: Path, xyz: str, mass: float, expected: int) -> None:
     urdf = chain(joint("boom", "a", "b", xyz=xyz)).replace('<mass value="1.0"/>', f'<mass value="{mass}"/>')
@@ -636,10 +635,7 @@ def massless(*names: str) -> Callable[[str], str]:
     return edit
 
 
-@pytest.mark.parametrize(
-    ("name", "part"),
-    [("four_bar", "crank"), ("digit_leg", "crank1"), ("bennett", "follower")],
-)
+@pytest.mark.parametrize(("name", "part"), [("four_bar", "crank"), ("digit_leg", "crank1"), ("bennett", "follower")])
 def test_loop_link_without_mass_is_reported(advice, name: str, part: str) -> None:
     (found,) = advice(name, urdf=massless(part))
     assert found.code == "x-massless-link"

@@ -310,10 +310,7 @@ def test_concurrently_changed_file_is_not_overwritten(folder: Path, run: Run, mo
 
 @pytest.mark.parametrize(
     ("stated", "message"),
-    [
-        ("", "residual 0; `eurdf assemble` shows a configuration"),
-        ("configurations: {assembled: {}}\n", "residual 0"),
-    ],
+    [("", "residual 0; `eurdf assemble` shows a configuration"), ("configurations: {assembled: {}}\n", "residual 0")],
 )
 def test_info_suggests_assemble_without_stated_configuration(
     folder: Path, capsys: pytest.CaptureFixture[str], stated: str, message: str

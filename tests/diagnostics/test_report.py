@@ -287,14 +287,7 @@ def test_any_text_gives_valid_json(path: str, message: str, hint: str | None, po
 
 @pytest.mark.parametrize(
     "damage",
-    [
-        {"severity": "note"},
-        {"phase": "elsewhere"},
-        {"clause": "FRM-1"},
-        {"line": 0},
-        {"message": None},
-        {"more": 1},
-    ],
+    [{"severity": "note"}, {"phase": "elsewhere"}, {"clause": "FRM-1"}, {"line": 0}, {"message": None}, {"more": 1}],
 )
 def test_report_schema_rejects_other_objects(damage: dict[str, object]) -> None:
     document = reports_to_json([Report("r", (UNKNOWN,))])

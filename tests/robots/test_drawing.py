@@ -9,17 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
 
-from robots.builder import (
-    Box,
-    Cylinder,
-    Drawing,
-    Motor,
-    Sphere,
-    ball,
-    revolute,
-    universal,
-    write,
-)
+from robots.builder import Box, Cylinder, Drawing, Motor, Sphere, ball, revolute, universal, write
 from robots.builder.mirror import mirrored_shape
 from robots.builder.shape import along, rotation_of, rpy_of
 from robots.builder.solid import solid_of

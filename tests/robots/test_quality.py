@@ -217,10 +217,7 @@ def test_different_version_1_is_reported(copy, old, new, error):
         ("type: 3d", "type: 3d\n    compliance: {linear: 1.0e-6}"),
         ("actuators:", "couplings:\n  - {name: gear, joints: {motor_crank: 1, free_rocker: 1}}\nactuators:"),
         ("actuators:", "joints: {free_rocker: {stiffness: 2.0, damping: 0.1}}\nactuators:"),
-        (
-            "[motor_crank]",
-            "[{joint: motor_crank, gear_ratio: 9, rotor_inertia: 1e-6, name: m, control: [-1, 1]}]",
-        ),
+        ("[motor_crank]", "[{joint: motor_crank, gear_ratio: 9, rotor_inertia: 1e-6, name: m, control: [-1, 1]}]"),
         ("actuators:", "frames: [{name: imu, link: rocker, xyz: [0, 0, 0.1]}]\nactuators:"),
     ],
 )

@@ -15,13 +15,7 @@ import pinocchio as pin
 import pytest
 
 import eurdf
-from examples import (
-    export_digit_2legs,
-    follow_foot_trajectory,
-    mujoco_and_pinocchio,
-    simulate_digit_leg,
-    squat_torques,
-)
+from examples import export_digit_2legs, follow_foot_trajectory, mujoco_and_pinocchio, simulate_digit_leg, squat_torques
 from support.places import ROOT
 
 pytestmark = pytest.mark.slow

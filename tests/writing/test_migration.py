@@ -451,10 +451,7 @@ def test_frame_between_universal_axes_is_refused() -> None:
         ("closed_loop: []\n", "closure 'closure_1' is missing"),
         ("closed_loop: [[rod_tip, slider]]\nname_mot: [motor]\n", "the actuators or their order differ"),
         ("closed_loop: [[rod_tip, slider]]\njoint_name: [pivot]\njoint_type: [FIXED]\n", "joint 'pivot' differs"),
-        (
-            "closed_loop: [[rod_tip, slider]]\njoint_name: [pivot]\njoint_type: [UJOINT_XY]\n",
-            "joint 'pivot' differs",
-        ),
+        ("closed_loop: [[rod_tip, slider]]\njoint_name: [pivot]\njoint_type: [UJOINT_XY]\n", "joint 'pivot' differs"),
     ],
 )
 def test_different_model_is_detected(other: str, said: str) -> None:

@@ -206,11 +206,7 @@ def test_joints_keep_type_limits_and_springs(imported: eurdf.convert.Import) -> 
 
 def test_equalities_become_closures_and_couplings(imported: eurdf.convert.Import) -> None:
     kinds = {each.name: type(each) for each in imported.mechanism.constraints}
-    assert kinds == {
-        "pin": PointClosure,
-        "rod": DistanceClosure,
-        "gear": Coupling,
-    }
+    assert kinds == {"pin": PointClosure, "rod": DistanceClosure, "gear": Coupling}
 
 
 def test_actuators_keep_names_gears_and_ranges(imported: eurdf.convert.Import) -> None:
