@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from eurdf.diagnostics import FileError
-from eurdf.reading.source import FILE_LIMIT, Source, read_source
+from eurdf.reading.source import Source, read_source
 from support.processes import watchdog
 
 
@@ -39,15 +39,6 @@ def test_file_size_limit_is_exact(tmp_path: Path) -> None:
     assert error_of(path, limit=99_999).diagnostic.code == "file-too-large"
 
 
-def test_file_of_100_megabytes_is_not_read(tmp_path: Path) -> None:
-    path = tmp_path / "robot.urdf"
-    with path.open("wb") as file:
-        file.truncate(100_000_000)
-    diagnostic = error_of(path).diagnostic
-    assert diagnostic.code == "file-too-large"
-    assert f"{FILE_LIMIT:,} bytes" in diagnostic.message
-
-
 @pytest.mark.skipif(not os.path.exists("/proc/self/environ"), reason="there is no /proc here")
 @pytest.mark.parametrize("name", ["environ", "status", "cmdline"])
 def test_file_of_the_kernel_is_refused(name: str) -> None:
@@ -62,22 +53,8 @@ def test_missing_file_is_reported(tmp_path: Path) -> None:
     assert diagnostic.message == f"'{tmp_path / 'robot.yaml'}' cannot be read: no such file or directory"
 
 
-def test_folder_is_reported(tmp_path: Path) -> None:
-    diagnostic = error_of(tmp_path).diagnostic
-    assert (diagnostic.code, diagnostic.message) == ("file-unreadable", f"'{tmp_path}' is a folder, not a file")
-
-
-def test_unwritten_pipe_does_not_block(tmp_path: Path) -> None:
-    os.mkfifo(tmp_path / "robot.yaml")
-    assert error_of(tmp_path / "robot.yaml").diagnostic.code == "file-unreadable"
-
-
 def test_endless_device_is_refused() -> None:
     assert error_of("/dev/zero").diagnostic.code == "file-unreadable"
-
-
-def test_path_with_nul_is_reported() -> None:
-    assert error_of("robot\0.yaml").diagnostic.code == "file-unreadable"
 
 
 def test_refused_files_are_closed(tmp_path: Path) -> None:
@@ -103,3 +80,8 @@ def test_lines_and_columns_match_editors(text: str) -> None:
         if text[index - 1 : index + 1] != "\r\n":
             lines = re.split(r"\r\n|\r|\n", text[:index])
             assert source.position(index) == (len(lines), len(lines[-1]) + 1)
+
+
+def test_folder_is_reported(tmp_path: Path) -> None:
+    diagnostic = error_of(tmp_path).diagnostic
+    assert (diagnostic.code, diagnostic.message) == ("file-unreadable", f"'{tmp_path}' is a folder, not a file")
