@@ -307,12 +307,6 @@ def test_mimic_of_the_same_kind_is_stated_for_newton(tmp_path: Path) -> None:
     assert ("export-mimic-joint", "follower") in losses(export)
 
 
-def test_mimic_of_another_kind_is_dropped() -> None:
-    export = eurdf.export(mimicking("shoulder", "prismatic"), "usd")
-    assert ("export-mimic-joint-dropped", "follower") in losses(export)
-    assert b"newton:mimicJoint" not in export.main
-
-
 def test_coupling_of_two_rotations_is_stated_for_newton(tmp_path: Path) -> None:
     third = link_element("third", BODY), joint_element("other", "revolute", "1st hand", "third", LIMIT)
     robot = eurdf.load(PAIR.replace("</robot>", "".join(third) + "</robot>"), geometry=False)
@@ -362,22 +356,6 @@ def test_mesh_becomes_a_payload(tmp_path: Path) -> None:
     assert referenced - losses(export) == {("export-mesh-not-referenced", "a $(b).STL")}
 
 
-def test_configurations_but_the_first_are_losses() -> None:
-    text = DESCRIPTION + "  lowered: {shoulder: -0.5}\n"
-    export = eurdf.export(text, "usd", urdf=PAIR, configuration="lowered")
-    assert {loss.name for loss in export.losses if loss.code == "export-configurations"} == {"raised"}
-
-
-def test_coordinates_name_the_joints_of_the_file(tmp_path: Path) -> None:
-    robot, q = random_robot(2)
-    export = eurdf.export(robot, "usd")
-    there = InUsd(export, tmp_path)
-    prims = there.prims("joints").values()
-    moving = {prim.GetName() for prim in prims if prim.GetTypeName() != "PhysicsFixedJoint"}
-    assert set(export.coordinates.names) == moving
-    np.testing.assert_allclose(export.coordinates.from_q(export.coordinates.to_q(q)), q, atol=1e-12)
-
-
 def test_names_that_usd_cannot_have_are_shown(tmp_path: Path) -> None:
     there = InUsd(eurdf.export(PAIR.replace('name="robot"', 'name="mÿ robot"'), "usd"), tmp_path)
     assert (there.robot.GetName(), there.robot.GetDisplayName()) == ("m__robot", "mÿ robot")
@@ -388,6 +366,22 @@ def test_missing_extra_is_named(capsys: pytest.CaptureFixture[str], monkeypatch:
     assert main(["export", "four_bar", "--to", "usd"]) == 2
     assert "the package that writes USD is not installed; install it with: " in (err := capsys.readouterr().err)
     assert "[usd]" in err
+
+
+def test_mimic_of_another_kind_is_dropped() -> None:
+    export = eurdf.export(mimicking("shoulder", "prismatic"), "usd")
+    assert ("export-mimic-joint-dropped", "follower") in losses(export)
+    assert b"newton:mimicJoint" not in export.main
+
+
+def test_coordinates_name_the_joints_of_the_file(tmp_path: Path) -> None:
+    robot, q = random_robot(2)
+    export = eurdf.export(robot, "usd")
+    there = InUsd(export, tmp_path)
+    prims = there.prims("joints").values()
+    moving = {prim.GetName() for prim in prims if prim.GetTypeName() != "PhysicsFixedJoint"}
+    assert set(export.coordinates.names) == moving
+    np.testing.assert_allclose(export.coordinates.from_q(export.coordinates.to_q(q)), q, atol=1e-12)
 
 
 @pytest.mark.slow
