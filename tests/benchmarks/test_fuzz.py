@@ -51,7 +51,6 @@ worker.main()
 """
 
 
-@pytest.mark.slow
 def test_misbehaviour_of_a_case_is_reported_and_the_next_is_tried() -> None:
     with Watched(wall=30.0, program=("-c", MISBEHAVING)) as worker:
         for number, (word, trouble) in enumerate(
