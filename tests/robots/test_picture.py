@@ -34,8 +34,6 @@ def test_missing_renderer_says_what_to_install(monkeypatch, capsys, tmp_path):
     assert all("pictures need pyvista; install it with: " in line and "[pictures]" in line for line in lines)
 
 
-
-
 @pytest.mark.slow
 def test_command_draws_a_configuration_with_its_loops(capsys, tmp_path):
     pytest.importorskip("pyvista", reason="pyvista is not installed: pip install -e '.[pictures]'")
@@ -70,8 +68,6 @@ def test_robot_without_shapes_is_drawn_as_lines(tmp_path):
     pytest.importorskip("pyvista", reason="pyvista is not installed: pip install -e '.[pictures]'")
     image = picture(eurdf.load("four_bar", geometry=False))
     assert (image[..., 3] > 200).sum() > 200
-
-
 
 
 def test_each_robot_has_small_transparent_pictures_and_its_graph(tmp_path):

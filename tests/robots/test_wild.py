@@ -35,8 +35,6 @@ def test_model_has_published_dimensions(robots: dict[str, eurdf.Robot], name: st
     assert len(robot.actuation.idx_v) == facts["actuated"]
 
 
-
-
 @pytest.mark.parametrize("name", FACTS)
 def test_motion_has_published_dimensions(robots: dict[str, eurdf.Robot], name: str) -> None:
     facts = FACTS[name]
@@ -57,12 +55,6 @@ def test_motion_has_published_dimensions(robots: dict[str, eurdf.Robot], name: s
 def test_only_known_errors_are_found(name: str) -> None:
     report = eurdf.check(WILD / name)
     assert {found.code for found in report.diagnostics} - {"urdf-mesh-missing"} == ERRORS[name]
-
-
-
-
-
-
 
 
 @pytest.mark.slow

@@ -41,7 +41,6 @@ velocityProjection accelerationProjection
 )
 
 
-
 needs_matplotlib = pytest.mark.skipif(
     importlib.util.find_spec("matplotlib") is None, reason="matplotlib is not installed: pip install -e '.[examples]'"
 )
@@ -83,8 +82,6 @@ def test_simulated_leg_falls_until_carried(held: simulate_digit_leg.Held) -> Non
     assert np.abs(held.motion.v[-1]).max() < 1e-2
 
 
-
-
 def test_foot_follows_ellipse_within_limits(tmp_path: Path) -> None:
     followed = follow_foot_trajectory.main(tmp_path)
     robot, model = followed.robot, followed.robot.model
@@ -111,8 +108,6 @@ def test_ground_carries_half_the_robot_on_average(squat: squat_torques.Squat) ->
     torso, *leg = squat.robot.model.inertias
     carried = torso.mass / 2.0 + sum(inertia.mass for inertia in leg)
     assert squat.ground[:, 2].mean() == pytest.approx(carried * 9.81, rel=1e-6)
-
-
 
 
 def test_frictionless_squat_takes_no_work(squat: squat_torques.Squat) -> None:
@@ -146,14 +141,6 @@ def test_squat_torques_do_virtual_work(squat: squat_torques.Squat, k: int) -> No
     J = eurdf.actuated_jacobian(robot, "foot", q, reference=pin.LOCAL_WORLD_ALIGNED)
     expected = eurdf.kinematics.dq_dq_actuated(robot, q).T @ tau - J.T @ squat.ground[k]
     np.testing.assert_allclose(squat.u[k], expected, rtol=0.0, atol=1e-6)
-
-
-
-
-
-
-
-
 
 
 def test_examples_readme_lists_all() -> None:
@@ -210,8 +197,6 @@ def test_signs_on_page_are_right() -> None:
     ours = eurdf.inverse_dynamics(robot, q, v, a)
     np.testing.assert_allclose(ours.u, x[:6], rtol=0.0, atol=1e-6)
     np.testing.assert_allclose(np.concatenate(ours.forces), -x[6:], rtol=0.0, atol=1e-6)
-
-
 
 
 def test_exported_legs_land_with_their_loops_closed(tmp_path: Path) -> None:

@@ -84,8 +84,6 @@ def test_hook_passes_repository_without_robots(tmp_path: Path, files: list[str])
     assert (found.returncode, found.stdout, found.stderr) == (0, ".: no robot\n", "")
 
 
-
-
 def test_action_is_valid_for_github() -> None:
     check = [sys.executable, "-m", "check_jsonschema", "--builtin-schema", "vendor.github-actions", str(ACTION)]
     subprocess.run(check, check=True)
@@ -120,8 +118,6 @@ def test_action_passes_repository_without_robots(tmp_path: Path, files: list[str
     found = run_the_action(other_repository(tmp_path / "repository", files), ".", sarif, output)
     assert (found.returncode, found.stdout) == (0, ".: no robot\n"), found.stderr
     assert json.loads(sarif.read_text())["runs"][0]["results"] == []
-
-
 
 
 def test_catalogue_entry_matches_only_our_files() -> None:

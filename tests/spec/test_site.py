@@ -111,8 +111,6 @@ def test_every_schema_property_has_anchor_and_description(site: Path, page: str,
             assert " ".join(value["description"].split()) in text
 
 
-
-
 def test_every_anchor_of_the_search_exists_and_has_text(site: Path) -> None:
     index = json.loads(
         (site / "searchindex.js").read_text(encoding="utf-8").removeprefix("Search.setIndex(").rstrip(")")
@@ -127,8 +125,6 @@ def test_every_anchor_of_the_search_exists_and_has_text(site: Path) -> None:
     pages = {page: html.parse(str(site / f"{index['docnames'][page]}.html")) for page, _ in anchors}
     named = {(page, each.get("id")): each for page, tree in pages.items() for each in tree.iterfind(".//*[@id]")}
     assert [place for place in anchors if not (place in named and named[place].text_content().strip())] == []
-
-
 
 
 def test_every_public_name_is_documented_once(site: Path) -> None:
@@ -280,8 +276,6 @@ def test_equation_becomes_mathml_with_source() -> None:
     assert 'display="block"' in shown
     with pytest.raises(ValueError, match="nosuchcommand"):
         mathml(r"\nosuchcommand", display=False)
-
-
 
 
 def test_drawing_has_page_colours_and_alt_text() -> None:
