@@ -40,7 +40,3 @@ def test_frames_show_the_motion():
     assert (np.abs(one.astype(int) - other).max(axis=2) > 100).sum() > 2000
 
 
-def test_missing_renderer_is_reported(monkeypatch, capsys):
-    monkeypatch.setitem(sys.modules, "pyvista", None)
-    assert moving_picture.main(["-o", "/nonexistent/picture.webp"]) == 2
-    assert "pictures need pyvista; install it with: " in capsys.readouterr().err

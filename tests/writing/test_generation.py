@@ -19,7 +19,6 @@ from eurdf.format.urdf.read import read_urdf
 from eurdf.format.yaml_text import lines_of, scalar
 from eurdf.kinematics.analysis import analyze
 from eurdf.linking.robot_files import read_robot
-from eurdf.mechanism.same_model import differences
 from eurdf.pinocchio.robot import build_robot
 from eurdf.reading.source import Source, read_source
 from eurdf.reading.xml_reader import read_xml
@@ -104,21 +103,6 @@ def test_names_of_published_robot_match_its_file(name: str) -> None:
     # Some joints that are named spherical are universal in the published file: a name does not show it.
     assert set(found.sphericals) == set(published.get("joint_name", ()))
     assert found.warnings == ()
-
-
-@pytest.mark.slow
-@needs_wild
-@pytest.mark.parametrize("name", FACTS)
-def test_both_versions_give_the_same_model(name: str) -> None:
-    urdf = read_urdf(read_xml(read_source(WILD / name / "robot.urdf")), Diagnostics())
-    assert urdf is not None
-    one, two = (generate(urdf, conventions(), version) for version in ("1", "2"))
-    assert one.mechanism is not None
-    assert two.mechanism is not None
-    ordered = {frozenset((closure.a.body, closure.b.body)) for closure in one.mechanism.closures}
-    assert ordered == {frozenset((closure.a.body, closure.b.body)) for closure in two.mechanism.closures}
-    unnamed = [sentence for sentence in differences(one.mechanism, two.mechanism) if "closure" not in sentence]
-    assert unnamed == []
 
 
 # -- closures -----------------------------------------------------------------------------------------------------

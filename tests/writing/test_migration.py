@@ -167,11 +167,6 @@ def test_published_robot_keeps_its_model(name: str) -> None:
     assert_same_motion(before, after)
 
 
-@needs_wild
-def test_comments_of_published_file_stay_in_place() -> None:
-    lines = migrate(read_robot(WILD / "digit_like_2legs")).text.splitlines()
-    assert lines[lines.index("  # SPHERICAL") + 1] == "  spherical_free_hip: spherical"
-    assert lines[lines.index("  # Ujoints") + 1] == "  spherical_free_knee: {type: universal, axes: xy}"
 
 
 @pytest.mark.parametrize("name", sorted(path.parent.name for path in ROBOTS.glob("*/robot.v1.yaml")))
