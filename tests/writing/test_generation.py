@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any, Literal
 
@@ -620,3 +621,16 @@ def test_three_intersecting_revolutes_are_merged() -> None:
 def test_urdf_of_any_file_name_is_named(tmp_path: Path, urdf: str) -> None:
     actuators_of_generated(tmp_path, urdf_text(*LEG).encode(), urdf)
     assert yaml.safe_load((tmp_path / "out.yaml").read_text(encoding="utf-8"))["urdf"] == urdf
+
+
+def test_missing_closures_or_motors_give_hints_of_the_command(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "arm.urdf"
+    file.write_text(urdf_text("knee revolute base thigh"), encoding="utf-8")
+    assert main(["generate", str(file)]) == 0
+    told = capsys.readouterr().err
+    assert "0 closures\n0 motors\n" in told
+    assert re.findall("^hint: (.{18})", told, re.MULTILINE) == ["no two links or jo", "no joint is named "]
+    assert main(["generate", str(file), "--json"]) == 0
+    assert len(json.loads(capsys.readouterr().out)["hints"]) == 2

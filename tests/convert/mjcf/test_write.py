@@ -335,8 +335,9 @@ def assert_read_by_pinocchio(robot: Robot, folder: Path) -> None:
     assert pin.computeTotalMass(model) == pytest.approx(pin.computeTotalMass(robot.model), rel=1e-9)
 
 
-def test_pinocchio_reads_all_bodies_on_a_base_without_mass(tmp_path: Path) -> None:
-    assert_read_by_pinocchio(eurdf.load(hanging('<mimic joint="j"/>'), geometry=False), tmp_path)
+def test_pinocchio_reads_closures_and_bodies_on_a_base_without_mass(tmp_path: Path) -> None:
+    for robot in ("digit_2legs", hanging('<mimic joint="j"/>')):
+        assert_read_by_pinocchio(eurdf.load(robot, geometry=False), tmp_path / robot[:5].strip("<"))
 
 
 def test_link_called_world_is_renamed() -> None:
