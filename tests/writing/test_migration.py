@@ -429,6 +429,13 @@ def test_different_model_is_detected(other: str, said: str) -> None:
     assert differences(linked("closed_loop: [[rod_tip, slider]]\n"), linked(other)) == [said]
 
 
+@pytest.mark.parametrize("axes", ["UJOINT_YX", "UJOINT_XZ"])
+def test_different_axes_are_a_different_model(axes: str) -> None:
+    text = "joint_name: [pivot]\njoint_type: [{}]\n"
+    found = differences(linked(text.format("UJOINT_XY")), linked(text.format(axes)))
+    assert found == ["joint 'pivot' differs"]
+
+
 # -- the command --------------------------------------------------------------------------------------------------
 
 
