@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-
 import numpy as np
 import pytest
 
@@ -38,5 +36,3 @@ def test_frames_show_the_motion():
     one, other = moving_picture.moving_picture(eurdf.load("digit_leg"), 2)
     assert one.shape == other.shape
     assert (np.abs(one.astype(int) - other).max(axis=2) > 100).sum() > 2000
-
-

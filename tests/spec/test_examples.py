@@ -104,10 +104,6 @@ def test_foot_follows_ellipse_within_limits(tmp_path: Path) -> None:
     )
 
 
-
-
-
-
 @pytest.mark.parametrize("k", [0, 37, 100])
 def test_ground_balances_leg_and_half_torso(squat: squat_torques.Squat, k: int) -> None:
     """By the momentum of the leg about its centre of mass, and the weights."""

@@ -167,8 +167,6 @@ def test_published_robot_keeps_its_model(name: str) -> None:
     assert_same_motion(before, after)
 
 
-
-
 @pytest.mark.parametrize("name", sorted(path.parent.name for path in ROBOTS.glob("*/robot.v1.yaml")))
 def test_collection_robot_migrates_to_its_version_2(name: str) -> None:
     two = read_robot(ROBOTS / name).mechanism
