@@ -17,12 +17,7 @@ from markdown_it import MarkdownIt
 from eurdf_conformance.certificate import certificate as certificate_module
 from eurdf_conformance.certificate import fingerprint
 from eurdf_conformance.certificate.badge import badge, badge_texts
-from eurdf_conformance.certificate.certificate import (
-    Certificate,
-    NoCertificate,
-    certificate_schema,
-    read_certificate,
-)
+from eurdf_conformance.certificate.certificate import Certificate, NoCertificate, certificate_schema, read_certificate
 from eurdf_conformance.certificate.comparison_page import comparison_markdown, comparison_page
 from eurdf_conformance.certificate.fingerprint import clauses_hash
 from eurdf_conformance.certificate.issue import issue

@@ -154,10 +154,7 @@ def test_springs_of_two_revolutes_belong_to_the_universal_joint() -> None:
     lists = {key: [0.0, 0.0] for key in ("velocity", "effort", "damping", "friction", "armature")}
     limits = {"lower": [-1.0, -1.0], "upper": [1.0, 1.0]}
     universal = joint("j", "universal", **limits, **lists, stiffness=[0.0, 3.0], rest=[7.0, 0.5])
-    pair = [
-        joint("j_X", child="between"),
-        joint("j_Y", parent="between", child="c", stiffness=[3.0], rest=[0.5]),
-    ]
+    pair = [joint("j_X", child="between"), joint("j_Y", parent="between", child="c", stiffness=[3.0], rest=[0.5])]
     assert canonical_differences(robot([universal]), robot(pair), BODIES) == []
 
 

@@ -178,24 +178,9 @@ def test_each_configuration_needs_one_set_of_values() -> None:
             Rejected(id=1, issues=[]),
             ("accepted", "rejected", "the parser rejects a valid description"),
         ),
-        (
-            VALID,
-            Level.DIAGNOSE,
-            Unsupported(id=1, feature="f"),
-            ("accepted", "unsupported", "unsupported feature"),
-        ),
-        (
-            VALID,
-            Level.DYNAMICS,
-            Unsupported(id=1, feature="f"),
-            ("accepted", "unsupported", "unsupported feature"),
-        ),
-        (
-            INVALID,
-            Level.ACCEPT,
-            Unsupported(id=1, feature="f"),
-            ("rejected", "unsupported", "unsupported feature"),
-        ),
+        (VALID, Level.DIAGNOSE, Unsupported(id=1, feature="f"), ("accepted", "unsupported", "unsupported feature")),
+        (VALID, Level.DYNAMICS, Unsupported(id=1, feature="f"), ("accepted", "unsupported", "unsupported feature")),
+        (INVALID, Level.ACCEPT, Unsupported(id=1, feature="f"), ("rejected", "unsupported", "unsupported feature")),
         (INVALID, Level.DIAGNOSE, Skipped(id=1, reason=""), ("rejected", "skipped", "the parser skipped the request")),
         (
             EITHER,
