@@ -211,6 +211,7 @@ def test_a_revolute_joint_without_limits_equals_a_continuous_one() -> None:
         ("revolute", [0.1], [0.1 + 2 * math.pi], False),
         ("revolute", None, [0.0], True),
         ("revolute", None, [1e-3], False),
+        ("revolute", [1e-3], None, False),
         ("revolute", [0.1], [0.1, 0.1], False),
         ("spherical", [0.6, 0.0, 0.0, 0.8], [-0.6, 0.0, 0.0, -0.8], True),
         ("spherical", [0.6, 0.0, 0.0, 0.8], [0.8, 0.6, 0.0, 0.0], False),
