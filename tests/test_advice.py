@@ -117,13 +117,8 @@ def test_tree_needs_no_actuator(tmp_path: Path) -> None:
     [
         ("digit_leg_3d", "achilles", ["motor_knee"]),
         ("four_bar", "rocker_pin", ["motor_crank"]),
-        ("slider_crank", "slider_pin", ["motor_crank"]),
-        ("spherical_four_bar", "rocker_pin", ["motor_crank"]),
         ("talos_2legs", "left_rod", ["left_motor_shin"]),
-        ("unitree_g1_ankle", "rod_b", ["motor_a", "motor_b"]),
         ("kangaroo_leg", "hip_rod", ["motor_leg_length"]),
-        ("five_bar_3d", "tip", ["motor_1", "motor_2"]),
-        ("planar_3rrr", "pin_3", ["motor_1", "motor_2", "motor_3"]),
         ("delta", "rod_2a", ["motor_1", "motor_2", "motor_3"]),
     ],
 )
@@ -134,11 +129,6 @@ def test_locking_6d_closure_is_named_and_3d_suggested(advice, name, closure, act
     assert (found.code, found.pointer) == ("x-dependent-actuators", f"/closures/{index}")
     assert all(f"'{actuator}'" in found.message for actuator in actuators)
     assert f"type 3d for closure '{closure}'" in (found.hint or "")
-
-
-def test_two_jointly_locking_closures_are_named_together(advice) -> None:
-    (found,) = advice("unitree_g1_ankle", typed("6d", "rod_a", "rod_b"))
-    assert "type 3d for closures 'rod_a', 'rod_b'" in (found.hint or "")
 
 
 def test_locking_hinge_gets_the_hint_of_a_6d_closure() -> None:
@@ -330,18 +320,6 @@ def test_joint_outside_loops_can_exceed_limits(advice) -> None:
     assert codes(advice("four_bar", driven, urdf)) == []
 
 
-def plain(text: str) -> Callable[[str], str]:
-    """Puts an attribute in place of the first of its name."""
-    name = text.split("=")[0]
-
-    def edit(urdf: str) -> str:
-        start = urdf.index(f' {name}="') + 1
-        end = urdf.index('"', start + len(name) + 2) + 1
-        return urdf[:start] + text + urdf[end:]
-
-    return edit
-
-
 def link(name: str, mass: float = 1.0) -> str:
     return (
         f'<link name="{name}"><inertial><origin xyz="0.01 0 0"/><mass value="{mass}"/>'
@@ -390,13 +368,9 @@ def test_revolute_limits_in_degrees_are_reported(tmp_path: Path, limits: str) ->
     ["-3 3", "-6.2832 6.2832", "-9.42 9.42", "-10 10", "-12.5664 12.5664", "-18.85 18.85", "-100 100", "-1000 1000",
      "-1e16 1e16", "-31.4159 31.4159", "-13.37 13.37"],
 )  # fmt: skip
-def test_wrists_and_unlimited_joints_are_in_rad(tmp_path: Path, limits: str) -> None:
-    assert checked(tmp_path, chain(joint("knee", "a", "b", limits=limits))) == []
-
-
-@pytest.mark.parametrize("kind", ["continuous", "prismatic"])
-def test_limits_of_other_joints_are_no_angles(tmp_path: Path, kind: str) -> None:
-    assert checked(tmp_path, chain(joint("knee", "a", "b", kind, limits="-90 90"))) == []
+def test_limits_of_wrists_and_of_other_joints_are_in_rad(tmp_path: Path, limits: str) -> None:
+    for kind, given in (("revolute", limits), ("continuous", "-90 90"), ("prismatic", "-90 90")):
+        assert checked(tmp_path, chain(joint("knee", "a", "b", kind, limits=given))) == []
 
 
 def test_ambiguous_limits_are_degrees_beside_others(tmp_path: Path) -> None:
@@ -423,18 +397,6 @@ def test_orientation_outside_links_and_joints_is_ignored(tmp_path: Path, rpy: st
 
 
 @pytest.mark.parametrize(
-    ("limits", "message"),
-    [
-        ("-90 1", "limit 'lower' of joint 'knee' is -90 rad, 14.3 turns"),
-        ("-90 90", "limit 'lower' of joint 'knee' is -90 rad, 14.3 turns; this file has 1 more such angle"),
-    ],
-)
-def test_first_angle_in_degrees_is_named(tmp_path: Path, limits: str, message: str) -> None:
-    (found,) = checked(tmp_path, chain(joint("knee", "a", "b", limits=limits)))
-    assert found.message == message
-
-
-@pytest.mark.parametrize(
     ("yaml", "pointer"),
     [
         ("frames:\n  - {name: tip, link: b, rpy: [90, 0, 0]}\n", "/frames/0/rpy/0"),
@@ -455,11 +417,6 @@ def test_angles_of_description_in_degrees_are_reported(tmp_path: Path, yaml: str
     assert [(each.code, each.pointer) for each in found] == ([("x-angle-in-degrees", pointer)] if pointer else [])
 
 
-def test_angle_in_degrees_explains_open_closure(advice) -> None:
-    found = advice("four_bar", urdf=plain('rpy="0 0 90"'))
-    assert "x-angle-in-degrees" in codes(found)
-
-
 def test_robot_in_millimetres_is_reported_once(advice) -> None:
     def scaled(urdf: str) -> str:
         tree = etree.fromstring(urdf.encode())
@@ -477,8 +434,7 @@ def test_robot_in_millimetres_is_reported_once(advice) -> None:
 
 
 @pytest.mark.parametrize(
-    ("xyz", "mass", "expected"),
-    [("300 0 0", 1.0, 1), ("12 0 0", 1.0, 1), ("12 0 0", 4000.0, 0), ("9 0 0", 1.0, 0)],
+    ("xyz", "mass", "expected"), [("300 0 0", 1.0, 1), ("12 0 0", 1.0, 1), ("12 0 0", 4000.0, 0), ("9 0 0", 1.0, 0)]
 )
 def test_heavy_crane_can_be_long(tmp_path: Path, xyz: str, mass: float, expected: int) -> None:
     urdf = chain(joint("boom", "a", "b", xyz=xyz)).replace('<mass value="1.0"/>', f'<mass value="{mass}"/>')
@@ -636,10 +592,7 @@ def massless(*names: str) -> Callable[[str], str]:
     return edit
 
 
-@pytest.mark.parametrize(
-    ("name", "part"),
-    [("four_bar", "crank"), ("digit_leg", "crank1"), ("bennett", "follower")],
-)
+@pytest.mark.parametrize(("name", "part"), [("four_bar", "crank"), ("digit_leg", "crank1"), ("bennett", "follower")])
 def test_loop_link_without_mass_is_reported(advice, name: str, part: str) -> None:
     (found,) = advice(name, urdf=massless(part))
     assert found.code == "x-massless-link"
@@ -668,11 +621,6 @@ def test_armature_replaces_mass(advice) -> None:
         description["joints"] = {"motor_crank": {"armature": 0.01}}
 
     assert advice("four_bar", edit, massless("crank")) == []
-
-
-def test_immobile_or_outside_links_need_no_mass(advice) -> None:
-    assert advice("four_bar", urdf=massless("ground")) == []
-    assert advice("digit_leg", urdf=massless("hip")) == []
 
 
 @pytest.mark.parametrize("axes", ["0 1 0", "0 0 1"])
@@ -742,9 +690,16 @@ def two_bars(folder: Path, span: float) -> tuple[str, ...]:
     return tuple(found.code for found in eurdf.check(folder).diagnostics)
 
 
-def test_stretched_bars_are_reported_as_shaky(tmp_path: Path) -> None:
+def test_stretched_bars_are_shaky_and_bent_ones_rigid(tmp_path: Path) -> None:
     assert two_bars(tmp_path, 1.0) == ("x-shaky-loops",)
-
-
-def test_bent_bars_are_rigid_and_not_shaky(tmp_path: Path) -> None:
     assert two_bars(tmp_path, 0.8) == ("x-dependent-actuators",)
+
+
+def test_immobile_or_outside_links_need_no_mass(advice) -> None:
+    assert advice("four_bar", urdf=massless("ground")) == []
+    assert advice("digit_leg", urdf=massless("hip")) == []
+
+
+def test_two_jointly_locking_closures_are_named_together(advice) -> None:
+    (found,) = advice("unitree_g1_ankle", typed("6d", "rod_a", "rod_b"))
+    assert "type 3d for closures 'rod_a', 'rod_b'" in (found.hint or "")

@@ -36,7 +36,6 @@ from support.plain_urdf import joint_element
 from support.plain_urdf import robot as urdf
 
 seeds = st.integers(0, 2**32 - 1)
-NEW = ("hinge", "distance", "coupling")
 
 
 def at(body: str, *xyz: float) -> Anchor:
@@ -189,13 +188,6 @@ def test_jacobian_and_drift_are_derivatives_of_the_residual(kinds: Sequence[str]
     np.testing.assert_allclose(K, expected, rtol=0.0, atol=1e-7 * np.abs(K).max(initial=1.0))
     drift, differences = acceleration_drift(robot, q, v), derivative(Kv)
     np.testing.assert_allclose(drift, differences, rtol=0.0, atol=1e-6 * np.abs(differences).max(initial=1.0))
-
-
-@pytest.mark.parametrize("type_", REGISTRY)
-def test_rows_of_each_kind_have_units(type_: str) -> None:
-    kind = REGISTRY[type_]
-    assert kind.type == type_
-    assert len(kind.units) == {"3d": 3, "6d": 6, "hinge": 5, "distance": 1}[type_]
 
 
 def hinged(turn: Any) -> Linkage:
@@ -361,21 +353,6 @@ def test_locking_the_motor_leaves_nothing_that_moves(build: Callable[[], Robot])
     rigid = eurdf.lock(robot, [joint.name for joint in robot.mechanism.joints], q)
     assert rigid.dropped_closures == tuple(each.name for each in robot.constraints)
     assert rigid.constraints == ()
-
-
-@of_each_kind
-def test_new_kinds_conserve_energy(build: Callable[[], Robot]) -> None:
-    robot = build()
-    q, v = state(robot, 1.1, 2.0)
-    motion = eurdf.simulate(robot, q, v, duration=0.2, step=2e-3)
-
-    def energy(q: Any, v: Any) -> float:
-        potential = pin.computePotentialEnergy(robot.model, robot.data, q)
-        return float(potential + v @ eurdf.mass_matrix(robot, q) @ v / 2.0)
-
-    energies = [energy(q, v) for q, v in zip(motion.q, motion.v, strict=True)]
-    assert np.ptp([q[0] for q in motion.q]) > 0.05
-    np.testing.assert_allclose(energies, energies[0], rtol=1e-6)
 
 
 def test_coupling_of_large_coefficients_closes_as_one_of_small() -> None:

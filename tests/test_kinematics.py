@@ -133,21 +133,14 @@ def test_mobility_of_a_joint_that_follows_1e15_times_prints_nothing(tmp_path: Pa
     assert eurdf.analyze(eurdf.load(tmp_path)).closes
 
 
-@pytest.mark.parametrize("function", [eurdf.residual, eurdf.residual_and_jacobian, eurdf.kinematics.closure_openings])
 @pytest.mark.parametrize("size", [1e155, -1e155, 1e308])
-def test_residual_at_coordinates_that_overflow_is_an_error(function: Callable[..., Any], size: float) -> None:
-    robot = eurdf.load("digit_leg", geometry=False)
-    q = np.array(robot.configurations["assembled"])
-    q[robot.model.joints[robot.model.getJointId("ball_rod1_start")].idx_q + 2] = size
-    with pytest.raises(eurdf.errors.NumericalOverflow):
-        function(robot, q)
-
-
-@pytest.mark.parametrize("function", [eurdf.batch.residual, eurdf.batch.residual_and_jacobian])
-@pytest.mark.parametrize("size", [1e155, -1e155, 1e308])
-def test_overflow_in_a_batch_names_the_configuration(function: Callable[..., Any], size: float) -> None:
+def test_coordinates_that_overflow_are_an_error(size: float) -> None:
     robot = eurdf.load("digit_leg", geometry=False)
     q = np.tile(robot.configurations["assembled"], (3, 1))
     q[1, robot.model.joints[robot.model.getJointId("ball_rod1_start")].idx_q + 2] = size
-    with pytest.raises(eurdf.errors.NumericalOverflow, match=r"q\[1\]"):
-        function(robot, q)
+    for function in (eurdf.residual, eurdf.residual_and_jacobian, eurdf.kinematics.closure_openings):
+        with pytest.raises(eurdf.errors.NumericalOverflow):
+            function(robot, q[1])
+    for of_many in (eurdf.batch.residual, eurdf.batch.residual_and_jacobian):
+        with pytest.raises(eurdf.errors.NumericalOverflow, match=r"q\[1\]"):
+            of_many(robot, q)

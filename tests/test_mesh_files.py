@@ -165,13 +165,6 @@ def test_unreadable_mesh_is_reported_by_check_and_load(folder: Path, capfd: pyte
     assert capfd.readouterr() == ("", "")
 
 
-def test_sound_meshes_pass_check_and_load(folder: Path) -> None:
-    urdf = folder / "sound.urdf"
-    urdf.write_text(urdf_with(*SOUND), encoding="utf-8")
-    assert eurdf.check(urdf).diagnostics == ()
-    assert eurdf.load(urdf).visual_model.ngeoms == len(SOUND)
-
-
 def test_mesh_that_crashes_hides_no_other(folder: Path, runs: list[list[str]]) -> None:
     found, reasons = read(*(folder / name for name in ("quad.obj", "self.dae", "text.stl", "rubbish.stl", "shape.off")))
     assert list(found) == ["quad.obj", "text.stl", "shape.off"]
@@ -198,11 +191,6 @@ def test_file_with_several_names_is_read_once(tmp_path: Path, runs: list[list[st
     assert runs == [["a.obj"]]
     assert not reasons
     assert set(found) == set(paths.values())
-
-
-def test_no_process_starts_without_meshes(runs: list[list[str]]) -> None:
-    assert meshes.read_meshes([], {}) == ({}, {})
-    assert runs == []
 
 
 def test_bytes_of_all_meshes_are_bounded(tmp_path: Path, runs: list[list[str]]) -> None:
@@ -238,12 +226,6 @@ def test_mesh_must_be_a_regular_file(tmp_path: Path, make: Callable[[Path], None
     assert runs == []
 
 
-def test_file_that_becomes_a_pipe_is_an_error(tmp_path: Path) -> None:
-    os.mkfifo(tmp_path / "a.stl")
-    path = str(tmp_path / "a.stl")
-    assert isinstance(meshes._read([meshes._File(path, path, 84)])[path], str)
-
-
 def test_materials_of_a_mesh_are_not_opened(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe.mtl")
     whole = read_one(tmp_path / "whole.obj", OBJ)
@@ -267,3 +249,9 @@ def test_processor_time_of_a_mesh_is_bounded(tmp_path: Path, monkeypatch: pytest
     (tmp_path / "a.ply").write_text(PLY.format(80_000_000), encoding="ascii")
     _, reasons = read(tmp_path / "a.ply")
     assert reasons == {"a.ply": "reading it takes longer than 0 s, and it has 187 bytes"}
+
+
+def test_file_that_becomes_a_pipe_is_an_error(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "a.stl")
+    path = str(tmp_path / "a.stl")
+    assert isinstance(meshes._read([meshes._File(path, path, 84)])[path], str)

@@ -6,32 +6,24 @@ import json
 import os
 import subprocess
 import sys
-import tempfile
-from collections.abc import KeysView
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
-import pinocchio as pin
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 
 import eurdf
-from benchmarks.fuzz.robots import case_of, seeds
+from benchmarks.fuzz.case import Case
+from benchmarks.fuzz.robots import Seed, seeds
+from benchmarks.fuzz.robots import case_of as robot_case
+from benchmarks.fuzz.watched import Watched
 from eurdf.diagnostics import Diagnostics, Place, did_you_mean
 from eurdf.diagnostics.diagnostic import LISTED, LONGEST
 from eurdf.format.urdf import read
-from eurdf.format.urdf.data import UrdfJoint
-from eurdf.format.urdf.elements import UrdfReader
-from eurdf.format.urdf.mimics import check_mimics
-from eurdf.reading.reporter import XmlReporter
-from eurdf.reading.source import read_source
-from eurdf.reading.xml_reader import read_xml
 from support.hostile import HOSTILE, INERTIAL, MEMORY, chain, joint, numbered, robot, star
 from support.places import DATA, ROOT, WILD
-from support.plain_urdf import Root, trees
+from support.wild import FACTS, needs_wild
 
-#: Processes that the damaged robots are divided among; each takes half a second to start.
+#: Processes that the damaged robots are divided among.
 BATCHES = 4
 
 #: Parts that the hostile files are divided into.
@@ -52,109 +44,41 @@ def load_changed(folder: Path, old: str, new: str, *, assembled: bool = True) ->
     return robot
 
 
-def run(*command: str, seconds: float = 300.0) -> tuple[list[dict[str, Any]], int | str, str]:
-    """The JSON lines that a Python process writes, how it ended, and what else it wrote; ended when it hangs."""
-    # One thread, so that processor time is time, also beside other tests.
-    threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-    own = str(Path(eurdf.__file__).parents[1]), str(ROOT)
-    paths = os.pathsep.join(filter(None, (*own, os.environ.get("PYTHONPATH"))))
-    with subprocess.Popen(
-        [sys.executable, *command],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        cwd=ROOT / "tests",
-        env={**os.environ, **threads, "PYTHONPATH": paths},
-    ) as process:
-        try:
-            output, log = process.communicate(timeout=seconds)
-            end: int | str = process.returncode
-        except subprocess.TimeoutExpired:
-            process.kill()
-            output, log = process.communicate()
-            end = "hangs"
-    lines = [json.loads(line) for line in output.decode().splitlines()]
-    return lines, end, log.decode(errors="replace")
-
-
-def troubles(lines: list[dict[str, Any]], end: int | str, log: str) -> list[str]:
-    """What went wrong in a process that tried damaged robots, a line each."""
-    found = [
-        f"case {line['case']} ({line['title']}): {line['outcome']}: {line['trouble']}"
-        for line in lines
-        if line.get("trouble")
-    ]
-    if end != 0:
-        begun = [line["begin"] for line in lines if "begin" in line]
-        found.append(f"case {begun[-1] if begun else '?'}: the process ended with {end}\n{log}")
+def outcomes(seed: int, robots: Sequence[Seed] | None, numbers: range, folder: Path) -> list[str]:
+    """What becomes of damaged robots, those of the project or others; fails with those that do harm."""
+    found, harm = [], []
+    with Watched() as worker:
+        for number in numbers:
+            if robots is None:
+                outcome = worker.try_number(seed, number, "robot")
+            else:
+                robot = robot_case(seed, number, robots)
+                described = {} if robot.description is None else {"robot.yaml": robot.description}
+                files = {"robot.urdf": robot.urdf, **described}
+                Case("robot", robot.title, files, list(files)[-1]).write(folder / str(number))
+                outcome = worker.try_folder(folder / str(number))
+            found.append(outcome.word)
+            if outcome.trouble:
+                harm.append(f"seed {seed}, case {number}: {outcome.word}: {outcome.trouble}")
+    assert harm == []
     return found
-
-
-def tried(seed: int, first: int, count: int, *folders: Path) -> list[str]:
-    """Outcomes of cases; fails with what reproduces the first that went wrong."""
-    lines, end, log = run("support/mutation.py", str(seed), str(first), str(count), *map(str, folders))
-    found = troubles(lines, end, log)
-    where = " ".join(["python tests/support/mutation.py", str(seed), "CASE", "1", *map(str, folders)])
-    summary = f"{len(found)} damaged robots do harm; to see one again: {where} [--show]"
-    assert not found, "\n".join([summary, *found[:10]])
-    outcomes = [line["outcome"] for line in lines if "case" in line]
-    assert len(outcomes) == count
-    return outcomes
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("batch", range(BATCHES))
-def test_damaged_robot_gives_diagnostics_or_robot(request: pytest.FixtureRequest, batch: int) -> None:
+def test_damaged_robot_gives_diagnostics_or_robot(request: pytest.FixtureRequest, batch: int, tmp_path: Path) -> None:
     count, seed = request.config.getoption("--mutations"), request.config.getoption("--mutation-seed")
-    first, beyond = count * batch // BATCHES, count * (batch + 1) // BATCHES
-    outcomes = tried(seed, first, beyond - first)
-    if len(outcomes) >= 200:  # both outcomes of the parser were tried
-        assert min(outcomes.count("refused"), outcomes.count("robot")) > len(outcomes) // 20
+    words = outcomes(seed, None, range(count * batch // BATCHES, count * (batch + 1) // BATCHES), tmp_path)
+    if len(words) >= 200:  # both outcomes of the parser were tried
+        assert min(words.count("refused"), words.count("robot")) > len(words) // 20
 
 
 @pytest.mark.slow
-def test_damaged_published_robot_gives_diagnostics_or_robot(request: pytest.FixtureRequest) -> None:
-    folders = sorted(path.parent for path in WILD.glob("*/robot.urdf"))
-    if not folders:
-        pytest.skip("no published robots: put their folder at ../shared/wild, beside the checkout")
-    tried(request.config.getoption("--mutation-seed"), 0, request.config.getoption("--mutations") // 20, *folders)
-
-
-def test_same_seed_gives_same_damage() -> None:
-    robots = seeds()
-    cases = [case_of(7, index, robots) for index in range(40)]
-    assert cases == [case_of(7, index, robots) for index in range(40)]
-    assert len({(case.description, case.urdf) for case in cases}) == 40
-    sound = {(robot.description, robot.urdf) for robot in robots}
-    assert sum((case.description, case.urdf) in sound for case in cases) < 4
-
-
-@pytest.mark.parametrize(
-    ("harm", "told"),
-    [
-        ("raise KeyError('x')", "raised: KeyError: 'x'"),
-        ("os.write(1, b'from C++')", "noise: from C++"),
-        ("os.write(2, b'from C++')", "noise: from C++"),
-        ("os.abort()", "the process ended with -6"),
-        ("[None for _ in iter(int, 1)]", "the process ended with -27"),
-        pytest.param("time.sleep(1000)", "the process ended with hangs", marks=pytest.mark.slow),
-    ],
-)
-def test_misbehaviour_on_damaged_robot_is_detected(harm: str, told: str) -> None:
-    script = f"""
-import os, time
-from support import mutation
-tries = iter(range(9))
-def attempt(path, analyse):
-    mutation.restart_clock(0.3)
-    if next(tries) == 3:
-        {harm}
-    return "robot"
-mutation.work(0, 10, 4, attempt=attempt)
-"""
-    found = troubles(*run("-c", script, seconds=5 if "sleep" in harm else 120))
-    assert len(found) == 1
-    assert found[0].startswith("case 12")
-    assert told in found[0]
+@needs_wild
+def test_damaged_published_robot_gives_diagnostics_or_robot(request: pytest.FixtureRequest, tmp_path: Path) -> None:
+    count, seed = request.config.getoption("--mutations") // 20, request.config.getoption("--mutation-seed")
+    robots = seeds([WILD / name for name in FACTS])
+    assert outcomes(seed, robots, range(count), tmp_path)
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="memory is measured and bounded as Linux does it")
@@ -162,9 +86,17 @@ mutation.work(0, 10, 4, attempt=attempt)
 @pytest.mark.parametrize("part", range(PARTS))
 def test_hostile_file_is_judged_within_bounds(part: int) -> None:
     names = list(HOSTILE)[part::PARTS]
-    lines, end, log = run("support/hostile.py", *names)
-    assert (end, [line["name"] for line in lines]) == (0, names), log
-    assert log == ""
+    # One thread, so that processor time is time, also beside other tests.
+    threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+    own = str(Path(eurdf.__file__).parents[1]), str(ROOT), os.environ.get("PYTHONPATH")
+    environment = {**os.environ, **threads, "PYTHONPATH": os.pathsep.join(filter(None, own))}
+    command = [sys.executable, "support/hostile.py", *names]
+    done = subprocess.run(
+        command, cwd=ROOT / "tests", env=environment, capture_output=True, text=True, timeout=300, check=False
+    )
+    lines = [json.loads(line) for line in done.stdout.splitlines()]
+    assert (done.returncode, [line["name"] for line in lines]) == (0, names), done.stderr
+    assert done.stderr == ""
     for line in lines:
         code = HOSTILE[line["name"]].code
         assert line["status"] == 0, line
@@ -172,18 +104,6 @@ def test_hostile_file_is_judged_within_bounds(part: int) -> None:
         assert bool(line["loaded"]) == (code == ""), line
         assert line["memory"] < MEMORY, line
         assert line["told"] < 200_000, line
-
-
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
-@given(text=trees(), root=st.sampled_from(["fixed", "floating"]), mimic=st.booleans())
-def test_valid_urdf_loads_as_in_pinocchio(text: str, root: Root, mimic: bool) -> None:
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "robot.urdf"
-        path.write_text(text, encoding="utf-8")
-        assert not [found for found in eurdf.check(path).errors if found.phase not in ("inertia", "closure")]
-        floating = (pin.JointModelFreeFlyer(),) if root == "floating" else ()
-        expected = pin.buildModelFromUrdf(str(path), *floating, mimic=mimic)
-        assert eurdf.load(path, root=root, mimic=mimic).model == expected
 
 
 # -- what bounds diagnostics ----------------------------------------------------------------------------------------
@@ -288,31 +208,6 @@ def test_mimic_cycle_is_reported_alone_and_shortened(tmp_path: Path) -> None:
 
 
 # -- The work and the memory that a file takes are bounded, however it is made
-
-
-class Counted(dict[str, UrdfJoint]):
-    """Joints by name, which counts how often all names are listed."""
-
-    listed = 0
-
-    def keys(self) -> KeysView[str]:  # type: ignore[override]
-        self.listed += 1
-        return dict(self).keys()
-
-
-def test_names_are_listed_for_listed_errors_only(tmp_path: Path) -> None:
-    mimics = [joint(f"j{i}", "l0", f"l{i + 1}", content=f'<mimic joint="x{i}"/>') for i in range(500)]
-    path = tmp_path / "robot.urdf"
-    path.write_text(robot(numbered(501), mimics), encoding="utf-8")
-    document = read_xml(read_source(path))
-    ignored = Diagnostics()
-    reader = UrdfReader(XmlReporter(document, ignored), XmlReporter(document, ignored))
-    urdf = read.read_urdf(document, ignored, mimic_diagnostics=Diagnostics())
-    assert urdf is not None
-    joints = Counted(urdf.joints)
-    check_mimics(reader, joints)
-    assert len(ignored) == 500
-    assert 0 < joints.listed <= LISTED
 
 
 def test_joints_of_too_large_robot_are_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,6 +1,5 @@
 """The cases: what they say, and how they are read. `.ci/run` sees how the reference answers them."""
 
-import ast
 import base64
 import json
 import posixpath
@@ -15,7 +14,7 @@ import pytest
 from pydantic import ValidationError
 
 from eurdf_conformance.comparison.text import same_text
-from eurdf_conformance.corpus import archive, expect, read, show
+from eurdf_conformance.corpus import archive, expect, show
 from eurdf_conformance.corpus.case import CASE, SCHEMA_FILE, InvalidCase, ValidCase, case_schema, schema_text
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.coverage import missing
@@ -57,35 +56,6 @@ def test_a_written_expectation_reads_back_the_same() -> None:
 def test_every_testable_clause_has_cases() -> None:
     elsewhere = {clause for rule in RULES for clause in rule.clauses} | set(OF_RUNNERS)
     assert list(missing([case.case for case in CASES], read_clauses(), elsewhere)) == []
-
-
-def imports_the_reference(text: str) -> bool:
-    nodes = list(ast.walk(ast.parse(text)))
-    names = [alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names]
-    names += [node.module for node in nodes if isinstance(node, ast.ImportFrom) if node.module and not node.level]
-    return "eurdf" in {name.split(".")[0] for name in names}
-
-
-def test_only_adapters_and_command_import_the_reference() -> None:
-    package = Path(read.__file__).parents[1]
-    texts = {path.relative_to(package).as_posix(): path.read_text(encoding="utf-8") for path in package.rglob("*.py")}
-    importing = sorted(path for path, text in texts.items() if imports_the_reference(text))
-    assert "adapters/reference.py" in importing
-    assert [path for path in importing if not re.fullmatch(r"(adapters/reference|command/)\w*\.py", path)] == []
-
-
-@pytest.mark.parametrize(
-    ("text", "so"),
-    [
-        ("import eurdf", True),
-        ("import os, eurdf.mechanism as m", True),
-        ("from eurdf import load", True),
-        ("def f():\n    from eurdf.mechanism import joint_type", True),
-        ("import eurdf_conformance.oracle\nfrom eurdf_conformance import level\nfrom . import eurdf", False),
-    ],
-)
-def test_an_import_of_the_reference_is_seen_in_every_form(text: str, so: bool) -> None:
-    assert imports_the_reference(text) is so
 
 
 # One case

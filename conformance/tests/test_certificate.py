@@ -17,12 +17,7 @@ from markdown_it import MarkdownIt
 from eurdf_conformance.certificate import certificate as certificate_module
 from eurdf_conformance.certificate import fingerprint
 from eurdf_conformance.certificate.badge import badge, badge_texts
-from eurdf_conformance.certificate.certificate import (
-    Certificate,
-    NoCertificate,
-    certificate_schema,
-    read_certificate,
-)
+from eurdf_conformance.certificate.certificate import Certificate, NoCertificate, certificate_schema, read_certificate
 from eurdf_conformance.certificate.comparison_page import comparison_markdown, comparison_page
 from eurdf_conformance.certificate.fingerprint import clauses_hash
 from eurdf_conformance.certificate.issue import issue
@@ -530,9 +525,3 @@ def test_certificate_of_another_corpus_is_detected(failed: Certificate) -> None:
 def test_the_schema_of_a_replay_is_current() -> None:
     file = Path(replay_module.__file__).with_name("replay.schema.json")
     assert json.loads(file.read_text(encoding="utf-8")) == replay_schema()
-
-
-def test_parser_without_answers_is_not_certified() -> None:
-    given = issue(run(claims=ALL, results=()))
-    assert not any(each.certified for each in given.levels)
-    assert {failure.verdict for failure in given.failures} == {Verdict.NOT_RUN}

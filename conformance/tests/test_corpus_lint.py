@@ -48,13 +48,7 @@ BROKEN = [
     ("clauses", VALID, "[EU-ACT-001]", "[EU-ACT-001, EU-ACT-001]", "a clause is listed twice"),
     ("clauses", VALID, "[EU-ACT-001]", "[EU-ACT-001, EU-ACT-999]", "there is no clause EU-ACT-999"),
     ("code", INVALID, "fix:", "either: true\nfix:", "`either` is for the errors"),
-    (
-        "code",
-        INVALID,
-        "unknown-actuator",
-        "unknown-frame",
-        "'unknown-frame' is the code of no MUST",
-    ),
+    ("code", INVALID, "unknown-actuator", "unknown-frame", "'unknown-frame' is the code of no MUST"),
     (
         "code",
         VALID,

@@ -19,7 +19,6 @@ from eurdf_conformance.judging.judge import Judgement, judge
 from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import VERSIONS, Level, Version
 from eurdf_conformance.properties.catalogue import property_of
-from eurdf_conformance.properties.culprit import culprit
 from eurdf_conformance.properties.document import configuration
 from eurdf_conformance.properties.example import frozen_examples
 from eurdf_conformance.properties.explore import Trial, explore, search, try_fresh, try_property
@@ -28,7 +27,6 @@ from eurdf_conformance.properties.mechanism import Mechanism
 from eurdf_conformance.properties.smaller import smaller
 from eurdf_conformance.properties.strategies.mechanisms import mechanisms
 from eurdf_conformance.properties.truth import truth
-from eurdf_conformance.properties.trying import try_example
 from eurdf_conformance.runner.in_process import InProcess
 from eurdf_conformance.runner.outcome import Crashed, Outcome
 from parsers.oracle import OracleParser
@@ -188,18 +186,6 @@ def kinds(mechanism: Mechanism) -> Iterator[str]:
     yield from ("actuator" for _ in mechanism.actuators)
     yield from ("frame" for _ in mechanism.frames)
     yield from ("joint" for _ in mechanism.joints)
-
-
-def test_the_misread_robot_is_blamed_not_the_last(tmp_path: Path) -> None:
-    harness = Harness(InProcess(ForgetsInlineAngles()), tmp_path)
-    prop = property_of("frames")
-    example = next(
-        each
-        for each in prop.frozen("2")
-        if try_example(prop, Level.KINEMATICS, "2", harness, each).verdict == Verdict.FAILED
-    )
-    try_example(prop, Level.KINEMATICS, "2", harness, example)
-    assert culprit(harness, Level.KINEMATICS) == harness.queries[0][0]
 
 
 def test_exploring_continues_after_a_frozen_example_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

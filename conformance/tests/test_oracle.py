@@ -11,7 +11,7 @@ import pytest
 
 from eurdf_conformance.oracle import NotRead, OracleRobot, read
 from eurdf_conformance.oracle.yaml_text import value_of
-from written import UNIT, chain, joint, link, robot, two
+from written import UNIT, chain, joint, robot, two
 
 ROBOTS = Path(__file__).parents[2] / "robots"
 
@@ -107,41 +107,6 @@ def test_the_residual_is_expressed_in_a_moving_frame_a() -> None:
     )
     np.testing.assert_allclose(found.residual({"j": [0.3]}), [2 * cos(0.3), -2 * sin(0.3), 0], atol=1e-12)
     np.testing.assert_allclose(found.jacobian({"j": [0.3]}).T, [[-2 * sin(0.3), -2 * cos(0.3), 0]], atol=1e-12)
-
-
-def test_the_mass_matrix_of_a_two_link_arm_is_right() -> None:
-    m1, m2, l1, c1, c2, I1, I2 = 2.0, 1.5, 0.7, 0.3, 0.4, 0.05, 0.02
-    found = robot(
-        [
-            link("base", 5.0),
-            link("upper", m1, (c1, 0, 0), (0, 0, I1)),
-            link("fore", m2, (c2, 0, 0), (0, 0, I2)),
-            joint("shoulder", "revolute", "base", "upper"),
-            joint("elbow", "revolute", "upper", "fore", xyz=(l1, 0, 0)),
-        ],
-        two("joints: {elbow: {armature: 0.25}}"),
-    )
-    bent = m2 * l1 * c2 * cos(0.8)
-    inner = I2 + m2 * c2**2
-    M = [[I1 + m1 * c1**2 + m2 * l1**2 + inner + 2 * bent, inner + bent], [inner + bent, inner + 0.25]]
-    q = {"shoulder": [0.4], "elbow": [0.8]}
-    np.testing.assert_allclose(found.mass_matrix(q), M, rtol=1e-12)
-    values = found.evaluate(q, [], ["mass", "center_of_mass"])
-    assert values.mass == m1 + m2 + 5.0
-    elbow = l1 * np.array([cos(0.4), sin(0.4), 0])
-    center = m1 * c1 / l1 * elbow + m2 * (elbow + c2 * np.array([cos(1.2), sin(1.2), 0]))
-    np.testing.assert_allclose(values.center_of_mass, center / (m1 + m2 + 5.0), atol=1e-12)  # type: ignore[arg-type]
-
-
-def test_a_floating_root_has_the_total_inertia_in_its_frame() -> None:
-    found = robot([link("body", 3.0, (0, 0, 0.5), (1, 2, 3))], two("root: floating"))
-    q = {"root_joint": [1000.0, 0, 0, 0, 0, sqrt(0.5), sqrt(0.5)]}
-    M = np.diag([3.0, 3, 3, 1 + 0.75, 2 + 0.75, 3])
-    M[0, 4] = M[4, 0] = 1.5
-    M[1, 3] = M[3, 1] = -1.5
-    np.testing.assert_allclose(found.mass_matrix(q), M, atol=1e-12)
-    assert found.evaluate(q, [], ["center_of_mass"]).center_of_mass == [1000.0, 0.0, 0.5]
-    assert found.velocities == [("root_joint", i) for i in range(6)]
 
 
 def test_ambiguous_frame_name_is_refused() -> None:

@@ -94,25 +94,6 @@ def test_merging_and_locking_preserve_mass_and_neutral_poses(mechanism: Mechanis
         np.testing.assert_allclose(a.rotation, b.rotation, atol=1e-12)
 
 
-def test_links_joined_by_a_fixed_joint_are_one_body() -> None:
-    apart = [
-        link("base"),
-        link("bar", 1.0, (0.5, 0, 0), (0.01, 0.1, 0.1)),
-        link("ball", 2.0, (0, 0, 0), (0.2, 0.2, 0.2)),
-        joint("hinge", "revolute", "base", "bar"),
-        joint("weld", "fixed", "bar", "ball", xyz=(1, 0, 0), rpy=(1, 2, 3)),
-    ]
-    # Centre at (2.5/3, 0, 0); moments by Steiner: 1 · (1/3)² + 2 · (1/6)² = 1/6.
-    together = [
-        link("base"),
-        link("bar", 3.0, (2.5 / 3, 0, 0), (0.21, 0.3 + 1 / 6, 0.3 + 1 / 6)),
-        joint("hinge", "revolute", "base", "bar"),
-    ]
-    yaml = two("root: floating\njoints: {hinge: spherical}")
-    q = {"hinge": [0.5, 0.5, -0.5, 0.5], "root_joint": [1, 2, 3, 0, 0.6, 0, 0.8]}
-    np.testing.assert_allclose(robot(apart, yaml).mass_matrix(q), robot(together, yaml).mass_matrix(q), atol=1e-12)
-
-
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_motion_subspace_is_the_derivative_of_the_transform(kind: str) -> None:
     random = np.random.default_rng(1)

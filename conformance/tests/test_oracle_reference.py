@@ -30,7 +30,6 @@ from eurdf_conformance.properties.strategies.mechanisms import mechanisms
 from eurdf_conformance.properties.truth import truth
 from eurdf_conformance.protocol.message import Accepted, Quantity, Values
 from eurdf_conformance.runner.in_process import InProcess
-from support.processes import watchdog
 from support.wild import FACTS, WILD
 
 QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
@@ -133,13 +132,6 @@ def test_reference_closes_what_the_least_search_closes(version: Version, tmp_pat
     assert closed > 5
 
 
-@pytest.mark.parametrize("name", [name for name in FACTS if FACTS[name]["closes"]])
-def test_the_oracle_finds_the_published_dimensions(name: str) -> None:
-    found = read(WILD / name / "robot.yaml", WILD / name / "robot.urdf")
-    facts = [FACTS[name][key] for key in ("nv", "nc", "rank", "mobility", "uncontrolled")]
-    assert list(vars(found.dimensions(found.closed({}))).values()) == facts
-
-
 @pytest.mark.parametrize(
     ("version", "closures", "count"),
     [
@@ -178,10 +170,3 @@ def test_mechanisms_agree_within_a_billionth_of_their_size(
 
     agree()
     assert len(tried) == count
-
-
-def test_a_large_robot_is_evaluated() -> None:
-    found = read(ROBOTS / "kangaroo_2legs" / "robot.v1.yaml", ROBOTS / "kangaroo_2legs" / "robot.urdf")
-    with watchdog():
-        found.evaluate({}, list(found.tree.links), QUANTITIES)
-    assert len(found.velocities) == 126

@@ -16,7 +16,7 @@ from eurdf_conformance.corpus.protocol_rule import START, STOP
 from eurdf_conformance.corpus.read import all_cases
 from eurdf_conformance.judging.judge import Judgement, judge_outcome
 from eurdf_conformance.judging.verdict import Verdict
-from eurdf_conformance.protocol.message import Errored, Evaluated, Rejected, Started, Stopped
+from eurdf_conformance.protocol.message import Errored, Evaluated, Rejected, Stopped
 from eurdf_conformance.runner.outcome import (
     Answered,
     CannotStart,
@@ -305,21 +305,6 @@ def test_a_file_that_cannot_be_run_gives_a_hint(
         assert words in str(session.start())
 
 
-def test_a_parser_gives_its_name_and_version() -> None:
-    with Session(fake("sound")) as session:
-        assert isinstance(session.started, Started)
-        assert session.started.parser.name == "fake"
-        assert session.started.claims == {"2": ["accept"]}
-
-
-@pytest.mark.slow
-def test_a_parser_is_restarted_after_every_crash() -> None:
-    with Session(fake("exits")) as session:
-        assert [load(session, "trigger").word for _ in range(30)] == ["crashed"] * 30
-        assert accepts(load(session, "next"), "next")
-        assert session.restarts == 30
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("names", [["trigger"], ["trigger_1", "sound_1", "trigger_2"]], ids=["all", "some"])
 def test_crashes_give_the_same_results_in_any_number_of_sessions(names: list[str]) -> None:
@@ -406,6 +391,7 @@ def test_child_processes_end_with_their_parser() -> None:
     assert isinstance(session.ended, Answered)
     assert isinstance(session.ended.answer, Stopped)
     assert has_ended(child)
+    assert session.left == []  # no daemons
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="only Linux has sub-reapers")
@@ -417,12 +403,6 @@ def test_daemons_end_with_their_parser_and_are_reported(way: str) -> None:
         assert accepts(load(session, "next"), "next")
     assert has_ended(daemon)
     assert session.left == ["sleep"]
-
-
-def test_a_parser_without_daemons_leaves_nothing() -> None:
-    with Session(fake("has_a_child")) as session:
-        load(session, "trigger")
-    assert session.left == []
 
 
 def test_a_parser_does_not_see_which_test_runs(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -163,10 +163,7 @@ RETURNS = "use accepted, rejected, unsupported or skipped of eurdf_conformance.p
     ("name", "why"),
     [
         ("nothing", f"load returned None; {RETURNS}"),
-        (
-            "no_canonical_description",
-            "in accepted(): /robot/version: Field required; /robot/root: Field required",
-        ),
+        ("no_canonical_description", "in accepted(): /robot/version: Field required; /robot/root: Field required"),
         ("no_plain_data", "in accepted(): /robot is not plain data: Object of type set is not JSON serializable"),
         ("not_a_number", "in accepted(): /robot/own/~1x/0/y: JSON has no NaN or infinity"),
         ("no_issue", "in rejected(): /issues/0: Input should be a valid dictionary or instance of Issue, not "),

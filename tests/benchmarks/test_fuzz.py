@@ -51,7 +51,6 @@ worker.main()
 """
 
 
-@pytest.mark.slow
 def test_misbehaviour_of_a_case_is_reported_and_the_next_is_tried() -> None:
     with Watched(wall=30.0, program=("-c", MISBEHAVING)) as worker:
         for number, (word, trouble) in enumerate(
@@ -145,6 +144,15 @@ def test_kept_finding_is_reproduced(tmp_path: Path, capsys: pytest.CaptureFixtur
     assert capsys.readouterr().out.startswith(f"{folder}: raised: KeyError")
 
 
+@pytest.mark.skipif("atheris" in sys.modules, reason="it is loaded")
+def test_guided_campaign_without_atheris_says_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    assert main(["--guided", "--findings", str(tmp_path)]) == 2
+    assert "pip install '.[fuzz]'" in capsys.readouterr().err
+
+
 @pytest.mark.slow
 def test_campaign_states_its_seed_and_what_it_came_to(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--seed", "1", "--count", "12", "--minutes", "5", "--findings", str(tmp_path)]) == 0
@@ -153,12 +161,3 @@ def test_campaign_states_its_seed_and_what_it_came_to(tmp_path: Path, capsys: py
     assert "seed 1, cases 0 to 11: 12 in" in out
     assert out.endswith("promises broken: 0 times, 0 causes\n")
     assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.skipif("atheris" in sys.modules, reason="it is loaded")
-def test_guided_campaign_without_atheris_says_what_to_install(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
-    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
-    assert main(["--guided", "--findings", str(tmp_path)]) == 2
-    assert "pip install '.[fuzz]'" in capsys.readouterr().err

@@ -13,19 +13,9 @@ from benchmarks.__main__ import MEASUREMENTS
 from benchmarks.interleaved import least_times
 from benchmarks.load import ROOT
 from benchmarks.reading import read_unchecked
-from benchmarks.robots import chain
 from benchmarks.table import Table, duration, ratio
 
 TABLE = Table(("robot", "time", "ratio"), [("four_bar", "1.0 ms", "2.00"), ("a", "30.0 µs", "0.50")], "Both")
-
-
-def test_table_is_aligned_in_terminal() -> None:
-    assert TABLE.text().splitlines() == [
-        "Both",
-        "robot        time  ratio",
-        "four_bar   1.0 ms   2.00",
-        "a         30.0 µs   0.50",
-    ]
 
 
 def test_table_is_markdown_on_page() -> None:
@@ -37,11 +27,6 @@ def test_table_is_markdown_on_page() -> None:
         "| four_bar | 1.0 ms | 2.00 |",
         "| a | 30.0 µs | 0.50 |",
     ]
-
-
-def test_durations_have_fitting_units() -> None:
-    assert [duration(seconds) for seconds in (12.0, 0.0125, 12.5e-6)] == ["12.00 s", "12.50 ms", "12.5 µs"]
-    assert ratio(3.0, 2.0) == "1.50"
 
 
 def test_page_states_versions_and_sections(tmp_path: Path) -> None:
@@ -79,7 +64,15 @@ def test_functions_take_turns() -> None:
     assert order == [0, 1] * 3
 
 
-def test_chain_starts_closed_enough_to_assemble() -> None:
-    robot = chain(3)
-    assert len(robot.constraints) == 3
-    assert robot.configurations["assembled"].tolist() == [0.9, -0.7, 1.9] * 3
+def test_table_is_aligned_in_terminal() -> None:
+    assert TABLE.text().splitlines() == [
+        "Both",
+        "robot        time  ratio",
+        "four_bar   1.0 ms   2.00",
+        "a         30.0 µs   0.50",
+    ]
+
+
+def test_durations_have_fitting_units() -> None:
+    assert [duration(seconds) for seconds in (12.0, 0.0125, 12.5e-6)] == ["12.00 s", "12.50 ms", "12.5 µs"]
+    assert ratio(3.0, 2.0) == "1.50"

@@ -17,7 +17,6 @@ import eurdf
 from eurdf.commands.main import main
 from eurdf.commands.output import output_schemas
 from support.places import DATA, ROBOTS
-from support.processes import on_a_terminal
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -73,14 +72,6 @@ def test_coordinates_are_shown_with_units(folder: Path, run: Run) -> None:
     assert (folder / "robot.yaml").read_text() == DESCRIPTION + READY
 
 
-def test_terminal_shows_the_same_table(folder: Path) -> None:
-    bench(folder, DESCRIPTION + READY)
-    code, shown = on_a_terminal(["-m", "eurdf", "assemble", "robot.yaml"], columns=120)
-    assert code == 0
-    assert "hand_ball" in shown
-    assert "quaternion x y z w" in shown
-
-
 @pytest.mark.parametrize("name", ["delta", "digit_leg", "kangaroo_2legs", "slider_crank", "tesla_optimus_ankle"])
 def test_json_matches_schema_and_has_all_coordinates(name: str, run: Run) -> None:
     code, out, err = run("assemble", name, "--json")
@@ -108,6 +99,8 @@ def test_written_configuration_changes_nothing_else(folder: Path, run: Run) -> N
         "'robot.yaml' already has this configuration as 'assembled': nothing to do\n",
     )
     assert file.read_text(encoding="utf-8") == text
+    found = json.loads(run("assemble", "robot.yaml", "--write", "--json")[1])
+    assert (found["file"], found["written"]) == ("robot.yaml", False)
 
 
 def test_byte_order_mark_and_line_breaks_are_kept(folder: Path, run: Run) -> None:
@@ -135,18 +128,6 @@ def test_different_assembled_is_replaced_only_with_force(folder: Path, run: Run)
     assert after.startswith(before.removesuffix("\n"))  # the motor is held at 0.1
     assert [line.split(":")[0].strip() for line in after[len(before) :].splitlines()] == ["elbow", "pivot"]
     assert largest_row(file) <= 1e-12
-
-
-def test_stated_neutral_joint_stays_stated(folder: Path, run: Run) -> None:
-    file = bench(folder, DESCRIPTION + READY + "  assembled: {stage: 0.1, pivot: 0.3}\n")
-    assert run("assemble", "robot.yaml", "--write", "--from", "neutral", "--hold", "motor", "--force")[0] == 0
-    assert re.search(r"^  assembled: \{stage: 0, pivot: 0\}$", file.read_text(), re.MULTILINE)
-
-
-def test_json_of_write_names_the_file(folder: Path, run: Run) -> None:
-    bench(folder)
-    written = [json.loads(run("assemble", "robot.yaml", "--write", "--json")[1]) for _ in range(2)]
-    assert [(each["file"], each["written"]) for each in written] == [("robot.yaml", True), ("robot.yaml", False)]
 
 
 def test_floating_root_is_stated_only_if_moved(folder: Path, run: Run) -> None:
@@ -310,10 +291,7 @@ def test_concurrently_changed_file_is_not_overwritten(folder: Path, run: Run, mo
 
 @pytest.mark.parametrize(
     ("stated", "message"),
-    [
-        ("", "residual 0; `eurdf assemble` shows a configuration"),
-        ("configurations: {assembled: {}}\n", "residual 0"),
-    ],
+    [("", "residual 0; `eurdf assemble` shows a configuration"), ("configurations: {assembled: {}}\n", "residual 0")],
 )
 def test_info_suggests_assemble_without_stated_configuration(
     folder: Path, capsys: pytest.CaptureFixture[str], stated: str, message: str
@@ -322,3 +300,9 @@ def test_info_suggests_assemble_without_stated_configuration(
     assert main(["info", "robot.yaml"]) == 0
     (line,) = re.findall(r"^loops +close  (.*)$", capsys.readouterr().out, re.MULTILINE)
     assert re.sub(r"\d\.\de[-+]\d\d", "0", line) == message
+
+
+def test_stated_neutral_joint_stays_stated(folder: Path, run: Run) -> None:
+    file = bench(folder, DESCRIPTION + READY + "  assembled: {stage: 0.1, pivot: 0.3}\n")
+    assert run("assemble", "robot.yaml", "--write", "--from", "neutral", "--hold", "motor", "--force")[0] == 0
+    assert re.search(r"^  assembled: \{stage: 0, pivot: 0\}$", file.read_text(), re.MULTILINE)

@@ -7,22 +7,19 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import eurdf
 from eurdf.convert.inertia import about_centre
-from eurdf.convert.verification.read_model import without_armature
 from eurdf.mechanism.body import Body, Inertia
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import Robot, build_robot
-from support.exported import InMuJoCo, witness
+from support.exported import InMuJoCo
 from support.plain_urdf import inertial, link_element
 from support.plain_urdf import robot as robot_element
-from support.wild import FACTS, WILD, needs_wild
 
 #: Principal moments: of a body, a ball, a rod, a plate, a point, almost a plate; and of what no body is.
 SHAPES = (
@@ -112,17 +109,3 @@ def test_reader_has_our_inertia_but_for_losses(
 def test_negative_mass_is_refused(to: str) -> None:
     with pytest.raises(eurdf.errors.CannotExport, match=r"link .body. has the mass -1\.5 kg"):
         eurdf.export(robot_element(link_element("body", inertial(-1.5))), to, root="floating")
-
-
-@pytest.mark.slow
-@needs_wild
-@pytest.mark.parametrize("to", ["mjcf", "drake"])
-@pytest.mark.parametrize("name", FACTS)
-def test_mass_matrix_of_a_published_robot_is_kept_but_for_losses(name: str, to: str) -> None:
-    robot = without_armature(eurdf.load(WILD / name, geometry=False))
-    export = eurdf.export(robot, to)
-    q = pin.integrate(robot.model, pin.neutral(robot.model), np.full(robot.model.nv, 0.3))
-    there = witness(robot, export)
-    T, expected = there.at(q), eurdf.mass_matrix(robot, q)
-    changed = np.abs(T.T @ there.inertia_matrix @ T - expected).max() > 1e-9 * np.abs(expected).max()
-    assert not changed or {"export-inertia", "export-massless-link"} & {loss.code for loss in export.losses}

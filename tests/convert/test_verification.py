@@ -88,26 +88,6 @@ def test_soft_relations_hold_in_the_fall(to: str, mimic: str, massless: str, des
     assert_stays_closed(eurdf.export(text, to, urdf=hanging(mimic, massless)))
 
 
-@pytest.mark.parametrize("to", ["mjcf", "drake"])
-def test_hinges_hold_in_the_fall(to: str) -> None:
-    installed(to)
-    assert_stays_closed(eurdf.export("four_bar", to, closures="hinge"))
-
-
-@pytest.mark.parametrize("to", EXPORTS)
-def test_links_without_mass_are_no_error(to: str) -> None:
-    installed(to)
-    limit = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'
-    links = [link_element("base"), link_element("arm", inertial()), *map(link_element, ("tip", "finger", "nail"))]
-    joints = [
-        joint_element("turn", "revolute", "base", "arm", limit),
-        joint_element("flange", "fixed", "arm", "tip"),
-        joint_element("knuckle", "revolute", "tip", "finger", limit),
-        joint_element("root", "fixed", "finger", "nail"),
-    ]
-    assert eurdf.export(robot_element(*links, *joints), to).verify().findings == ()
-
-
 @pytest.mark.parametrize("to", ["mjcf", "drake", "sdf", "usd"])
 def test_listed_loss_is_no_error_and_hides_none(to: str) -> None:
     installed(to)
@@ -247,3 +227,17 @@ def test_progress_is_shown_on_a_terminal(tmp_path: Path) -> None:
     code, seen = on_a_terminal(["-m", "eurdf", *arguments])
     assert code == 0
     assert "simulating" in seen
+
+
+@pytest.mark.parametrize("to", EXPORTS)
+def test_links_without_mass_are_no_error(to: str) -> None:
+    installed(to)
+    limit = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'
+    links = [link_element("base"), link_element("arm", inertial()), *map(link_element, ("tip", "finger", "nail"))]
+    joints = [
+        joint_element("turn", "revolute", "base", "arm", limit),
+        joint_element("flange", "fixed", "arm", "tip"),
+        joint_element("knuckle", "revolute", "tip", "finger", limit),
+        joint_element("root", "fixed", "finger", "nail"),
+    ]
+    assert eurdf.export(robot_element(*links, *joints), to).verify().findings == ()

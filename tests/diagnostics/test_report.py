@@ -3,6 +3,7 @@
 import json
 import unicodedata
 from pathlib import Path
+from typing import Any
 
 import jsonschema
 import pytest
@@ -10,12 +11,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import eurdf
-from eurdf.commands.output import output_schemas, schema_text
-from eurdf.diagnostics import REGISTRY, Diagnostic, Phase, Place, Rule, Severity
+from eurdf.commands.output import output_schemas
+from eurdf.diagnostics import REGISTRY, Diagnostic, Phase, Place, Severity
 from eurdf.diagnostics.lines import Lines
 from eurdf.diagnostics.report import Report, report_schema, reports_to_json
 from eurdf.diagnostics.text import cells, report_lines, summary_line, total_line
 from eurdf.diagnostics.wording import visible
+from eurdf.format.schema import schema_text
 from support.places import ROOT
 
 SCHEMAS = ROOT / "schema"
@@ -34,14 +36,6 @@ UNKNOWN = Diagnostic(
 NEAR_MISS = Diagnostic("near-miss-key", "'types' is no key of the format", Place("robot.yaml", 1, 1, 14, "/types"))
 
 
-@pytest.fixture
-def robot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    file = tmp_path / "robot.yaml"
-    file.write_text(CLOSURE, encoding="utf-8")
-    return file
-
-
 def text_of(report: Report, width: int = 96) -> list[str]:
     return ["".join(piece for piece, _ in line) for line in report_lines(report, width)]
 
@@ -52,7 +46,7 @@ def at(text: str, column: int | None, end_column: int | None = None, width: int 
     return text_of(Report("robot.yaml", (Diagnostic("wrong-type", "it is wrong", place),)), width)[1:]
 
 
-def test_diagnostic_shows_line_with_underlined_place(robot: Path) -> None:
+def test_diagnostic_shows_line_with_underlined_place() -> None:
     assert text_of(Report(".", (UNKNOWN,))) == [
         "robot.yaml:3:46: error: closure 'knee' names the frame 'rod_tpi', which does not exist"
         " [unknown-frame EU-FRM-001]",
@@ -62,7 +56,7 @@ def test_diagnostic_shows_line_with_underlined_place(robot: Path) -> None:
     ]
 
 
-def test_diagnostics_are_sorted_by_file_and_position(robot: Path) -> None:
+def test_diagnostics_are_sorted_by_file_and_position() -> None:
     urdf = Diagnostic("urdf-no-link", "the robot has no link", Place("robot.urdf", 1, 1))
     heads = [
         line for line in text_of(Report(".", (UNKNOWN, urdf, NEAR_MISS))) if ": error: " in line or "warning" in line
@@ -70,52 +64,24 @@ def test_diagnostics_are_sorted_by_file_and_position(robot: Path) -> None:
     assert [head.split(": ")[0] for head in heads] == ["robot.yaml:1:1", "robot.yaml:3:46", "robot.urdf:1:1"]
 
 
-def test_diagnostic_of_whole_file_has_no_line(robot: Path) -> None:
-    found = Diagnostic("urdf-not-found", "'robot.urdf' does not exist", Place("robot.urdf"))
-    assert text_of(Report(".", (found,))) == [
-        "robot.urdf: error: 'robot.urdf' does not exist [urdf-not-found EU-FIL-004]"
-    ]
+@pytest.mark.parametrize(
+    ("place", "shown"),
+    [
+        (("a: 1\nb: 2\n", None, None, 96, 2), ["    2 | b: 2"]),
+        (("a: 1\n", 1, None, 96, 7), []),
+        (("\tkey: value", 7, 12), ["    1 |     key: value", "      |          ^^^^^"]),
+        (("名前: [rod]", 6, 9), ["    1 | 名前: [rod]", "      |        ^^^"]),
+        (("名前: 1", 1, 3), ["    1 | 名前: 1", "      | ^^^^"]),
+        (("key: [a, b", 11), ["    1 | key: [a, b", "      |           ^"]),
+    ],
+)
+def test_place_is_marked_below_its_line(place: tuple[Any, ...], shown: list[str]) -> None:
+    assert at(*place) == shown
 
 
-@pytest.mark.usefixtures("robot")
-def test_place_without_column_shows_line_only() -> None:
-    assert at("a: 1\nb: 2\n", None, line=2) == ["    2 | b: 2"]
-
-
-@pytest.mark.usefixtures("robot")
-def test_missing_line_is_not_shown() -> None:
-    assert at("a: 1\n", 1, line=7) == []
-
-
-@pytest.mark.usefixtures("robot")
-def test_caret_is_right_after_a_tab() -> None:
-    line, caret = at("\tkey: value", 7, 12)
-    assert line[caret.index("^") :].startswith("value")
-    assert "\t" not in line
-
-
-@pytest.mark.usefixtures("robot")
-def test_caret_is_right_after_wide_character() -> None:
-    line, caret = at("名前: [rod]", 6, 9)
-    assert cells(line[: line.index("rod")]) == caret.index("^")
-    assert caret.count("^") == 3
-
-
-@pytest.mark.usefixtures("robot")
-def test_wide_characters_are_fully_underlined() -> None:
-    assert at("名前: 1", 1, 3)[1].count("^") == 4
-
-
-@pytest.mark.usefixtures("robot")
-def test_caret_at_line_end_follows_the_text() -> None:
-    line, caret = at("key: [a, b", 11)
-    assert caret.index("^") == len(line)
-
-
-@pytest.mark.usefixtures("robot")
-@pytest.mark.parametrize("break_", ["\n", "\r\n", "\r"])
-def test_all_line_breaks_are_counted(break_: str) -> None:
-    assert at(f"a: 1{break_}b: 2{break_}c: 3", 4, 5, line=2)[0] == "    2 | b: 2"
+def test_advice_without_text_is_one_line_without_clause() -> None:
+    found = Diagnostic("x-no-actuator", "it is idle", Place("r.yaml", 3))
+    assert text_of(Report("r", (found,))) == ["r.yaml:3: warning: it is idle [x-no-actuator]"]
 
 
 def test_byte_order_mark_does_not_move_caret(tmp_path: Path) -> None:
@@ -124,25 +90,11 @@ def test_byte_order_mark_does_not_move_caret(tmp_path: Path) -> None:
     assert lines[1:3] == ["    1 | key: 1", "      | ^"]
 
 
-@pytest.mark.usefixtures("robot")
 def test_long_line_is_clipped_around_place() -> None:
     line, caret = at("x" * 3000 + "HERE" + "y" * 3000, 3001, 3005, width=60)
     assert len(line) <= 60 + 8
     assert line[caret.index("^") : caret.rindex("^") + 1] == "HERE"
     assert line[8:11] == line[-3:] == "..."
-
-
-@pytest.mark.usefixtures("robot")
-def test_long_line_is_clipped_at_its_end() -> None:
-    line, caret = at("HERE" + "y" * 3000, 1, 5, width=60)
-    assert line.startswith("    1 | HEREy")
-    assert caret.endswith(" ^^^^")
-
-
-@pytest.mark.usefixtures("robot")
-def test_line_of_a_million_characters_is_fast() -> None:
-    line, _ = at("[" + "a, " * 400_000 + "]", 600_001)
-    assert len(line) < 120
 
 
 @given(
@@ -181,16 +133,6 @@ def test_message_cannot_control_terminal(text: str, shown: str) -> None:
     head, hint = text_of(Report(".", (found,)))
     assert head == f"robot.urdf: error: {shown} [wrong-type EU-SCH-002]"
     assert hint == f"      = hint: {shown}"
-
-
-def test_huge_name_in_message_is_shortened() -> None:
-    found = Diagnostic("wrong-type", "x" * 10**6, Place("robot.yaml"))
-    assert len(text_of(Report(".", (found,)))[0]) < 1100
-
-
-def test_place_without_text_has_no_line(robot: Path) -> None:
-    found = Diagnostic("wrong-type", "it is wrong", Place(str(robot), 1, 1))
-    assert len(text_of(Report("r", (found,)))) == 1
 
 
 def summary(report: Report, strict: bool = False) -> str:
@@ -255,29 +197,6 @@ def test_every_rule_matches_report_schema() -> None:
     jsonschema.Draft202012Validator(report_schema()).validate(document)
 
 
-@pytest.fixture
-def own_code(monkeypatch: pytest.MonkeyPatch) -> str:
-    """A code of this parser alone."""
-    monkeypatch.setitem(REGISTRY, "x-worn", Rule("x-worn", Phase.ADVICE, Severity.WARNING, None, "A joint is worn."))
-    return "x-worn"
-
-
-def test_advice_has_no_clause(own_code: str) -> None:
-    report = Report("r", (Diagnostic(own_code, "joint 'knee' is worn", Place("r.yaml", 3)),))
-    document = reports_to_json([report])
-    jsonschema.Draft202012Validator(report_schema()).validate(document)
-    found = document["robots"][0]["diagnostics"][0]
-    assert (found["clause"], found["phase"], found["severity"]) == (None, "advice", "warning")
-    assert text_of(report) == ["r.yaml:3: warning: joint 'knee' is worn [x-worn]"]
-
-
-def test_only_advice_has_no_clause_and_is_warning() -> None:
-    own = {code for code in REGISTRY if code.startswith("x-")}
-    assert own == {code for code, rule in REGISTRY.items() if rule.clause is None}
-    assert own == {code for code, rule in REGISTRY.items() if rule.phase is Phase.ADVICE}
-    assert {REGISTRY[code].severity for code in own} <= {Severity.WARNING}
-
-
 @given(st.text(), st.text(), st.one_of(st.none(), st.text()), st.text())
 def test_any_text_gives_valid_json(path: str, message: str, hint: str | None, pointer: str) -> None:
     found = Diagnostic("wrong-type", message, Place(path, 1, 1, 2, pointer), hint)
@@ -287,14 +206,7 @@ def test_any_text_gives_valid_json(path: str, message: str, hint: str | None, po
 
 @pytest.mark.parametrize(
     "damage",
-    [
-        {"severity": "note"},
-        {"phase": "elsewhere"},
-        {"clause": "FRM-1"},
-        {"line": 0},
-        {"message": None},
-        {"more": 1},
-    ],
+    [{"severity": "note"}, {"phase": "elsewhere"}, {"clause": "FRM-1"}, {"line": 0}, {"message": None}, {"more": 1}],
 )
 def test_report_schema_rejects_other_objects(damage: dict[str, object]) -> None:
     document = reports_to_json([Report("r", (UNKNOWN,))])
@@ -303,9 +215,21 @@ def test_report_schema_rejects_other_objects(damage: dict[str, object]) -> None:
         jsonschema.Draft202012Validator(report_schema()).validate(document)
 
 
+def test_only_advice_has_no_clause_and_is_warning() -> None:
+    own = {code for code in REGISTRY if code.startswith("x-")}
+    assert own == {code for code, rule in REGISTRY.items() if rule.clause is None}
+    assert own == {code for code, rule in REGISTRY.items() if rule.phase is Phase.ADVICE}
+    assert {REGISTRY[code].severity for code in own} <= {Severity.WARNING}
+
+
 @pytest.mark.parametrize("name", sorted(output_schemas()))
 def test_published_output_schemas_are_current(name: str) -> None:
     schema = output_schemas()[name]
     jsonschema.Draft202012Validator.check_schema(schema)
     written = (SCHEMAS / name).read_text(encoding="utf-8")
     assert written == schema_text(schema), "run python -m eurdf.commands.output schema"
+
+
+def test_line_of_a_million_characters_is_fast() -> None:
+    line, _ = at("[" + "a, " * 400_000 + "]", 600_001)
+    assert len(line) < 120

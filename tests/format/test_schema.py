@@ -90,29 +90,8 @@ WHOLE["2.1"] = {
 }
 
 #: What is put in place of a value.
-JUNK = [
-    1e16,
-    1e-16,
-    None,
-    True,
-    False,
-    0,
-    -1,
-    1.5,
-    "",
-    "xy",
-    "3d",
-    "hinge",
-    "x-own",
-    "spherical",
-    [],
-    {},
-    [1, 2, 3],
-    [-1.5],
-    ["a", "b"],
-    [0] * 8,
-]
-JUNK += [{"link": "a"}]
+JUNK = [1e16, 1e-16, None, True, False, 0, -1, 1.5, "", "xy", "3d", "hinge", "x-own", "spherical", [], {}]
+JUNK += [[1, 2, 3], [-1.5], ["a", "b"], [0] * 8, {"link": "a"}]
 
 #: What a key is renamed to, or what a key is added.
 KEYS = ["", "x-own", "type", "joint", "axes", "limits", "joint_type", "stiffness", "rest", "mimic", "name"]
@@ -399,6 +378,8 @@ def test_robot_schema_offers_names_for_completion() -> None:
     assert schema["$defs"]["MovingJointName"]["anyOf"][0] == {"enum": ["hip", "knee"]}
     assert list(schema["properties"]["joints"]["properties"]) == ["hip", "knee", "weld"]
     assert list(schema["properties"]["configurations"]["additionalProperties"]["properties"]) == ["hip", "knee"]
+    coupling = json_schema("2.1", NAMES)["$defs"]["Coupling"]
+    assert list(coupling["properties"]["joints"]["properties"]) == ["hip", "knee"]
 
 
 def test_robot_schema_leaves_general_schema_unchanged() -> None:

@@ -12,7 +12,7 @@ import pytest
 
 import eurdf
 from eurdf.commands.main import main
-from eurdf.mechanism.constraint import RIGID, Compliance, Coupling
+from eurdf.mechanism.constraint import Compliance, Coupling
 from support.described import body, revolute
 from support.places import ROBOTS
 from support.plain_urdf import joint_element
@@ -106,34 +106,12 @@ def test_check_reports_a_coupling_without_actuator(tmp_path: Path) -> None:
     assert "1 coupling and no actuator" in found[0].message
 
 
-def test_info_shows_couplings_as_equations(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = str(coupled_robot(tmp_path))
-    assert main(["info", path, "--json"]) == 0
-    info = json.loads(capsys.readouterr().out)
-    (coupling,) = info["coupling_list"]
-    assert (info["couplings"], info["nc"], coupling["joints"], coupling["offset"]) == (
-        1,
-        1,
-        {"j1": 2.0, "j0": -1.0},
-        0.4,
-    )
-    assert main(["info", path]) == 0
-    assert "2 j1 - j0 = 0.4" in capsys.readouterr().out
-
-
 def test_assemble_writes_a_configuration_that_satisfies_the_coupling(tmp_path: Path) -> None:
     folder = coupled_robot(tmp_path)
     assert main(["assemble", str(folder), "--write"]) == 0
     assert eurdf.check(folder).diagnostics == ()
     q = eurdf.load(folder).configurations["assembled"]
     assert abs(2.0 * q[1] - q[0] - 0.4) < 1e-12
-
-
-def test_schema_of_a_robot_completes_coupled_joints(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    folder = coupled_robot(tmp_path)
-    assert main(["schema", "--version", "2.1", "--for", str(folder / "robot.urdf")]) == 0
-    schema = json.loads(capsys.readouterr().out)
-    assert list(schema["$defs"]["Coupling"]["properties"]["joints"]["properties"]) == ["j0", "j1"]
 
 
 CRANK = [body("base"), body("crank"), revolute("j0", "base", "crank", (0, 0.1, 1))]
@@ -158,34 +136,11 @@ def tied_robot(folder: Path, yaml: str = DISTANCE, *more: str) -> Path:
     return folder
 
 
-@pytest.fixture
-def robot(tmp_path: Path) -> eurdf.Robot:
-    return eurdf.load(tied_robot(tmp_path))
-
-
-def tied(robot: eurdf.Robot) -> Any:
-    return eurdf.forward_kinematics(robot, {"j0": 0.4})
-
-
-def test_locked_distance_is_left_out(robot: eurdf.Robot) -> None:
-    locked = eurdf.lock(robot, ["j0", "j2"], tied(robot))
-    assert (locked.dropped_closures, locked.model.nv, len(locked.constraints)) == (("rod",), 1, 0)
-
-
 def test_check_reports_a_distance_that_is_out_of_reach(tmp_path: Path) -> None:
     report = eurdf.check(tied_robot(tmp_path, DISTANCE.replace("length: 1}", "length: 10}")))
     found = next(each for each in report.diagnostics if each.code == "closure-cannot-close")
     assert "'rod' by" in found.message
     assert found.line == 3
-
-
-def test_info_shows_the_distance(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = str(tied_robot(tmp_path))
-    assert main(["info", path, "--json"]) == 0
-    (closure,) = json.loads(capsys.readouterr().out)["closure_list"]
-    assert (closure["type"], closure["rows"], closure["bodies"]) == ("distance", 1, ["crank", "rocker"])
-    assert main(["info", path]) == 0
-    assert "1 of distance" in capsys.readouterr().out
 
 
 def hinged(folder: Path, name: str, closure: str) -> Path:
@@ -215,17 +170,6 @@ def test_gains_of_both_constraint_models_of_hinge_must_agree(tmp_path: Path) -> 
     np.testing.assert_allclose(found, expected, atol=1e-12)
 
 
-def test_info_shows_version_and_hinge(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = str(hinged(tmp_path, "four_bar", "3d"))
-    assert main(["info", path, "--json"]) == 0
-    info = json.loads(capsys.readouterr().out)
-    assert (info["version"], info["nc"], info["closure_list"][0]["type"]) == ("2.1", 5, "hinge")
-    assert main(["info", path]) == 0
-    shown = capsys.readouterr().out
-    assert "Extended URDF 2.1" in shown
-    assert "1 of hinge" in shown
-
-
 FOUR_BAR = ROBOTS / "four_bar"
 
 
@@ -238,25 +182,34 @@ def compliant(folder: Path, compliance: str) -> Path:
     return folder
 
 
-def test_compliance_changes_no_kinematics(tmp_path: Path) -> None:
-    rigid = eurdf.load(FOUR_BAR, geometry=False)
-    robot = eurdf.load(compliant(tmp_path, "linear: 1.0e-6"), geometry=False)
-    assert [closure.compliance for closure in robot.mechanism.closures] == [Compliance(1e-6, 0.0)]
-    assert [closure.compliance for closure in rigid.mechanism.closures] == [RIGID]
-    q = rigid.tree.integrate(eurdf.assemble(rigid).q, np.array([0.1, -0.2, 0.3]))
-    for one, other in zip(eurdf.residual_and_jacobian(robot, q), eurdf.residual_and_jacobian(rigid, q), strict=True):
-        np.testing.assert_array_equal(one, other)
-
-
 def test_compliance_is_kept_where_joints_are_locked(tmp_path: Path) -> None:
     robot = eurdf.load(compliant(tmp_path, "linear: 1.0e-6"), geometry=False)
     locked = eurdf.lock(robot, ["motor_crank"])
     assert [closure.compliance for closure in locked.mechanism.closures] == [Compliance(1e-6, 0.0)]
 
 
-def test_info_shows_compliance(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = str(compliant(tmp_path, "linear: 2.5e-6, angular: 0"))
+@pytest.mark.parametrize(
+    ("make", "known", "shown"),
+    [
+        (coupled_robot, {"couplings": 1, "nc": 1}, "2 j1 - j0 = 0.4"),
+        (tied_robot, {"nc": 1}, "1 of distance"),
+        (lambda folder: hinged(folder, "four_bar", "3d"), {"version": "2.1", "nc": 5}, "1 of hinge"),
+        (lambda folder: compliant(folder, "linear: 2.5e-6, angular: 0"), {"nc": 3}, "compliance 2.5e-06 m/N"),
+    ],
+    ids=["coupling", "distance", "hinge", "compliance"],
+)
+def test_info_shows_what_version_2_1_adds(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], make: Any, known: dict[str, Any], shown: str
+) -> None:
+    path = str(make(tmp_path))
     assert main(["info", path, "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["closure_list"][0]["compliance"] == [2.5e-6, 0.0]
+    info = json.loads(capsys.readouterr().out)
+    assert {name: info[name] for name in known} == known
+    for each in info["coupling_list"]:
+        assert (each["joints"], each["offset"]) == ({"j1": 2.0, "j0": -1.0}, 0.4)
+    for each, closure in zip(info["closure_list"], eurdf.load(path, geometry=False).mechanism.closures, strict=True):
+        assert (each["type"], each["rows"]) == (closure.type, closure.rows)
+        assert each["bodies"] == [closure.a.body, closure.b.body]
+        assert each["compliance"] == [closure.compliance.linear, closure.compliance.angular]
     assert main(["info", path]) == 0
-    assert "compliance 2.5e-06 m/N" in capsys.readouterr().out
+    assert shown in capsys.readouterr().out

@@ -79,7 +79,7 @@ def test_inertia_errors_do_not_prevent_loading() -> None:
 POINT, NONE = (0, 0, 0), ""
 ROD_X = (0, 1, 1)  # a thin rod along x
 
-CYLINDER, SCREW = "cylindrical", "{type: helical, pitch: 1}"
+CYLINDER, SCREW, CARDAN = "cylindrical", "{type: helical, pitch: 1}", "{type: universal, axes: xy}"
 
 #: title: what the last joint is (a kind of the URDF, an entry), what it moves, whether that resists all its motions
 LEAVES: dict[str, tuple[str, str, str, bool]] = {
@@ -97,18 +97,8 @@ LEAVES: dict[str, tuple[str, str, str, bool]] = {
     "a ball that moves a rod through its centre": ("revolute", "spherical", _inertial(1, ROD_X, (1, 0, 0)), False),
     "a ball that moves a rod beside its centre": ("revolute", "spherical", _inertial(1, ROD_X, (0, 1, 0)), True),
     "a ball that moves a body": ("revolute", "spherical", _inertial(1, (1, 1, 1)), True),
-    "a cardan that moves a point on its first axis": (
-        "revolute",
-        "{type: universal, axes: xy}",
-        _inertial(1, POINT, (1, 0, 0)),
-        True,
-    ),
-    "a cardan that moves a point on its second axis": (
-        "revolute",
-        "{type: universal, axes: xy}",
-        _inertial(1, POINT, (0, 1, 0)),
-        False,
-    ),
+    "a cardan that moves a point on its first axis": ("revolute", CARDAN, _inertial(1, POINT, (1, 0, 0)), True),
+    "a cardan that moves a point on its second axis": ("revolute", CARDAN, _inertial(1, POINT, (0, 1, 0)), False),
     "a cylindrical joint that moves a point off its axis": ("revolute", CYLINDER, _inertial(1, POINT, (1, 0, 0)), True),
     "a cylindrical joint that moves a point on its axis": ("revolute", CYLINDER, _inertial(1, POINT, (0, 0, 1)), False),
     "a cylindrical joint that moves a flywheel without mass": ("revolute", CYLINDER, _inertial(0, (1, 1, 1)), False),

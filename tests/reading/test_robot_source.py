@@ -108,11 +108,6 @@ def test_too_long_text_is_refused() -> None:
         source_of(URDF, limit=10)
 
 
-def test_urdf_is_not_a_description() -> None:
-    with pytest.raises(eurdf.errors.RobotNotFound, match="is a URDF itself"):
-        eurdf.check(URDF, URDF)
-
-
 def test_urdf_beside_folder_without_description_is_used(folder: Path) -> None:
     (folder / "robot.urdf").write_text(URDF, encoding="utf-8")
     with pytest.raises(eurdf.errors.RobotNotFound, match="no YAML file to use with"):
@@ -120,12 +115,6 @@ def test_urdf_beside_folder_without_description_is_used(folder: Path) -> None:
 
 
 # --- standard input --------------------------------------------------------------------------------------------------
-
-
-def test_urdf_is_read_from_standard_input() -> None:
-    done = eurdf_with(URDF, "check", "-")
-    assert (done.returncode, done.stdout, done.stderr) == (0, "<stdin>: valid\n", "")
-    assert eurdf_with(URDF, "info", "-").stdout.startswith("arm ")
 
 
 def test_piped_description_shows_wrong_line(folder: Path) -> None:
@@ -196,12 +185,6 @@ def test_missing_urdf_of_pipe_is_in_working_directory(folder: Path) -> None:
     assert "hint: there is 'a.urdf': write urdf: a.urdf\n" in in_bash("eurdf check <(cat a.yaml)").stdout
 
 
-def test_silent_program_is_error() -> None:
-    done = in_bash("eurdf check <(false)")
-    assert done.returncode == 1
-    assert "is empty" in done.stdout
-
-
 def test_slow_pipe_writer_is_awaited(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     os.mkfifo("pipe")
     monkeypatch.setattr(robot_source, "PATIENCE", 0.2)
@@ -211,12 +194,6 @@ def test_slow_pipe_writer_is_awaited(folder: Path, monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(robot_source, "PATIENCE", 30)
     assert eurdf.check("pipe").ok
     assert writer.wait(timeout=10) == 0
-
-
-def test_pipe_named_by_description_is_not_read(folder: Path) -> None:
-    os.mkfifo("pipe.urdf")
-    (folder / "arm.yaml").write_text(DESCRIPTION + "urdf: pipe.urdf\n", encoding="utf-8")
-    assert [found.code for found in eurdf.check("arm.yaml").diagnostics] == ["file-unreadable"]
 
 
 def test_pipe_is_read_up_to_limit(folder: Path) -> None:
@@ -255,22 +232,6 @@ def test_missing_path_suggests_a_similar_one(folder: Path, path: str, near: str 
     said = str(caught.value)
     assert said.endswith(f"did you mean '{near}'?" if near else "`eurdf robots` lists the collection")
     assert "cassie" not in said
-
-
-def test_nearest_file_ending_is_suggested(folder: Path) -> None:
-    for name in ("arm.urdf", "arm.yaml", "arm.urdf.xacro"):
-        (folder / name).touch()
-    assert [near_path(name) for name in ("arm.yml", "arm.urd", "arm.xacro")] == [
-        "arm.yaml",
-        "arm.urdf",
-        "arm.urdf.xacro",
-    ]
-
-
-def test_empty_path_is_not_working_directory(folder: Path) -> None:
-    (folder / "robot.urdf").write_text(URDF, encoding="utf-8")
-    with pytest.raises(eurdf.errors.RobotNotFound, match="is empty"):
-        eurdf.check("")
 
 
 @pytest.mark.parametrize("command", ["check", "info", "assemble"])

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from eurdf.diagnostics import FileError
-from eurdf.reading.source import FILE_LIMIT, Source, read_source
+from eurdf.reading.source import Source, read_source
 from support.processes import watchdog
 
 
@@ -39,45 +39,17 @@ def test_file_size_limit_is_exact(tmp_path: Path) -> None:
     assert error_of(path, limit=99_999).diagnostic.code == "file-too-large"
 
 
-def test_file_of_100_megabytes_is_not_read(tmp_path: Path) -> None:
-    path = tmp_path / "robot.urdf"
-    with path.open("wb") as file:
-        file.truncate(100_000_000)
-    diagnostic = error_of(path).diagnostic
-    assert diagnostic.code == "file-too-large"
-    assert f"{FILE_LIMIT:,} bytes" in diagnostic.message
-
-
-@pytest.mark.skipif(not os.path.exists("/proc/self/environ"), reason="there is no /proc here")
-@pytest.mark.parametrize("name", ["environ", "status", "cmdline"])
-def test_file_of_the_kernel_is_refused(name: str) -> None:
-    diagnostic = error_of(f"/proc/self/{name}").diagnostic
-    assert diagnostic.code == "file-unreadable"
-    assert "not a regular file" in diagnostic.message
-
-
-def test_missing_file_is_reported(tmp_path: Path) -> None:
-    diagnostic = error_of(tmp_path / "robot.yaml").diagnostic
-    assert diagnostic.code == "file-unreadable"
-    assert diagnostic.message == f"'{tmp_path / 'robot.yaml'}' cannot be read: no such file or directory"
-
-
-def test_folder_is_reported(tmp_path: Path) -> None:
-    diagnostic = error_of(tmp_path).diagnostic
-    assert (diagnostic.code, diagnostic.message) == ("file-unreadable", f"'{tmp_path}' is a folder, not a file")
-
-
-def test_unwritten_pipe_does_not_block(tmp_path: Path) -> None:
-    os.mkfifo(tmp_path / "robot.yaml")
-    assert error_of(tmp_path / "robot.yaml").diagnostic.code == "file-unreadable"
-
-
-def test_endless_device_is_refused() -> None:
-    assert error_of("/dev/zero").diagnostic.code == "file-unreadable"
-
-
-def test_path_with_nul_is_reported() -> None:
-    assert error_of("robot\0.yaml").diagnostic.code == "file-unreadable"
+def test_only_a_regular_file_is_read(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    for path, reason in (
+        (tmp_path / "no.yaml", f"'{tmp_path / 'no.yaml'}' cannot be read: no such file or directory"),
+        (tmp_path, f"'{tmp_path}' is a folder, not a file"),
+        *((f"/proc/self/{name}", "not a regular file") for name in ("environ", "status") if os.path.exists("/proc")),
+        *((path, "is a pipe or a device, not a file") for path in (tmp_path / "pipe", "/dev/zero")),
+    ):
+        found = error_of(path).diagnostic
+        assert found.code == "file-unreadable"
+        assert reason in found.message
 
 
 def test_refused_files_are_closed(tmp_path: Path) -> None:

@@ -67,18 +67,8 @@ def meant(text: str, place: Place) -> str:
 @pytest.mark.parametrize(
     ("xpath", "attribute", "line", "text", "pointer"),
     [
-        ("/robot", None, 3, "<robot", "/robot"),
-        ("/robot", "name", 3, "bras_à_3_liens", "/robot/@name"),
-        ("/robot/link[2]", None, 5, "<link", "/robot/link[2]"),
-        ("//mass", "value", 6, "1.5", "/robot/link[2]/inertial/mass/@value"),
         ("//origin", "rpy", 7, "0 0 0", "/robot/link[2]/inertial/origin/@rpy"),
-        ("//mesh", "filename", 8, "a&amp;b > c.stl", "/robot/link[2]/visual/geometry/mesh/@filename"),
-        ("//joint", None, 10, "<joint", "/robot/joint"),
-        ("//joint", "type", 12, "revolute", "/robot/joint/@type"),
-        ("//child", None, 14, "<child", "/robot/joint/child"),
-        ("//limit", "velocity", 16, "2", "/robot/joint/limit/@velocity"),
         ("//gazebo/*", None, 18, "<xacro:macro", "/robot/gazebo/xacro:macro"),
-        ("//gazebo/*", "{http://ros.org/wiki/xacro}size", 18, "2", "/robot/gazebo/xacro:macro/@xacro:size"),
         ("//joint", "mimic", 10, "<joint", "/robot/joint/@mimic"),
     ],
 )
@@ -129,13 +119,8 @@ class Writer:
     def filling(self) -> None:
         self.text += self.chance.choice(
             [
-                *("", "", " ", self.line_break, "text é > ' \"", "&amp;", "&#233;"),
-                *(
-                    "<!-- <link name='no'> é -->",
-                    f"<!--{self.line_break}<a/>-->",
-                    "<![CDATA[<b> ]] é]]>",
-                    "<?pi <c> ?>",
-                ),
+                *("", "", " ", self.line_break, "text é > ' \"", "&amp;", "&#233;", "<!-- <link name='no'> é -->"),
+                *(f"<!--{self.line_break}<a/>-->", "<![CDATA[<b> ]] é]]>", "<?pi <c> ?>"),
             ]
         )
 
@@ -242,15 +227,9 @@ def test_hundred_thousand_siblings_have_places() -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        *(
-            " " * 20_000_000,
-            "<!--" * 240_000,
-            "<?a" * 900_000,
-            "<?xml " + " encoding" * 2_000_000,
-            "<a>" + "&amp;" * 3_000_000,
-        ),
-        *("<a>" + "<b>" * 100 + "</b>" * 100 + "<c/>" * 200_000, "<a " + " ".join(f"b{n}=''" for n in range(200_000))),
-        "<a>" + "<x:b/>" * 200_000 + "</a>",
+        *(" " * 20_000_000, "<!--" * 240_000, "<?a" * 900_000, "<?xml " + " encoding" * 2_000_000),
+        *("<a>" + "&amp;" * 3_000_000, "<a>" + "<b>" * 100 + "</b>" * 100 + "<c/>" * 200_000),
+        *("<a " + " ".join(f"b{n}=''" for n in range(200_000)), "<a>" + "<x:b/>" * 200_000 + "</a>"),
         "<a " + " ".join(f"xmlns:b{n}='u{n}'" for n in range(100_000)) + "/>",
     ],
 )
@@ -275,14 +254,11 @@ def test_damaged_file_gives_document_or_error() -> None:
     assert {"read", "xml-syntax"} <= outcomes
 
 
+JUNK = ["<a", "</a", ">", "/>", " b", "=", "'", '"', "&", "x", ";", "<!--", "-->", "<?", "?>", ":", "é"]
+
+
 @settings(deadline=None, max_examples=300)
-@given(
-    st.lists(
-        st.sampled_from(
-            ["<a", "</a", ">", "/>", " b", "=", "'", '"', "&", "x", ";", "<!--", "-->", "<?", "?>", ":", "é"]
-        )
-    )
-)
+@given(st.lists(st.sampled_from(JUNK)))
 def test_any_text_gives_document_or_error(pieces: list[str]) -> None:
     try:
         document = read("".join(pieces))
@@ -299,7 +275,6 @@ def test_any_text_gives_document_or_error(pieces: list[str]) -> None:
     ("text", "position", "message", "hint"),
     [
         ("", (1, 1), "empty", None),
-        (" \n", (2, 1), "empty", None),
         ("robot:\n", (1, 1), "does not begin with an element", "<robot"),
         ("<!-- only -->", (1, 14), "no element", None),
         (
@@ -317,21 +292,16 @@ def test_any_text_gives_document_or_error(pieces: list[str]) -> None:
         ("<robot>é &x; </robot>", (1, 10), "the entity '&x;' is unknown", "&amp;"),
         ("<robot>a & b</robot>", (1, 10), "a '&' is not escaped", "&amp;"),
         ("<robot>\r\né\x07</robot>", (2, 2), "U+0007", None),
-        ("<robot>\0</robot>", (1, 8), "U+0000", None),
         ("<robot><!-- a -- b --></robot>", (1, 15), "'--' is not allowed in a comment", None),
         ("<robot>\n<!-- a", (2, 1), "'<!--' is never closed", None),
-        ("<robot>\n<![CDATA[ a", (2, 1), "'<![CDATA[' is never closed", None),
         ("<robot name='r'", (1, 1), "never closed", None),
         ("\n<?xml version='1.0'?><robot/>", (2, 1), "very beginning", None),
         ("< robot/>", (1, 2), "white space is not allowed here", None),
-        ("<robot><l a='&x;'/></robot>", (1, 14), "the entity '&x;' is unknown", "&amp;"),
         ("<robot xmlns:a='u'>\n<a:b/>\n<a:b:c/></robot>", (3, 2), "the ':' in the name 'a:b:c'", "at most one ':'"),
         ("<robot><?é:y z?></robot>", (1, 10), "the ':' in the name 'é:y'", "an instruction"),
-        ("<robot xmlns:x='u' x:1='2'/>", (1, 20), "the ':' in the name 'x:1'", "at most one ':'"),
         ("<robot>\n<sensor:eye/></robot>", (2, 2), "'sensor' of 'sensor:eye' is not declared", 'xmlns:sensor="'),
         ("<robot><drake:joint/></robot>", (1, 9), "'drake' of 'drake:joint'", 'xmlns:drake="http://drake.mit.edu"'),
         ("<robot><é xmlns:x='u' x:b='1' y:c='2'/></robot>", (1, 31), "'y' of 'y:c' is not declared", "declare it"),
-        ("<robot><a xmlns:x='u'/><x:b/></robot>", (1, 25), "the prefix 'x' of 'x:b' is not declared", "declare it"),
         ("<robot xmlns:x='u' x:a='1' xmlns:y='u' y:a='2'/>", (1, 40), "'x:a' and 'y:a' have one name", "remove one"),
         ("<robot><a b='c' xmlns:x=''/></robot>", (1, 17), "the namespace 'xmlns:x' is empty", "give it a name"),
         ("<robot xmlns:xmlns='u'/>", (1, 2), "<robot>: reserved prefix (xmlns)", "use others"),

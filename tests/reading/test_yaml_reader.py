@@ -46,8 +46,6 @@ metadata:
     the second indented
 """
 
-#: The same values, without anchor and alias.
-
 
 def source_of(text: str) -> Source:
     return Source("robot.yaml", text, text.encode())
@@ -69,20 +67,6 @@ def meant(text: str, place: Place) -> str:
     assert place.column is not None
     line = re.split(r"\r\n|\r|\n", text)[place.line - 1]
     return line[place.column - 1 : None if place.end_column is None else place.end_column - 1]
-
-
-# The value of a scalar
-
-
-@pytest.mark.parametrize(
-    "number",
-    [".inf", "-.INF", "+.Inf", ".nan", ".NaN", "1e999", "-1e400", "1" + "0" * 309, "-" + "9" * 5000, "0x1" + "0" * 300],
-)
-def test_number_beyond_double_is_refused(number: str) -> None:
-    diagnostic = error_of(f"a:\n  - {number}\n")
-    assert (diagnostic.code, diagnostic.pointer) == ("yaml-not-finite", "/a/0")
-    assert (diagnostic.line, diagnostic.column) == (2, 5)
-    assert len(diagnostic.message) < 120
 
 
 # The place of a value
@@ -194,21 +178,12 @@ def escaped(step: str | int) -> str:
 @pytest.mark.parametrize(
     ("pointer", "key", "text"),
     [
-        (("extended_urdf",), False, '"2.0"'),
-        (("extended_urdf",), True, "extended_urdf"),
-        (("closures", 0, "frames", 1), False, "knee_crank"),
-        (("closures", 0, "frames"), False, "[rod_tip, knee_crank]"),
-        (("closures", 0), False, "name: knee_rod"),
         (("closures", 0), True, "name: knee_rod"),
-        (("closures",), True, "closures"),
         (("joints", "knee cardan"), True, "'knee cardan'"),
-        (("actuators", 1, "rotor_inertia"), False, "1.2e-4"),
-        (("metadata", "author"), False, "Zoë"),
         (("metadata", "notes"), False, "|"),
         (("closures", 1, "frames", 0, "xyz"), False, "&tip [0, 0, 0.31]"),
         (("closures", 1, "frames", 1, "xyz"), False, "*tip"),
         (("closures", 1, "frames", 1, "xyz", 2), False, "0.31"),
-        ((), False, 'extended_urdf: "2.0"'),
     ],
 )
 def test_places_in_a_description(pointer: Pointer, key: bool, text: str) -> None:
@@ -240,7 +215,6 @@ def test_missing_value_has_place_of_parent(pointer: Pointer, nearest: Pointer) -
     ("key", "what", "hint"),
     [
         ("1", "a number", 'quote it: "1"'),
-        ("1.5", "a number", 'quote it: "1.5"'),
         ("null", "a key is null", 'quote it: "null"'),
         ("true", "a boolean", 'quote it: "true"'),
         (".nan", "a number", 'quote it: ".nan"'),
@@ -275,11 +249,6 @@ def test_duplicate_key_is_refused_at_second_place(text: str) -> None:
 # Aliases
 
 
-def test_alias_bomb_is_refused_before_expansion() -> None:
-    lines = ["a0: &a0 [x]"] + [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 9)}]" for n in range(1, 30)]
-    assert error_of("\n".join(lines)).code == "yaml-alias"
-
-
 def test_alias_counts_as_one_node() -> None:
     assert error_of("a: &a 1\nb: [" + "*a," * NODE_LIMIT + "]").code == "file-too-large"
 
@@ -310,22 +279,10 @@ def test_size_limit_is_enforced(text: str) -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        *(
-            "'" + "x" * 4_000_000,
-            '"' + "\\x41" * 1_000_000,
-            "x" * 4_000_000,
-            "a: " + "1" * 4_000_000,
-            "a: 0x" + "1" * 4_000_000,
-        ),
-        *(
-            "a: ." + "1" * 4_000_000 + "e1",
-            "a: !" + "x" * 4_000_000,
-            "a: &" + "x" * 4_000_000,
-            "\n" * 4_000_000,
-            "---\n" * 1_000_000,
-        ),
-        *("a: |\n" + "  x\n" * 1_000_000, "a:" + "\t" * 4_000_000, "a: '\x85" + "\u2028x" * 900_000 + "'"),
-        "".join(" " * n + "a:\n" for n in range(2800)),
+        *("'" + "x" * 4_000_000, '"' + "\\x41" * 1_000_000, "x" * 4_000_000, "a: 0x" + "1" * 4_000_000),
+        *("a: ." + "1" * 4_000_000 + "e1", "a: !" + "x" * 4_000_000, "a: &" + "x" * 4_000_000, "\n" * 4_000_000),
+        *("---\n" * 1_000_000, "a: |\n" + "  x\n" * 1_000_000, "a:" + "\t" * 4_000_000),
+        *("a: '\x85" + "\u2028x" * 900_000 + "'", "".join(" " * n + "a:\n" for n in range(2800))),
     ],
 )
 def test_any_text_within_limits_is_fast(text: str) -> None:
@@ -338,22 +295,6 @@ def test_control_character_is_refused_at_its_place(character: str) -> None:
     diagnostic = error_of(f"é: 1\r\nb: 'x{character}'\r\n")
     assert (diagnostic.code, diagnostic.line, diagnostic.column) == ("yaml-syntax", 2, 6)
     assert f"U+{ord(character):04X}" in diagnostic.message
-
-
-@pytest.mark.parametrize(
-    ("text", "line", "column"),
-    [
-        ("a: 1 # \ufeff", 1, 8),
-        ("a: '\ufeff\ufeff'\nb: x\ufeff", 2, 5),
-        ("a: |\n  \ufeff\n", 2, 3),
-        ("é: ['\u2028\ufeff', 1] # \ufeff", 1, 16),
-        ("\ufeffa: 1", 1, 1),  # a second one
-    ],
-)
-def test_byte_order_mark_is_refused_outside_quotes(text: str, line: int, column: int) -> None:
-    diagnostic = error_of(text)
-    assert (diagnostic.code, diagnostic.line, diagnostic.column) == ("yaml-syntax", line, column)
-    assert "U+FEFF" in diagnostic.message
 
 
 def test_damaged_file_gives_document_or_error() -> None:
@@ -377,20 +318,6 @@ def test_any_text_gives_document_or_error(text: str) -> None:
         json.dumps(document.data, allow_nan=False)
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "a: " + "[" * 200 + "]" * 200,
-        "a: " + "[" * 10_000 + "]" * 10_000,
-        "a:\n  " + "- " * 250 + "b",
-        "".join(f"{' ' * depth}a:\n" for depth in range(190)),
-        "a: {" + "b: {" * 70 + "}" * 71,
-    ],
-)
-def test_deep_nesting_is_an_error(text: str) -> None:
-    assert error_of(text).code == "yaml-too-deep"
-
-
 # What is no YAML mapping
 
 
@@ -402,7 +329,6 @@ def test_deep_nesting_is_an_error(text: str) -> None:
         ("---\n...\n", "empty"),
         ("null\n", "empty"),
         ("[1, 2]\n", "a list"),
-        ("- 1\n", "a list"),
         ("robot\n", "a string"),
         ("12\n", "a number"),
         ("true\n", "a boolean"),
@@ -419,7 +345,6 @@ def test_non_mapping_is_reported_with_its_type(text: str, what: str) -> None:
     ("text", "position", "message", "hint"),
     [
         ("a:\n\tb: 1\n", (2, 1), "a tab is used as indentation", "indent with spaces"),
-        ("a:\n  b: 1\n\tc: 2\n", (3, 1), "a tab is used as indentation", "indent with spaces"),
         ("é: ü: x\n", (1, 5), "':' is not allowed here", "quote"),
         ("a: 1\nbc\nd: 2\n", (2, 1), "no ':' after it", "key: value"),
         ("a:\n  b: 1\n c: 2\n", (3, 2), "the mapping that begins on line 1", "like 'b'"),
@@ -436,12 +361,9 @@ def test_non_mapping_is_reported_with_its_type(text: str, what: str) -> None:
         ("a: ]\n", (1, 4), "a value is missing", None),
         ("{a: 1} b\n", (1, 8), "does not continue anything", None),
         ("a: &é 1\n", (1, 5), "not a valid anchor name", "ASCII letters"),
-        ("a: & 1\n", (1, 5), "not a valid anchor name", "ASCII letters"),
         ("a: &an:chor 1\n", (1, 4), "not a valid anchor name", "ASCII letters"),
-        ("a: {b: !!str &an:c 1}\n", (1, 14), "not a valid anchor name", "ASCII letters"),
         ("a: &b 1\nc: *b:\n", (2, 4), "not a valid anchor name", "ASCII letters"),
         ("a: {?b: 1}\n", (1, 6), "directly before a key", "quote"),
-        ("a: [?b]\n", (1, 6), "directly before a key", "quote"),
         ("%MINE 1\n---\na: 1\n", (1, 6), "only the directives", "remove the line"),
     ],
 )

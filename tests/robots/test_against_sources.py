@@ -280,11 +280,6 @@ def test_motors_turn_joints_by_the_published_ratios() -> None:
         assert {name: at[name] for name in expected} == pytest.approx(expected, abs=1e-6)
 
 
-def test_home_is_closed() -> None:
-    robot = eurdf.load("toddlerbot_2legs", geometry=False)
-    assert eurdf.analyze(robot, robot.configurations["home"]).residual < 1e-9
-
-
 # -- Unitree's G1: the linkage of its waist as measured, and the serial robot that stands for it
 
 

@@ -9,19 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
 
-from robots.builder import (
-    Box,
-    Cylinder,
-    Drawing,
-    Motor,
-    Sphere,
-    ball,
-    revolute,
-    universal,
-    write,
-)
+from robots.builder import Box, Cylinder, Drawing, Motor, Sphere, ball, revolute, universal, write
 from robots.builder.mirror import mirrored_shape
-from robots.builder.shape import along, rotation_of, rpy_of
+from robots.builder.shape import along, rotation_of
 from robots.builder.solid import solid_of
 
 coordinate = st.floats(-1.0, 1.0)
@@ -63,13 +53,6 @@ def test_body_mass_matches_sampled_shapes(shapes):
     assert solid.mass == pytest.approx(mass)
     assert solid.center == pytest.approx(center, abs=1e-12)
     assert solid.inertia == pytest.approx(inertia, abs=1e-12)
-
-
-@given(cylinders)
-def test_cylinder_is_aligned_with_its_ends(cylinder):
-    axis = np.subtract(cylinder.end, cylinder.start)
-    aligned = rotation_of(along(axis)) @ [0.0, 0.0, cylinder.length]
-    assert aligned == pytest.approx(math.copysign(1.0, aligned @ axis) * axis, abs=1e-10)
 
 
 def pendulum():
@@ -118,14 +101,6 @@ def hold_unnamed(robot):
     robot.body("left_arm", ball("left_ball", "base", (0.0, 0.0, 0.0)), material="steel")
     robot.close("loop", "3d", "base", "left_arm", (0.0, 0.0, 0.0))
     robot.mirror("left", "right")
-
-
-@given(
-    point.map(lambda rpy: tuple(3.0 * angle for angle in rpy)) | st.tuples(coordinate, st.just(math.pi / 2), coordinate)
-)
-def test_rotation_matches_roll_pitch_yaw(rpy):
-    rotation = rotation_of(rpy)
-    assert rotation_of(rpy_of(rotation)) == pytest.approx(rotation, abs=1e-12)
 
 
 @given(boxes | cylinders | spheres)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-
 import numpy as np
 import pytest
 
@@ -38,9 +36,3 @@ def test_frames_show_the_motion():
     one, other = moving_picture.moving_picture(eurdf.load("digit_leg"), 2)
     assert one.shape == other.shape
     assert (np.abs(one.astype(int) - other).max(axis=2) > 100).sum() > 2000
-
-
-def test_missing_renderer_is_reported(monkeypatch, capsys):
-    monkeypatch.setitem(sys.modules, "pyvista", None)
-    assert moving_picture.main(["-o", "/nonexistent/picture.webp"]) == 2
-    assert "pictures need pyvista; install it with: " in capsys.readouterr().err

@@ -34,16 +34,6 @@ def test_missing_renderer_says_what_to_install(monkeypatch, capsys, tmp_path):
     assert all("pictures need pyvista; install it with: " in line and "[pictures]" in line for line in lines)
 
 
-def test_undrawable_robot_is_reported(capsys, tmp_path):
-    pytest.importorskip("pyvista", reason="pyvista is not installed: pip install -e '.[pictures]'")
-    assert pictures.main(["no_such_robot"]) == 1
-    (tmp_path / "robot.urdf").write_text('<robot name="bare"><link name="base"/></robot>')
-    assert main(["picture", str(tmp_path), "-o", str(tmp_path / "picture.png")]) == 2
-    no_such, bare = capsys.readouterr().err.splitlines()
-    assert no_such.startswith("no_such_robot: it is not in the collection")
-    assert bare.startswith(f"eurdf: '{tmp_path}': there is nothing to draw")
-
-
 @pytest.mark.slow
 def test_command_draws_a_configuration_with_its_loops(capsys, tmp_path):
     pytest.importorskip("pyvista", reason="pyvista is not installed: pip install -e '.[pictures]'")
@@ -78,19 +68,6 @@ def test_robot_without_shapes_is_drawn_as_lines(tmp_path):
     pytest.importorskip("pyvista", reason="pyvista is not installed: pip install -e '.[pictures]'")
     image = picture(eurdf.load("four_bar", geometry=False))
     assert (image[..., 3] > 200).sum() > 200
-
-
-def test_views_fill_picture_within_margin():
-    pytest.importorskip("pyvista", reason="pyvista is not installed: pip install -e '.[pictures]'")
-    image = picture(eurdf.load("four_bar"))
-    height, width, _ = image.shape
-    assert (image[[0, 0, -1, -1], [0, -1, 0, -1], 3] == 0).all()
-    assert abs(width - 780) <= 3
-    assert height <= 860
-    seen = image[..., 3] > 10
-    rows, columns = np.flatnonzero(seen.any(axis=1)), np.flatnonzero(seen.any(axis=0))
-    assert (columns[0], width - 1 - columns[-1]) == pytest.approx((12, 12), abs=2)
-    assert (rows[0], height - 1 - rows[-1]) == pytest.approx((12, 12), abs=2)
 
 
 def test_each_robot_has_small_transparent_pictures_and_its_graph(tmp_path):
@@ -151,3 +128,26 @@ def test_sheet_shows_each_robot_with_name():
     assert (two[:, :width] == one[:, :width]).all()
     for part in (two[: height - 22, width : 2 * width], two[height - 22 :, width : 2 * width]):
         assert (part[..., 3] > 200).any()
+
+
+def test_undrawable_robot_is_reported(capsys, tmp_path):
+    pytest.importorskip("pyvista", reason="pyvista is not installed: pip install -e '.[pictures]'")
+    assert pictures.main(["no_such_robot"]) == 1
+    (tmp_path / "robot.urdf").write_text('<robot name="bare"><link name="base"/></robot>')
+    assert main(["picture", str(tmp_path), "-o", str(tmp_path / "picture.png")]) == 2
+    no_such, bare = capsys.readouterr().err.splitlines()
+    assert no_such.startswith("no_such_robot: it is not in the collection")
+    assert bare.startswith(f"eurdf: '{tmp_path}': there is nothing to draw")
+
+
+def test_views_fill_picture_within_margin():
+    pytest.importorskip("pyvista", reason="pyvista is not installed: pip install -e '.[pictures]'")
+    image = picture(eurdf.load("four_bar"))
+    height, width, _ = image.shape
+    assert (image[[0, 0, -1, -1], [0, -1, 0, -1], 3] == 0).all()
+    assert abs(width - 780) <= 3
+    assert height <= 860
+    seen = image[..., 3] > 10
+    rows, columns = np.flatnonzero(seen.any(axis=1)), np.flatnonzero(seen.any(axis=0))
+    assert (columns[0], width - 1 - columns[-1]) == pytest.approx((12, 12), abs=2)
+    assert (rows[0], height - 1 - rows[-1]) == pytest.approx((12, 12), abs=2)

@@ -80,25 +80,6 @@ def test_good_robot_passes_anywhere(name, tmp_path):
     assert verdict.errors["mirrored"] is None  # it has one side only
 
 
-def test_optional_files_are_not_required(copy):
-    verdict = judge(Candidate.find(copy("four_bar", "robot.v1.yaml")))
-    assert verdict.passes
-    assert [rule for rule, found in verdict.errors.items() if found is None] == ["built", "version 1", "mirrored"]
-
-
-def test_unbuildable_robot_reports_only_its_reason(copy):
-    folder = copy("four_bar")
-    replace(folder / "robot.yaml", "[motor_crank]", "[motor_krank]")
-    assert "did you mean 'motor_crank'" in eurdf.check(folder).diagnostics[0].hint
-    assert "motor_krank" in only_error(folder, "sound")
-
-
-def test_warning_is_an_error(copy):
-    folder = copy("four_bar", "robot.v1.yaml")
-    edit(folder, "link[@name='rocker_pin_b']", name="rocker_pin_a")
-    assert list(errors(folder)) == ["sound"]
-
-
 def test_limit_beyond_linkage_is_a_dead_point(copy):
     folder = copy("four_bar", "robot.v1.yaml")
     replace(folder / "robot.yaml", "[motor_crank]", "[free_rocker]")
@@ -123,19 +104,6 @@ def test_loop_open_by_a_nanometre_is_open(copy):
     folder = copy("four_bar")
     edit(folder, "joint[@name='weld_rocker_pin_b']/origin", xyz="-0.070000001 0 0.24")
     assert "open by 1.0e-09" in only_error(folder, "assembled")
-
-
-def test_assembled_configuration_is_required(copy):
-    folder = copy("four_bar")
-    replace(folder / "robot.yaml", "configurations:\n  assembled: {}\n", "")
-    assert only_error(folder, "assembled") == "the configuration 'assembled' is missing"
-
-
-def test_open_loops_are_reported_once(copy):
-    folder = copy("four_bar", "robot.v1.yaml")
-    edit(folder, "joint[@name='weld_rocker_pin_b']/origin", xyz="9 0 0")
-    found = errors(folder)
-    assert list(found) == ["sound", "assembled"]
 
 
 @pytest.mark.parametrize(
@@ -217,10 +185,7 @@ def test_different_version_1_is_reported(copy, old, new, error):
         ("type: 3d", "type: 3d\n    compliance: {linear: 1.0e-6}"),
         ("actuators:", "couplings:\n  - {name: gear, joints: {motor_crank: 1, free_rocker: 1}}\nactuators:"),
         ("actuators:", "joints: {free_rocker: {stiffness: 2.0, damping: 0.1}}\nactuators:"),
-        (
-            "[motor_crank]",
-            "[{joint: motor_crank, gear_ratio: 9, rotor_inertia: 1e-6, name: m, control: [-1, 1]}]",
-        ),
+        ("[motor_crank]", "[{joint: motor_crank, gear_ratio: 9, rotor_inertia: 1e-6, name: m, control: [-1, 1]}]"),
         ("actuators:", "frames: [{name: imu, link: rocker, xyz: [0, 0, 0.1]}]\nactuators:"),
     ],
 )
@@ -229,12 +194,6 @@ def test_what_version_1_cannot_say_is_not_compared(copy, old, new):
     replace(folder / "robot.yaml", '"2.0"', '"2.1"')
     replace(folder / "robot.yaml", old, new)
     assert is_the_same_in_version_1(Candidate.find(folder)) == []
-
-
-def test_invalid_version_1_is_reported(copy):
-    folder = copy("four_bar")
-    replace(folder / "robot.v1.yaml", "[motor_crank]", "[motor_krank]")
-    assert "motor_krank" in only_error(folder, "version 1")
 
 
 @pytest.mark.parametrize(("number", "is_built"), [("1.57079632679488", True), ("1.5707964", False)])
@@ -399,6 +358,19 @@ def test_command_reports_by_rule_and_exits_0_1_2(copy, capsys):
     assert "no_such_robot" in capsys.readouterr().err
 
 
+def test_assembled_configuration_is_required(copy):
+    folder = copy("four_bar")
+    replace(folder / "robot.yaml", "configurations:\n  assembled: {}\n", "")
+    assert only_error(folder, "assembled") == "the configuration 'assembled' is missing"
+
+
+def test_open_loops_are_reported_once(copy):
+    folder = copy("four_bar", "robot.v1.yaml")
+    edit(folder, "joint[@name='weld_rocker_pin_b']/origin", xyz="9 0 0")
+    found = errors(folder)
+    assert list(found) == ["sound", "assembled"]
+
+
 def test_command_writes_same_as_json(copy, capsys):
     assert main([str(copy("four_bar", "picture.png")), "--json"]) == 1
     (robot,) = json.loads(capsys.readouterr().out)["robots"]
@@ -407,3 +379,22 @@ def test_command_writes_same_as_json(copy, capsys):
     assert [rule for rule, found in robot["rules"].items() if found] == ["pictured"]
     (sweep,) = robot["sweeps"]
     assert (sweep["actuator"], sweep["periodic"], sweep["lower"]["end"]) == ("motor_crank", True, "half turn")
+
+
+def test_unbuildable_robot_reports_only_its_reason(copy):
+    folder = copy("four_bar")
+    replace(folder / "robot.yaml", "[motor_crank]", "[motor_krank]")
+    assert "did you mean 'motor_crank'" in eurdf.check(folder).diagnostics[0].hint
+    assert "motor_krank" in only_error(folder, "sound")
+
+
+def test_warning_is_an_error(copy):
+    folder = copy("four_bar", "robot.v1.yaml")
+    edit(folder, "link[@name='rocker_pin_b']", name="rocker_pin_a")
+    assert list(errors(folder)) == ["sound"]
+
+
+def test_invalid_version_1_is_reported(copy):
+    folder = copy("four_bar")
+    replace(folder / "robot.v1.yaml", "[motor_crank]", "[motor_krank]")
+    assert "motor_krank" in only_error(folder, "version 1")

@@ -60,10 +60,6 @@ def test_values_of_a_key_are_completed(tmp_path: Path, body: str, offered: set[s
     assert offered <= set(completed(tmp_path, body))
 
 
-def test_keys_of_a_closure_are_completed(tmp_path: Path) -> None:
-    assert "frames" in completed(tmp_path, "closures:\n  - name: rod\n    type: 6d\n    f|\n")
-
-
 def test_hover_shows_meaning_and_unit(tmp_path: Path) -> None:
     path, line, column = written(tmp_path, "joints:\n  screw: {type: helical, pi|tch: 0.005}\n")
 

@@ -15,7 +15,6 @@ from spec.site.example import (
     NotAnEdit,
     ShownDiagnostic,
     diagnostic_of,
-    example_of,
     read_diagnostics,
     read_examples,
     with_elements,
@@ -78,30 +77,12 @@ def test_fragment_replaces_its_keys() -> None:
     )
 
 
-def test_fragment_can_be_malformed() -> None:
-    assert with_keys(BASE, "joints: {ball: [\n").endswith("joints: {ball: [\n")
-
-
 def test_elements_are_appended_to_urdf() -> None:
     assert with_elements('<robot name="a">\n</robot>\n', "<link/>\n") == '<robot name="a">\n<link/>\n</robot>\n'
 
 
 def _directive(name: str, argument: str, body: str, **options: str) -> Directive:
     return Directive(1, name, argument, options, body, 2)
-
-
-def test_differently_wrong_example_is_detected() -> None:
-    example = example_of(_directive("example", "unknown-frame", "actuators: [moter]", part=""), "here")
-    assert example.shown().check().codes == ("unknown-actuator",)
-    assert example.expected == ("unknown-frame",)
-
-
-def test_complete_urdf_is_checked_alone() -> None:
-    example = example_of(
-        _directive("example", "valid", '<robot name="a"><link name="b"/></robot>', file="robot.urdf"), ""
-    )
-    assert list(example.shown().files) == ["robot.urdf"]
-    assert example.shown().check().codes == ()
 
 
 DIFF = """\
@@ -116,11 +97,6 @@ Twice.
 """
 
 
-def test_diagnostic_text_excludes_its_diff() -> None:
-    shown = diagnostic_of(_directive("diagnostic", "unknown-frame", DIFF), "here")
-    assert shown.text == "A name is misspelt.\n\nTwice."
-
-
 def test_edit_knows_its_changed_lines() -> None:
     edit = diagnostic_of(_directive("diagnostic", "unknown-frame", DIFF), "here").edit()
     before, after = edit.before.split("\n"), edit.after.split("\n")
@@ -128,11 +104,6 @@ def test_edit_knows_its_changed_lines() -> None:
     assert before[edit.start] == "    frames: [coupler_tip, rocker_tip]"
     assert after[edit.start] == "    frames: [coupler_tpi, rocker_tip]"
     assert before[: edit.start] == after[: edit.start]
-
-
-def test_message_names_files_without_folder() -> None:
-    shown = diagnostic_of(_directive("diagnostic", "unknown-frame", DIFF), "here")
-    assert shown.faulty().check().text.startswith("my_robot/robot.yaml:6:14: error: ")
 
 
 @pytest.mark.parametrize(
@@ -148,3 +119,8 @@ def test_impossible_diff_is_no_edit(diff: str, why: str) -> None:
     shown = diagnostic_of(_directive("diagnostic", "xml-syntax", f"```diff\n{diff}\n```", file="robot.urdf"), "here")
     with pytest.raises(NotAnEdit, match=why):
         shown.edit()
+
+
+def test_diagnostic_text_excludes_its_diff() -> None:
+    shown = diagnostic_of(_directive("diagnostic", "unknown-frame", DIFF), "here")
+    assert shown.text == "A name is misspelt.\n\nTwice."

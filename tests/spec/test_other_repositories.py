@@ -84,13 +84,6 @@ def test_hook_passes_repository_without_robots(tmp_path: Path, files: list[str])
     assert (found.returncode, found.stdout, found.stderr) == (0, ".: no robot\n", "")
 
 
-def test_hook_checks_plain_urdf(tmp_path: Path) -> None:
-    (tmp_path / "arm.urdf").write_text("<robot")
-    found = run_the_hook(tmp_path)
-    assert found.returncode == 1
-    assert found.stdout.startswith("arm.urdf:1:1: error: ")
-
-
 def test_action_is_valid_for_github() -> None:
     check = [sys.executable, "-m", "check_jsonschema", "--builtin-schema", "vendor.github-actions", str(ACTION)]
     subprocess.run(check, check=True)
@@ -127,14 +120,6 @@ def test_action_passes_repository_without_robots(tmp_path: Path, files: list[str
     assert json.loads(sarif.read_text())["runs"][0]["results"] == []
 
 
-def test_action_uploads_nothing_for_missing_path(tmp_path: Path) -> None:
-    output = tmp_path / "output"
-    found = run_the_action(other_repository(tmp_path / "repository", []), "robtos", tmp_path / "found.sarif", output)
-    assert found.returncode == 2
-    assert "there is no 'robtos'" in found.stderr
-    assert not output.exists()
-
-
 def test_catalogue_entry_matches_only_our_files() -> None:
     entry = json.loads((ROOT / "schema" / "catalog.json").read_text())
     assert set(entry) == {"name", "description", "fileMatch", "url", "versions"}
@@ -143,3 +128,11 @@ def test_catalogue_entry_matches_only_our_files() -> None:
     assert names == {"1": FILES["1"], "2.0": FILES["2"], "2.1": FILES["2.1"]}
     assert any(fnmatch("leg.eurdf.yaml", pattern) for pattern in entry["fileMatch"])
     assert not any(fnmatch(name, pattern) for name in ("robot.yaml", "config.yml") for pattern in entry["fileMatch"])
+
+
+def test_action_uploads_nothing_for_missing_path(tmp_path: Path) -> None:
+    output = tmp_path / "output"
+    found = run_the_action(other_repository(tmp_path / "repository", []), "robtos", tmp_path / "found.sarif", output)
+    assert found.returncode == 2
+    assert "there is no 'robtos'" in found.stderr
+    assert not output.exists()

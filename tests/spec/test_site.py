@@ -111,12 +111,6 @@ def test_every_schema_property_has_anchor_and_description(site: Path, page: str,
             assert " ".join(value["description"].split()) in text
 
 
-def test_index_contains_every_clause(site: Path) -> None:
-    text = _text(site / "all_clauses.html")
-    for clause in read_clauses(read_chapters()):
-        assert clause.id in text
-
-
 def test_every_anchor_of_the_search_exists_and_has_text(site: Path) -> None:
     index = json.loads(
         (site / "searchindex.js").read_text(encoding="utf-8").removeprefix("Search.setIndex(").rstrip(")")
@@ -131,11 +125,6 @@ def test_every_anchor_of_the_search_exists_and_has_text(site: Path) -> None:
     pages = {page: html.parse(str(site / f"{index['docnames'][page]}.html")) for page, _ in anchors}
     named = {(page, each.get("id")): each for page, tree in pages.items() for each in tree.iterfind(".//*[@id]")}
     assert [place for place in anchors if not (place in named and named[place].text_content().strip())] == []
-
-
-def test_schemas_and_registry_are_published(site: Path) -> None:
-    for name in ("extended-urdf-1.schema.json", "extended-urdf-2.0.schema.json", "clauses.json", "clauses.schema.json"):
-        json.loads((site / name).read_text(encoding="utf-8"))
 
 
 def test_every_public_name_is_documented_once(site: Path) -> None:
@@ -289,14 +278,6 @@ def test_equation_becomes_mathml_with_source() -> None:
         mathml(r"\nosuchcommand", display=False)
 
 
-def test_equations_of_a_line_are_separate() -> None:
-    from spec.site.math import separate_equations
-
-    assert separate_equations(r"a = b , \qquad c = d .") == ["a = b , ", " c = d ."]
-    matrix = r"\begin{matrix} a \qquad b \end{matrix}"
-    assert separate_equations(matrix) == [matrix]
-
-
 def test_drawing_has_page_colours_and_alt_text() -> None:
     from spec.site.figures import inline_svg
 
@@ -340,3 +321,22 @@ def test_robot_moves_on_its_page_from_a_file_and_offline(tmp_path: Path) -> None
         assert float(page.locator(".eu-live-status").get_attribute("data-residual")) < 1e-9
         assert page.evaluate("document.documentElement.scrollWidth") <= 360
         assert errors == []
+
+
+def test_index_contains_every_clause(site: Path) -> None:
+    text = _text(site / "all_clauses.html")
+    for clause in read_clauses(read_chapters()):
+        assert clause.id in text
+
+
+def test_schemas_and_registry_are_published(site: Path) -> None:
+    for name in ("extended-urdf-1.schema.json", "extended-urdf-2.0.schema.json", "clauses.json", "clauses.schema.json"):
+        json.loads((site / name).read_text(encoding="utf-8"))
+
+
+def test_equations_of_a_line_are_separate() -> None:
+    from spec.site.math import separate_equations
+
+    assert separate_equations(r"a = b , \qquad c = d .") == ["a = b , ", " c = d ."]
+    matrix = r"\begin{matrix} a \qquad b \end{matrix}"
+    assert separate_equations(matrix) == [matrix]

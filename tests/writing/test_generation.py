@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any, Literal
 
@@ -16,10 +17,9 @@ from eurdf.commands.main import main
 from eurdf.diagnostics import Diagnostics
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.urdf.read import read_urdf
-from eurdf.format.yaml_text import flow, lines_of, lines_of_item, scalar
+from eurdf.format.yaml_text import lines_of, scalar
 from eurdf.kinematics.analysis import analyze
 from eurdf.linking.robot_files import read_robot
-from eurdf.mechanism.same_model import differences
 from eurdf.pinocchio.robot import build_robot
 from eurdf.reading.source import Source, read_source
 from eurdf.reading.xml_reader import read_xml
@@ -27,13 +27,7 @@ from eurdf.reading.yaml_reader import read_yaml
 from eurdf.writing.generation import Generation, generate
 from eurdf.writing.naming_conventions import PUBLISHED_CLOSURE, BadPattern, conventions, find, hints
 from support.places import ROOT, WILD
-
-WILD_ROBOTS = sorted(path.parent.name for path in WILD.glob("*/robot.yaml"))
-needs_wild = pytest.mark.skipif(
-    not WILD_ROBOTS, reason="no published robots: put their folder at ../shared/wild, beside the checkout"
-)
-
-FACTS = json.loads((WILD / "facts.json").read_text(encoding="utf-8")) if WILD_ROBOTS else {}
+from support.wild import FACTS, needs_wild
 
 #: Pairs that are named in the URDF, but that the published file leaves out.
 LEFT_OUT = {"kangaroo_like": {frozenset({"closedloop1_A", "closedloop1_B"})}}
@@ -94,7 +88,7 @@ BALL = ("rev0 revolute base int10 x", "rev1 revolute int10 int20 y", "rev2 revol
 
 @pytest.mark.slow
 @needs_wild
-@pytest.mark.parametrize("name", WILD_ROBOTS)
+@pytest.mark.parametrize("name", FACTS)
 def test_names_of_published_robot_match_its_file(name: str) -> None:
     urdf = read_urdf(read_xml(read_source(WILD / name / "robot.urdf")), Diagnostics())
     assert urdf is not None
@@ -110,21 +104,6 @@ def test_names_of_published_robot_match_its_file(name: str) -> None:
     # Some joints that are named spherical are universal in the published file: a name does not show it.
     assert set(found.sphericals) == set(published.get("joint_name", ()))
     assert found.warnings == ()
-
-
-@pytest.mark.slow
-@needs_wild
-@pytest.mark.parametrize("name", WILD_ROBOTS)
-def test_both_versions_give_the_same_model(name: str) -> None:
-    urdf = read_urdf(read_xml(read_source(WILD / name / "robot.urdf")), Diagnostics())
-    assert urdf is not None
-    one, two = (generate(urdf, conventions(), version) for version in ("1", "2"))
-    assert one.mechanism is not None
-    assert two.mechanism is not None
-    ordered = {frozenset((closure.a.body, closure.b.body)) for closure in one.mechanism.closures}
-    assert ordered == {frozenset((closure.a.body, closure.b.body)) for closure in two.mechanism.closures}
-    unnamed = [sentence for sentence in differences(one.mechanism, two.mechanism) if "closure" not in sentence]
-    assert unnamed == []
 
 
 # -- closures -----------------------------------------------------------------------------------------------------
@@ -244,11 +223,6 @@ def test_user_can_set_all_closure_types(
     assert yaml.safe_load(capsys.readouterr().out)["closures"][0]["type"] == given_
 
 
-def test_joints_are_frames_too() -> None:
-    found = generated("hip revolute base a", "closedloop1_A revolute a b", "closedloop1_B revolute base c").found
-    assert found.closures[0].frames == ("closedloop1_A", "closedloop1_B")
-
-
 def test_link_is_preferred_to_its_fixed_joint() -> None:
     assert generated(*LEG).found.closures[0].frames == ("closedloop1_A", "closedloop1_B")
 
@@ -319,11 +293,6 @@ def test_user_pattern_gives_sides_loops_and_types() -> None:
     assert found.motors == ("hip",)
 
 
-def test_default_loop_name_is_common_part() -> None:
-    rows = ("hip revolute base thigh", "j1 fixed thigh top_of_rod", "j2 fixed base bottom_of_rod")
-    assert generated(*rows, closures=["(?P<side>top|bottom)_of_.*"]).found.closures[0].name == "of_rod"
-
-
 @pytest.mark.parametrize(
     "name",
     [
@@ -385,14 +354,6 @@ def test_robot_without_moving_joint_gives_hint(joint: str | None) -> None:
     assert motor == "no joint can be actuated: each is fixed or mimics another; change its type in the URDF"
 
 
-def test_unmatched_user_pattern_gives_hint() -> None:
-    given_ = conventions(closures=["(?P<side>top|bottom)_rod"], motors=["drive"])
-    urdf = read(urdf_text("knee revolute base thigh"))
-    closure, motor = hints(urdf, find(urdf, given_), given_)
-    assert closure.startswith("no two names match a --closure pattern")
-    assert motor.startswith("no joint that can move matches a --motor pattern")
-
-
 def test_undrivable_motors_are_reported_and_skipped() -> None:
     found = generated("motor_a revolute base a", "motor_b revolute a b x motor_a", "motor_c fixed b c").found
     assert found.motors == ("motor_a",)
@@ -407,14 +368,6 @@ def test_spherical_joints_are_recognized_by_name() -> None:
     assert found.sphericals == ("spherical_hip",)
     assert len(found.warnings) == 2
     assert "only a revolute joint becomes spherical" in found.warnings[0]
-
-
-def test_three_intersecting_revolutes_are_merged() -> None:
-    generation = generated(*BALL)
-    assert generation.merges == {"rev2": ("rev0", "rev1", "rev2")}
-    assert "  rev2: {type: spherical, merges: [rev0, rev1, rev2]}\n" in generation.text
-    assert generation.mechanism is not None
-    assert [joint.type for joint in generation.mechanism.joints] == ["fixed", "fixed", "spherical"]
 
 
 def test_motors_are_not_merged() -> None:
@@ -437,13 +390,6 @@ def test_bad_pattern_is_reported(patterns: dict[str, list[str]], said: str) -> N
         conventions(**patterns)
 
 
-def test_given_patterns_replace_conventions() -> None:
-    given_ = conventions(closures=["(?P<side>.)"])
-    assert [pattern.pattern for pattern in given_.closures] == ["(?P<side>.)"]
-    assert PUBLISHED_CLOSURE in [pattern.pattern for pattern in conventions().closures]
-    assert given_.motors == conventions().motors
-
-
 # -- text ---------------------------------------------------------------------------------------------------------
 
 LEG_TEXT = """\
@@ -457,25 +403,9 @@ actuators: [motor_hip]
 """
 
 
-def test_text_is_formatted_naturally() -> None:
-    assert generated(*LEG).text == LEG_TEXT
-
-
-def test_long_lists_have_one_item_per_line() -> None:
-    rows = [f"motor_with_quite_a_long_name_{n} revolute base rod{n}a" for n in range(5)]
-    assert "actuators:\n  - motor_with_quite_a_long_name_0\n  - motor" in generated(*rows).text
-
-
 def test_version_1_is_written_too() -> None:
     generation = generate(read(urdf_text(*LEG)), conventions(), "1")
     assert generation.text == ("closed_loop: [[closedloop1_A, closedloop1_B]]\ntype: [3d]\nname_mot: [motor_hip]\n")
-
-
-def test_meaningless_names_give_valid_description() -> None:
-    for version in ("1", "2"):
-        generation = generate(read(urdf_text("knee revolute base rod")), conventions(), version)
-        assert generation.mechanism is not None
-        assert generation.mechanism.version == {"1": "1", "2": "2.0"}[version]
 
 
 NOT_XML = (*range(9), 11, 12, *range(14, 32), 0xFFFE, 0xFFFF)
@@ -530,14 +460,6 @@ def test_numbers_survive_round_trip(value: float | bool | None) -> None:
     text = f"k: {scalar(value)}\n"
     assert repr(read_back(text)["k"]) == repr(value)
     assert repr(yaml.safe_load(text)["k"]) == repr(value)  # to parsers of YAML 1.1 too
-
-
-def test_list_items_are_indented_equally() -> None:
-    value = {"first": ["x" * 60, "y" * 60], "second": {}}
-    text = "list:\n" + "".join(f"  {line}\n" for line in lines_of_item(value))
-    assert read_back(text) == {"list": [value]}
-    assert text.startswith("list:\n  - first:\n      - x")
-    assert flow({"a": [], "b": {}}) == "{a: [], b: {}}"
 
 
 def named(loop: str, motor: str, ball: str) -> str:
@@ -599,14 +521,6 @@ def test_patterns_are_repeatable(leg: Path, capsys: pytest.CaptureFixture[str]) 
     assert "actuators: [motor_hip, free_knee]" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("option", ["--closure", "--motor", "--spherical"])
-def test_bad_pattern_cannot_run(leg: Path, capsys: pytest.CaptureFixture[str], option: str) -> None:
-    assert main(["generate", str(leg), option, "a)b"]) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    assert "'a)b' is not a regular expression" in err
-
-
 def test_contradicting_names_write_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file, out = tmp_path / "ball.urdf", tmp_path / "ball.yaml"
     file.write_text(urdf_text(*BALL), encoding="utf-8")
@@ -637,18 +551,6 @@ def test_json_contains_text_and_notes(leg: Path, capsys: pytest.CaptureFixture[s
     assert read_back(answer["text"])["actuators"] == ["motor_hip"]
     assert answer["notes"][0].startswith("'closedloop1' is 3d: the loops close")
     assert answer["hints"] == []
-
-
-def test_missing_closures_or_motors_always_give_hint(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    file = tmp_path / "arm.urdf"
-    file.write_text(urdf_text("knee revolute base thigh"), encoding="utf-8")
-    assert main(["generate", str(file)]) == 0
-    told = capsys.readouterr().err
-    assert "0 closures\n0 motors\n" in told
-    assert "hint: no two links or joints are named" in told
-    assert "hint: no joint is named as a motor" in told
-    assert main(["generate", str(file), "--json"]) == 0
-    assert len(json.loads(capsys.readouterr().out)["hints"]) == 2
 
 
 # -- files of unusual names, line ends or encodings ---------------------------------------------------------------
@@ -692,9 +594,43 @@ def test_other_encoding_is_refused_without_writing(
     assert [path.name for path in tmp_path.iterdir()] == ["robot.urdf"]
 
 
+def test_default_loop_name_is_common_part() -> None:
+    rows = ("hip revolute base thigh", "j1 fixed thigh top_of_rod", "j2 fixed base bottom_of_rod")
+    assert generated(*rows, closures=["(?P<side>top|bottom)_of_.*"]).found.closures[0].name == "of_rod"
+
+
+def test_unmatched_user_pattern_gives_hint() -> None:
+    given_ = conventions(closures=["(?P<side>top|bottom)_rod"], motors=["drive"])
+    urdf = read(urdf_text("knee revolute base thigh"))
+    closure, motor = hints(urdf, find(urdf, given_), given_)
+    assert closure.startswith("no two names match a --closure pattern")
+    assert motor.startswith("no joint that can move matches a --motor pattern")
+
+
+def test_three_intersecting_revolutes_are_merged() -> None:
+    generation = generated(*BALL)
+    assert generation.merges == {"rev2": ("rev0", "rev1", "rev2")}
+    assert "  rev2: {type: spherical, merges: [rev0, rev1, rev2]}\n" in generation.text
+    assert generation.mechanism is not None
+    assert [joint.type for joint in generation.mechanism.joints] == ["fixed", "fixed", "spherical"]
+
+
 @pytest.mark.parametrize(
     "urdf", ["no.urdf", "a: b.urdf", "my robot #1.urdf", "膝.urdf", "'x'.urdf", "1e3.urdf", "-x.urdf", "[a].urdf"]
 )
 def test_urdf_of_any_file_name_is_named(tmp_path: Path, urdf: str) -> None:
     actuators_of_generated(tmp_path, urdf_text(*LEG).encode(), urdf)
     assert yaml.safe_load((tmp_path / "out.yaml").read_text(encoding="utf-8"))["urdf"] == urdf
+
+
+def test_missing_closures_or_motors_give_hints_of_the_command(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "arm.urdf"
+    file.write_text(urdf_text("knee revolute base thigh"), encoding="utf-8")
+    assert main(["generate", str(file)]) == 0
+    told = capsys.readouterr().err
+    assert "0 closures\n0 motors\n" in told
+    assert re.findall("^hint: (.{18})", told, re.MULTILINE) == ["no two links or jo", "no joint is named "]
+    assert main(["generate", str(file), "--json"]) == 0
+    assert len(json.loads(capsys.readouterr().out)["hints"]) == 2

@@ -1,28 +1,18 @@
-"""Mutants: parsers with one thing wrong, to test that the suite notices. `MUTANTS` has them by name.
+"""Mutants: parsers with one thing wrong, to test that the suite notices. `MUTANTS` has them by what is wrong.
 
-Each is a sentence that says what is wrong, and a deviation, registered for the clause that it violates, and how: the
-parser reads other files than it is given (`reads_…`), gives them another meaning (`means`), or gives another answer
-(`answers`, `describes`, `evaluates`, `reports`, `refuses`). Those of `missing_rules` are made of the list of codes.
-`PROTOCOL_MUTANTS` are parsers that violate the protocol.
+`mutant` says how they are made; those of `missing_rules` are made of the list of codes. `PROTOCOL_MUTANTS` are parsers
+that violate the protocol.
 """
 
-from mutants import (  # noqa: F401  each adds its own
-    answering,
-    closures,
-    frames,
-    inertias,
-    joint_properties,
-    joints,
-    merging,
-    missing_rules,
-    numbers,
-    reading_descriptions,
-    reading_urdf,
-    reading_yaml,
-    reporting,
-)
-from mutants.mutant import MUTANTS, Mutant
+from importlib import import_module
+from pkgutil import iter_modules
+
+from mutants.mutant import Mutant, mutants_of
 from mutants.protocol import PROTOCOL_MUTANTS
+
+_ALL = [mutant for found in iter_modules(__path__) for mutant in mutants_of(import_module(f"mutants.{found.name}"))]
+MUTANTS = {mutant.breaks: mutant for mutant in _ALL}
+assert len(MUTANTS) == len(_ALL), "two mutants are wrong alike"
 
 #: The clauses with a MUST that no mutant violates, each with the reason.
 UNBROKEN = {

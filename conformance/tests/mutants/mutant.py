@@ -1,11 +1,17 @@
-"""A wrong parser, and how to make one: what it reads, what it means, what it answers."""
+"""A wrong parser, and how to make one: what it reads, what it means, what it answers.
+
+A module of this package has tables with the names of `MAKERS`. A key is the clause that is violated; with it may be
+the versions of the format, the level or the verdict, if they are not those of the clause. A row is a sentence that says
+what is wrong, which no other mutant has, and how: a deviation.
+"""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -17,11 +23,11 @@ from eurdf_conformance.adapters.reference import Reference
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.coverage import said_in
 from eurdf_conformance.judging.verdict import Verdict
-from eurdf_conformance.level import Level, Version
+from eurdf_conformance.level import VERSIONS, Level, Version
 from eurdf_conformance.oracle import NotRead, OracleRobot, read
 from eurdf_conformance.oracle.yaml_text import value_of
 from eurdf_conformance.protocol.message import Accepted, CanonicalRobot, Issue, Rejected, Values
-from eurdf_conformance.protocol.reply import rejected
+from eurdf_conformance.protocol.reply import accepted, rejected
 
 Answer = Accepted | Rejected
 Deviation = AbstractContextManager[Any]
@@ -34,7 +40,7 @@ class Mutant:
 
     Attributes:
         clause: The clause that it violates.
-        breaks: What is wrong, as a sentence; no other mutant has the same.
+        breaks: What is wrong, as a sentence.
         parser: Makes the parser, with nothing loaded.
         level: The level at which it must be caught.
         versions: The versions of the format in which it must be caught.
@@ -49,127 +55,69 @@ class Mutant:
     verdicts: frozenset[Verdict]
 
 
-#: All mutants, by what is wrong. Each module of this package adds its own.
-MUTANTS: dict[str, Mutant] = {}
+def mutants_of(module: Any) -> Iterator[Mutant]:
+    """The rows of all tables of a module."""
+    for name, make in MAKERS.items():
+        for key, rows in getattr(module, name, {}).items():
+            clause, *stated = (key,) if isinstance(key, str) else key
+            defined = read_clauses()[clause]
+            level = next((each for each in stated if isinstance(each, Level)), Level(defined.level))
+            versions = tuple(each for each in stated if each in VERSIONS) or said_in(defined)
+            verdicts = {each for each in stated if isinstance(each, Verdict)} or {Verdict.FAILED}
+            for breaks, deviation in rows.items():
+                yield Mutant(clause, breaks, partial(make, deviation), level, versions, frozenset(verdicts))
 
 
-def add(
-    clause: str,
-    breaks: str,
-    parser: Callable[[], Any],
-    *,
-    level: Level | None = None,
-    versions: tuple[Version, ...] | None = None,
-    verdict: Verdict = Verdict.FAILED,
-) -> None:
-    """Add a mutant. Level and versions are those of its clause, unless stated."""
-    breaks = " ".join(breaks.split())
-    assert breaks not in MUTANTS, f"two mutants are wrong alike: {breaks}"
-    stated = read_clauses()[clause]
-    MUTANTS[breaks] = Mutant(
-        clause,
-        breaks,
-        parser,
-        level or Level(stated.level),
-        versions or said_in(stated),
-        frozenset({verdict}),
-    )
-
-
-Register = Callable[..., Any]
-
-
-def _mutant(clause: str, make: Callable[[Callable[..., Any]], Any], **stated: Any) -> Register:
-    """Adds mutants of a clause: ``wrong(sentence, deviation)``, or as a decorator of a deviation with a docstring."""
-
-    def register(*row: Any) -> Any:
-        breaks, deviate = row if len(row) == 2 else (row[0].__doc__ or "", row[0])
-        add(clause, breaks, lambda: make(deviate), **stated)
-        return deviate
-
-    return register
+# -- What is read -----------------------------------------------------------------------------------------------------
 
 
 class _Misreading(Reference):
-    """Reads other files than it is given."""
+    """Reads other texts than those of the files; a change that gives none leaves the file as it is."""
 
-    def __init__(self, change: Callable[[Path, Path, Path], tuple[Path, Path]]) -> None:
+    def __init__(self, *changes: Callable[[str], str | None] | None) -> None:
         super().__init__()
-        self._change = change
+        self._changes = changes
 
-    def load(self, description: Path, urdf: Path) -> Answer:
+    def load(self, *files: Path) -> Answer:
         with TemporaryDirectory() as folder:
-            return super().load(*self._change(description, urdf, Path(folder)))
+            return super().load(*map(partial(_rewritten, Path(folder)), files, self._changes))
 
 
-def _rewritten(path: Path, folder: Path, change: Callable[[str], str | None]) -> Path:
-    """A copy of a file with another text; the file itself if it cannot be read, or is not changed."""
+def _rewritten(folder: Path, path: Path, change: Callable[[str], str | None] | None) -> Path:
     try:
         text = path.read_bytes().decode()
     except (OSError, UnicodeDecodeError):
         return path
-    if (other := change(text)) in (None, text):
+    if change is None or (other := change(text)) in (None, text):
         return path
-    copy = folder / path.name
-    copy.write_bytes(other.encode("utf-8", "surrogatepass"))
-    return copy
+    (folder / path.name).write_bytes(other.encode("utf-8", "surrogatepass"))
+    return folder / path.name
 
 
-def reads_yaml(clause: str, **stated: Any) -> Register:
-    """A mutant that reads another text of the description: f(text) -> text."""
-
-    def make(change: Callable[[str], str | None]) -> _Misreading:
-        return _Misreading(lambda description, urdf, folder: (_rewritten(description, folder, change), urdf))
-
-    return _mutant(clause, make, **stated)
-
-
-def reads_description(clause: str, **stated: Any) -> Register:
-    """A mutant that changes the data of the description, which is valid YAML: f(data), in place."""
-
-    def make(change: Callable[[Members], None]) -> _Misreading:
-        def text(source: str) -> str | None:
-            try:
-                data = value_of(source.removeprefix("\ufeff"))
-            except (NotRead, RecursionError):
-                return None
-            if not isinstance(data, dict):
-                return None
-            before = json.dumps(data)
-            change(data)
-            return None if (after := json.dumps(data)) == before else after
-
-        return _Misreading(lambda description, urdf, folder: (_rewritten(description, folder, text), urdf))
-
-    return _mutant(clause, make, **stated)
+def _with_data(change: Callable[[Members], None], source: str) -> str | None:
+    try:
+        data = value_of(source.removeprefix("\ufeff"))
+    except (NotRead, RecursionError):
+        return None
+    if not isinstance(data, dict):
+        return None
+    before = json.dumps(data)
+    change(data)
+    return None if (after := json.dumps(data)) == before else after
 
 
-def reads_xml(clause: str, **stated: Any) -> Register:
-    """A mutant that reads another text of the URDF: f(text) -> text."""
+def _with_elements(change: Callable[[Any], None], source: str) -> str | None:
+    try:
+        root = etree.fromstring(source.encode())
+    except etree.XMLSyntaxError:
+        return None
+    before = etree.tostring(root)
+    change(root)
+    after = etree.tostring(root)
+    return None if after == before else after.decode()
 
-    def make(change: Callable[[str], str]) -> _Misreading:
-        return _Misreading(lambda description, urdf, folder: (description, _rewritten(urdf, folder, change)))
 
-    return _mutant(clause, make, **stated)
-
-
-def reads_urdf(clause: str, **stated: Any) -> Register:
-    """A mutant that changes the elements of the URDF, which is well-formed XML: f(robot), in place."""
-
-    def make(change: Callable[[Any], None]) -> _Misreading:
-        def text(source: str) -> str | None:
-            try:
-                root = etree.fromstring(source.encode())
-            except etree.XMLSyntaxError:
-                return None
-            before = etree.tostring(root)
-            change(root)
-            after = etree.tostring(root)
-            return None if after == before else after.decode()
-
-        return _Misreading(lambda description, urdf, folder: (description, _rewritten(urdf, folder, text)))
-
-    return _mutant(clause, make, **stated)
+# -- What is answered -------------------------------------------------------------------------------------------------
 
 
 class _Answering(Reference):
@@ -183,51 +131,23 @@ class _Answering(Reference):
         return self._change(super().load(description, urdf), description, urdf)
 
 
-def answers(clause: str, **stated: Any) -> Register:
-    """A mutant that answers `load` with something else: f(answer, description, urdf) -> answer."""
-    return _mutant(clause, _Answering, **stated)
-
-
-def describes(clause: str, **stated: Any) -> Register:
-    """A mutant that answers with another canonical description: f(robot) -> the members that differ."""
-
-    def make(change: Callable[[CanonicalRobot], Members]) -> _Answering:
-        def answer(right: Answer, *_: Path) -> Answer:
-            if not isinstance(right, Accepted) or right.robot is None:
-                return right
-            return right.model_copy(update={"robot": right.robot.model_copy(update=change(right.robot))})
-
-        return _Answering(answer)
-
-    return _mutant(clause, make, **stated)
-
-
-def reports(clause: str, **stated: Any) -> Register:
-    """A mutant that reports other issues: f(issues, description, urdf) -> issues."""
-
-    def make(change: Callable[[list[Issue], Path, Path], list[Issue]]) -> _Answering:
-        def answer(right: Answer, description: Path, urdf: Path) -> Answer:
-            return right.model_copy(update={"issues": change(right.issues, description, urdf)})
-
-        return _Answering(answer)
-
-    return _mutant(clause, make, **stated)
-
-
-def refuses(clause: str, **stated: Any) -> Register:
-    """A mutant that rejects what is valid: f(data of the description, root element of the URDF) -> whether."""
-
-    def make(where: Callable[[Members, Any], Any]) -> _Answering:
-        def answer(right: Answer, description: Path, urdf: Path) -> Answer:
-            if isinstance(right, Accepted) and where(
-                value_of(description.read_bytes().decode("utf-8-sig")), etree.parse(urdf).getroot()
-            ):
-                return rejected("this is not supported")
+def _describing(change: Callable[[CanonicalRobot], Members]) -> _Answering:
+    def answer(right: Answer, *_: Path) -> Answer:
+        if not isinstance(right, Accepted) or right.robot is None:
             return right
+        return right.model_copy(update={"robot": right.robot.model_copy(update=change(right.robot))})
 
-        return _Answering(answer)
+    return _Answering(answer)
 
-    return _mutant(clause, make, **stated)
+
+def _reporting(change: Callable[[list[Issue], Path, Path], list[Issue]]) -> _Answering:
+    return _Answering(lambda right, *files: right.model_copy(update={"issues": change(right.issues, *files)}))
+
+
+def _refusing(where: Callable[[Members, Any], Any]) -> _Answering:
+    return _Answering(
+        rejecting(lambda description, urdf: where(value_of(text_of(description)), etree.parse(urdf).getroot()))
+    )
 
 
 class _Evaluating(Reference):
@@ -245,24 +165,29 @@ class _Evaluating(Reference):
         ]
 
 
-def evaluates(clause: str, **stated: Any) -> Register:
-    """A mutant that answers with other values: f(values) -> the quantities that differ."""
-    return _mutant(clause, _Evaluating, **stated)
+# -- What is meant ----------------------------------------------------------------------------------------------------
 
 
 class _Misunderstanding(Reference):
     """Gives one thing another meaning: a deviating oracle describes and evaluates what the reference accepts."""
 
-    def __init__(self, deviation: Callable[[], Deviation]) -> None:
+    def __init__(self, deviation: Deviation | tuple[Deviation, ...]) -> None:
         super().__init__()
-        self._deviation = deviation
+        self._deviations = deviation if isinstance(deviation, tuple) else (deviation,)
         self._understood: OracleRobot | None = None
+
+    @contextmanager
+    def _deviating(self) -> Iterator[None]:
+        with ExitStack() as stack:
+            for each in self._deviations:
+                stack.enter_context(each)
+            yield
 
     def load(self, description: Path, urdf: Path) -> Answer:
         right = super().load(description, urdf)
         if isinstance(right, Rejected):
             return right
-        with self._deviation():
+        with self._deviating():
             try:
                 self._understood = read(description, urdf)
             except NotRead as error:
@@ -273,16 +198,67 @@ class _Misunderstanding(Reference):
         self, configurations: Sequence[Mapping[str, Sequence[float]]], frames: Sequence[str], quantities: Sequence[Any]
     ) -> list[Values]:
         assert self._understood is not None
-        with self._deviation():
+        with self._deviating():
             return [self._understood.evaluate(q, frames, quantities) for q in configurations]
 
 
-def means(clause: str, **stated: Any) -> Register:
-    """A mutant that gives something another meaning: f() -> a deviation of the oracle."""
-    return _mutant(clause, _Misunderstanding, **stated)
+#: How a parser is made of a deviation, by the name of the table that has it.
+MAKERS: dict[str, Callable[[Any], Reference]] = {
+    # f(text) -> text
+    "READS_YAML": lambda change: _Misreading(change, None),
+    "READS_XML": lambda change: _Misreading(None, change),
+    # f(data of the description, or root element of the URDF), which changes it in place
+    "READS_DESCRIPTION": lambda change: _Misreading(partial(_with_data, change), None),
+    "READS_URDF": lambda change: _Misreading(None, partial(_with_elements, change)),
+    # f(answer, description, urdf) -> another answer; the reference gives what it is called with
+    "ANSWERS": _Answering,
+    # f(robot) -> the members of the canonical description that differ
+    "DESCRIBES": _describing,
+    # f(issues, description, urdf) -> other issues
+    "REPORTS": _reporting,
+    # f(data of the description, root element of the URDF) -> whether to reject what is valid
+    "REFUSES": _refusing,
+    # f(values) -> the quantities that differ
+    "EVALUATES": _Evaluating,
+    # a deviation of the oracle, or several: `instead`, or a patch
+    "MEANS": _Misunderstanding,
+}
+
+
+# -- Deviations -------------------------------------------------------------------------------------------------------
 
 
 def instead(owner: Any, name: str, other: Callable[..., Any]) -> Deviation:
     """A function of the oracle is another, which gets the right one before its arguments."""
     right = getattr(owner, name)
     return patch.object(owner, name, lambda *arguments, **named: other(right, *arguments, **named))
+
+
+def text_of(path: Path) -> str:
+    """The text of a file; empty if there is none."""
+    return path.read_bytes().decode("utf-8-sig", "replace") if path.is_file() else ""
+
+
+def rejecting(where: Callable[[Path, Path], Any]) -> Callable[..., Answer]:
+    """What is valid is rejected in some files."""
+
+    def answer(right: Answer, *files: Path) -> Answer:
+        return rejected("this is not supported") if isinstance(right, Accepted) and where(*files) else right
+
+    return answer
+
+
+def accepting(code: str, where: Callable[[Issue, Path, Path], Any] = lambda *_: True) -> Callable[..., Answer]:
+    """What must be rejected with a code is accepted, if there are no other errors, and where that is so of each."""
+
+    def answer(right: Answer, *files: Path) -> Answer:
+        errors = [issue for issue in right.issues if issue.severity == "error"]
+        wrong = isinstance(right, Rejected) and all(issue.code == code and where(issue, *files) for issue in errors)
+        return accepted() if wrong else right
+
+    return answer
+
+
+def silent(code: str, where: Callable[[Issue, Path, Path], Any] = lambda *_: True) -> Callable[..., list[Issue]]:
+    """Issues of a code are not reported, where that is so of one."""
+    return lambda found, *files: [each for each in found if each.code != code or not where(each, *files)]

@@ -7,481 +7,335 @@ import math
 import re
 import unicodedata
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from eurdf_conformance.level import Level
-from mutants.mutant import reads_urdf, reads_xml, refuses
 
 # -- XML --------------------------------------------------------------------------------------------------------------
 
 
-wrong = reads_xml("EU-URD-001")
-wrong(
-    "An ampersand that begins no reference is text, as in tinyxml2 and in browsers.",
-    lambda text: re.sub(r"&(?![A-Za-z#])", "&amp;", text),
-)
-
-
-@reads_xml("EU-URD-001")
-def text_after_the_root_is_ignored(text: str) -> str:
-    """A file is read to the end of its root element."""
-    head, end, _ = text.partition("</robot>")
-    return head + end
-
-
-wrong = reads_xml("EU-URD-001")
-wrong(
-    "An attribute may have its value without quotes, as in HTML.",
-    lambda text: re.sub(r"(<[^<>]*\s\w+=)([^\s\"'<>/]+)", r'\1"\2"', text),
-)
-wrong(
-    "The version in the XML declaration has no effect, as in expat.",
-    lambda text: re.sub(r"(<\?xml\s+version=)(['\"]).*?\2", r'\1"1.0"', text, count=1),
-)
-wrong(
-    "A character reference of a surrogate is dropped.",
-    lambda text: re.sub(r"&#x[Dd][89A-Fa-f][0-9A-Fa-f]{2};", "", text),
-)
-
-
-@reads_xml("EU-URD-001")
-def prefixes_need_no_declaration(text: str) -> str:
-    """A prefix is a part of the name, whether it has a namespace or not."""
+def _with_declared_prefixes(text: str) -> str:
     prefixes = sorted({*re.findall(r"[<\s]([a-z]+):[a-z]", text)} - {"xml", "xmlns"})
     return text.replace("<robot", "<robot" + "".join(f' xmlns:{each}="urn:of-{each}"' for each in prefixes), 1)
 
 
-wrong = reads_xml("EU-URD-001")
-wrong(
-    "Two attributes of one name in one namespace may have two prefixes.",
-    lambda text: re.sub(r'xmlns:b="[^"]*"', 'xmlns:b="urn:only-b"', text),
-)
-wrong(
-    "A name may have any number of colons, as in XML without namespaces.",
-    lambda text: re.sub(r"(?<=[<\s?])([a-z]*):([a-z0-9]*)(?:(:)[a-z]+)?(?=[\s=/>])", r"\1\2", text),
-)
+_without_document_types = partial(re.sub, r"<!DOCTYPE[^\[>]*(\[[^\]]*\])?\s*>", "")
 
-wrong = reads_xml("EU-URD-001", versions=("2",))
-wrong("A namespace may be empty, as in XML 1.1.", lambda text: re.sub(r'xmlns:([a-z]+)=""', r'xmlns:\1="urn:\1"', text))
-wrong(
-    "The name of a namespace must be a URI, which has no spaces.",
-    lambda text: re.sub(r'(xmlns:[a-z]+=)"[^"]* [^"]*"', r'\1""', text),
-)
-
-wrong = reads_xml("EU-FIL-003")
-wrong(
-    "A file of ASCII may declare US-ASCII, of which UTF-8 is a superset.",
-    lambda text: re.sub(r"(?i)^(<\?xml[^>]*encoding=['\"])us-ascii", r"\1UTF-8", text) if text.isascii() else text,
-)
-
-
-@reads_xml("EU-URD-002")
-def document_types_are_ignored(text: str) -> str:
-    """A document type declaration has no effect."""
-    return re.sub(r"<!DOCTYPE[^\[>]*(\[[^\]]*\])?\s*>", "", text)
-
-
-wrong = reads_xml("EU-SEC-002")
-wrong(
-    "A document type declaration has no effect, and its entities are text.",
-    lambda text: re.sub(r"&(?!amp|lt|gt|quot|apos|#)", "&amp;", document_types_are_ignored(text)),
-)
-
-wrong = reads_xml("EU-URD-001")
-wrong("A value in single quotes is a syntax error.", lambda text: re.sub(r"=\s*'", "='<", text))
-
-wrong = reads_xml("EU-URD-007")
-wrong(
-    "A number may have a comma for its point, as C programs read it in some locales.",
-    lambda text: re.sub(r"(?<=[0-9]),(?=[0-9])", ".", text),
-)
+READS_XML = {
+    "EU-URD-001": {
+        "An ampersand that begins no reference is text, as in tinyxml2 and in browsers.": partial(
+            re.sub, r"&(?![A-Za-z#])", "&amp;"
+        ),
+        "A file is read to the end of its root element.": partial(re.sub, r"(?s)</robot>.*", "</robot>"),
+        "An attribute may have its value without quotes, as in HTML.": partial(
+            re.sub, r"(<[^<>]*\s\w+=)([^\s\"'<>/]+)", r'\1"\2"'
+        ),
+        "The version in the XML declaration has no effect, as in expat.": partial(
+            re.sub, r"(<\?xml\s+version=)(['\"]).*?\2", r'\1"1.0"', count=1
+        ),
+        "A character reference of a surrogate is dropped.": partial(re.sub, r"&#x[Dd][89A-Fa-f][0-9A-Fa-f]{2};", ""),
+        "A prefix is a part of the name, whether it has a namespace or not.": _with_declared_prefixes,
+        "Two attributes of one name in one namespace may have two prefixes.": partial(
+            re.sub, r'xmlns:b="[^"]*"', 'xmlns:b="urn:only-b"'
+        ),
+        "A name may have any number of colons, as in XML without namespaces.": partial(
+            re.sub, r"(?<=[<\s?])([a-z]*):([a-z0-9]*)(?:(:)[a-z]+)?(?=[\s=/>])", r"\1\2"
+        ),
+        "A value in single quotes is a syntax error.": partial(re.sub, r"=\s*'", "='<"),
+        "A file that declares XML 1.1 is refused.": partial(re.sub, r"(<\?xml\s+version=.)1\.[1-9]", r"\g<1>2.0"),
+    },
+    ("EU-URD-001", "2"): {
+        "A namespace may be empty, as in XML 1.1.": partial(re.sub, r'xmlns:([a-z]+)=""', r'xmlns:\1="urn:\1"'),
+        "The name of a namespace must be a URI, which has no spaces.": partial(
+            re.sub, r'(xmlns:[a-z]+=)"[^"]* [^"]*"', r'\1""'
+        ),
+    },
+    "EU-URD-002": {"A document type declaration has no effect.": _without_document_types},
+    "EU-URD-007": {
+        "A number may have a comma for its point, as C programs read it in some locales.": partial(
+            re.sub, r"(?<=[0-9]),(?=[0-9])", "."
+        ),
+    },
+    "EU-SEC-002": {
+        "A document type declaration has no effect, and its entities are text.": lambda text: re.sub(
+            r"&(?!amp|lt|gt|quot|apos|#)", "&amp;", _without_document_types(text)
+        ),
+    },
+    "EU-FIL-003": {
+        "A file of ASCII may declare US-ASCII, of which UTF-8 is a superset.": lambda text: (
+            re.sub(r"(?i)^(<\?xml[^>]*encoding=['\"])us-ascii", r"\1UTF-8", text) if text.isascii() else text
+        ),
+        "The declared encoding is `UTF-8` or `utf-8`, not `Utf-8`.": partial(
+            re.sub, r"(<\?xml[^>]*encoding=.)(?!UTF-8|utf-8)[Uu][Tt][Ff]-8", r"\1UTF-7"
+        ),
+        "The declared encoding may be `UTF8`.": partial(re.sub, r"(<\?xml[^>]*encoding=.)UTF8", r"\1UTF-8"),
+    },
+}
 
 
 # -- Elements and attributes ------------------------------------------------------------------------------------------
 
-
-def _attributes(robot: Any, change: Callable[[str], str], *names: str) -> None:
-    for element in robot.iter("*"):
-        for name in names:
-            if name in element.attrib:
-                element.set(name, change(element.get(name)))
+Change = Callable[[Any], None]
 
 
-NAMES = ("name", "link", "joint")
+def _each(path: str, change: Callable[[Any], Any]) -> Change:
+    """Elements are changed, in place, where a path leads."""
+
+    def changed(robot: Any) -> None:
+        for element in robot.xpath(path):
+            change(element)
+
+    return changed
 
 
-@reads_urdf("EU-FRM-001")
-def names_are_trimmed(robot: Any) -> None:
-    """Names in the URDF are read without the white space around them."""
-    _attributes(robot, str.strip, *NAMES)
+def _attributes(change: Callable[[str], str], path: str) -> Change:
+    """Attributes have other values."""
+    return _each(path, lambda value: value.getparent().set(value.attrname, change(value)))
 
 
-@reads_urdf("EU-FRM-001")
-def names_are_normalised(robot: Any) -> None:
-    """Names in the URDF are brought to Unicode's composed form."""
-    _attributes(robot, lambda name: unicodedata.normalize("NFC", name), *NAMES)
+def _drop(path: str) -> Change:
+    return _each(path, lambda element: element.getparent().remove(element))
 
 
-@reads_urdf("EU-FRM-001")
-def names_in_lower_case(robot: Any) -> None:
-    """Names in the URDF are read in lower case."""
-    _attributes(robot, str.lower, *NAMES)
+def _default(value: str, *names: str) -> Callable[[Any], None]:
+    """Attributes that are left out have a value."""
+    return lambda element: [element.set(name, element.get(name, value)) for name in names]  # type: ignore[return-value]
 
 
-@reads_urdf("EU-URD-012")
-def joint_types_in_any_case(robot: Any) -> None:
-    """A joint's type may be in upper case."""
-    _attributes(robot, str.lower, "type")
-
-
-@reads_urdf("EU-URD-016")
-def last_of_two_parents_counts(robot: Any) -> None:
-    """Of two joints that carry one link, the last in the file counts."""
+def _last_of_two_parents(robot: Any) -> None:
     carrying: dict[str, Any] = {}
-    for joint in robot.findall("joint"):
-        if (child := joint.find("child")) is not None and child.get("link"):
-            if (other := carrying.get(child.get("link"))) is not None:
-                robot.remove(other)
-            carrying[child.get("link")] = joint
+    for joint in robot.xpath("joint[child/@link != '']"):
+        child = joint.find("child").get("link")
+        if child in carrying:
+            robot.remove(carrying[child])
+        carrying[child] = joint
 
 
-def _drop(robot: Any, path: str) -> None:
-    for element in robot.findall(path):
-        element.getparent().remove(element)
-
-
-@reads_urdf("EU-URD-032", versions=("2",))
-def mimics_are_ignored(robot: Any) -> None:
-    """A joint that mimics moves by itself, as in Pinocchio by default."""
-    _drop(robot, "joint/mimic")
-
-
-@reads_urdf("EU-URD-006")
-def first_of_repeated_elements_counts(robot: Any) -> None:
-    """Of two elements where one is allowed, the first counts."""
+def _drop_repeated(robot: Any) -> None:
     for parent in robot.iter("joint", "link", "inertial"):
         for tag in ("parent", "child", "axis", "limit", "dynamics", "mimic", "origin", "inertial", "mass", "inertia"):
             for element in parent.findall(tag)[1:]:
                 parent.remove(element)
 
 
-@reads_urdf("EU-URD-005")
-def missing_limits_are_0(robot: Any) -> None:
-    """An effort or a velocity that is left out is 0, as in urdfdom of long ago."""
-    for limit in robot.findall("joint/limit"):
-        for name in ("effort", "velocity"):
-            limit.set(name, limit.get(name, "0"))
+def _swap(limit: Any) -> None:
+    lower, upper = limit.get("lower", "0"), limit.get("upper", "0")
+    with contextlib.suppress(ValueError):
+        if float(lower) > float(upper):
+            limit.set("lower", upper)
+            limit.set("upper", lower)
 
 
-@reads_urdf("EU-URD-019")
-def reversed_limits_are_swapped(robot: Any) -> None:
-    """Of two limits the smaller is the lower one."""
-    for limit in robot.findall("joint/limit"):
-        lower, upper = limit.get("lower", "0"), limit.get("upper", "0")
-        try:
-            if float(lower) > float(upper):
-                limit.set("lower", upper)
-                limit.set("upper", lower)
-        except ValueError:
-            pass
+def _x_for_zero(axis: Any) -> None:
+    if set(re.findall("[^ .+-]", axis.get("xyz", "1"))) == {"0"}:
+        axis.set("xyz", "1 0 0")
 
 
-@reads_urdf("EU-URD-013")
-def axes_of_zero_are_x(robot: Any) -> None:
-    """An axis of zero is x."""
-    for axis in robot.findall("joint/axis"):
-        if set(re.findall("[^ .+-]", axis.get("xyz", "1"))) == {"0"}:
-            axis.set("xyz", "1 0 0")
+def _soft_limits(joint: Any) -> None:
+    limit, soft = joint.find("limit"), joint.find("safety_controller")
+    for side in ("lower", "upper"):
+        limit.set(side, soft.get(f"soft_{side}_limit", limit.get(side, "0")))
 
 
-@reads_urdf("EU-CAN-001")
-def safety_controllers_limit(robot: Any) -> None:
-    """The soft limits of a safety controller replace those of the joint."""
-    for joint in robot.findall("joint"):
-        limit, soft = joint.find("limit"), joint.find("safety_controller")
-        if limit is not None and soft is not None:
-            for side in ("lower", "upper"):
-                limit.set(side, soft.get(f"soft_{side}_limit", limit.get(side, "0")))
+def _pad(axis: Any) -> None:
+    if len(axis.get("xyz", "").split()) == 2:
+        axis.set("xyz", axis.get("xyz") + " 0")
 
 
-# -- Rules too many ---------------------------------------------------------------------------------------------------
-
-
-wrong = refuses("EU-URD-004")
-wrong(
-    "A continuous joint must have a limit.",
-    lambda data, robot: any(
-        joint.get("type") == "continuous" and joint.find("limit") is None for joint in robot.findall("joint")
-    ),
-)
-wrong(
-    "A link must have an inertial element.",
-    lambda data, robot: any(link.find("inertial") is None for link in robot.findall("link")),
-)
-
-
-@refuses("EU-URD-014")
-def links_must_come_first(data: Any, robot: Any) -> bool:
-    """A joint must come after the links that it names."""
-    known = set()
-    for element in robot:
-        if element.tag == "link":
-            known.add(element.get("name"))
-        elif element.tag == "joint" and not {element.find(side).get("link") for side in ("parent", "child")} <= known:
-            return True
-    return False
-
-
-wrong = refuses("EU-URD-018")
-wrong(
-    "The first link of the file must be the root.",
-    lambda data, robot: robot.find("link").get("name") in {child.get("link") for child in robot.findall("joint/child")},
-)
-
-wrong = refuses("EU-URD-015")
-wrong("A robot must have a joint.", lambda data, robot: robot.find("joint") is None)
-
-
-@refuses("EU-URD-019")
-def equal_limits_are_refused(data: Any, robot: Any) -> bool:
-    """A lower limit must be below the upper one."""
-    limits = robot.findall("joint/limit")
-    return any(limit.get("lower") and limit.get("lower") == limit.get("upper") for limit in limits)
-
-
-wrong = refuses("EU-URD-020")
-wrong(
-    "Limits of effort and velocity must be greater than 0.",
-    lambda data, robot: any(
-        float(limit.get(of, "1")) == 0 for limit in robot.findall("joint/limit") for of in ("effort", "velocity")
-    ),
-)
-
-
-@refuses("EU-URD-022", versions=("2",))
-def chains_of_mimics_are_refused(data: Any, robot: Any) -> bool:
-    """A joint may not mimic one that mimics."""
-    leaders = {mimic.getparent().get("name"): mimic.get("joint") for mimic in robot.findall("joint/mimic")}
-    return any(leader in leaders for leader in leaders.values())
-
-
-wrong = refuses("EU-URD-024")
-wrong("A capsule is not a shape, as in urdfdom.", lambda data, robot: next(robot.iter("capsule"), None) is not None)
-wrong(
-    "The scale of a mesh must be positive.",
-    lambda data, robot: any("-" in mesh.get("scale", "") for mesh in robot.iter("mesh")),
-)
-
-
-@refuses("EU-URD-013")
-def short_axes_are_refused(data: Any, robot: Any) -> bool:
-    """An axis must have unit length, within a thousandth."""
-    axes = [axis.get("xyz").split() for axis in robot.findall("joint/axis")]
-    return any(abs(math.hypot(*map(float, axis)) - 1) > 1e-3 for axis in axes)
-
-
-wrong = refuses("EU-URD-013")
-wrong(
-    "The axis of a fixed joint may not be zero, which exporters write.",
-    lambda data, robot: any(
-        not any(map(float, axis.get("xyz").split())) for axis in robot.findall("joint[@type='fixed']/axis")
-    ),
-)
-
-wrong = refuses("EU-CNF-002")
-wrong(
-    "An element that URDF does not have is refused, and those of other programs with it.",
-    lambda data, robot: any(element.tag not in ("link", "joint", "material") for element in robot.iterchildren("*")),
-)
-wrong(
-    "A name must be ASCII.",
-    lambda data, robot: any(not element.get("name", "").isascii() for element in robot.iter("link", "joint")),
-)
-wrong(
-    "A name may not have slashes, which are for namespaces of ROS.",
-    lambda data, robot: any("/" in element.get("name", "") for element in robot.iter("link", "joint")),
-)
-
-wrong = refuses("EU-FIL-002")
-wrong("A robot of more than 1000 links is refused.", lambda data, robot: len(robot.findall("link")) > 1000)
-
-
-@reads_urdf("EU-URD-020")
-def dynamics_without_effect_are_not_read(robot: Any) -> None:
-    """`dynamics` of a planar or fixed joint is not read, since it has no effect."""
-    for joint in robot.iter("joint"):
-        if joint.get("type") in ("planar", "fixed"):
-            for dynamics in joint.findall("dynamics"):
-                joint.remove(dynamics)
-
-
-@reads_urdf("EU-URD-007")
-def axis_of_planar_joint_is_padded(robot: Any) -> None:
-    """The axis of a planar joint may have two numbers; the third one is then 0."""
-    for joint in robot.iter("joint"):
-        for axis in joint.findall("axis") if joint.get("type") == "planar" else ():
-            if len(axis.get("xyz", "").split()) == 2:
-                axis.set("xyz", axis.get("xyz") + " 0")
-
-
-@reads_urdf("EU-URD-024")
-def spheres_without_radius_are_points(robot: Any) -> None:
-    """A sphere of radius 0 is a point."""
-    for sphere in robot.iter("sphere"):
-        if sphere.get("radius") == "0":
-            sphere.set("radius", "1e-9")
-
-
-@reads_urdf("EU-URD-006", level=Level.ACCEPT)
-def only_shapes_in_geometry(robot: Any) -> None:
-    """A geometry that contains any other element has no shape."""
-    for geometry in robot.iter("geometry"):
-        if len(geometry) > 1:
-            geometry.clear()
-
-
-# -- One form of several ----------------------------------------------------------------------------------------------
-
-
-wrong = reads_xml("EU-FIL-003")
-wrong(
-    "The declared encoding is `UTF-8` or `utf-8`, not `Utf-8`.",
-    lambda text: re.sub(r"(<\?xml[^>]*encoding=.)(?!UTF-8|utf-8)[Uu][Tt][Ff]-8", r"\1UTF-7", text),
-)
-wrong("The declared encoding may be `UTF8`.", lambda text: re.sub(r"(<\?xml[^>]*encoding=.)UTF8", r"\1UTF-8", text))
-
-wrong = reads_xml("EU-URD-001")
-wrong(
-    "A file that declares XML 1.1 is refused.", lambda text: re.sub(r"(<\?xml\s+version=.)1\.[1-9]", r"\g<1>2.0", text)
-)
-
-
-@reads_urdf("EU-URD-004")
-def default_namespaces_count(robot: Any) -> None:
-    """An element in a default namespace of its own belongs to another program."""
+def _default_namespaces_count(robot: Any) -> None:
     if None not in robot.nsmap:
         for element in robot.iter("{*}*"):
             if element.prefix is None and None in element.nsmap:
                 element.tag = "foreign"
 
 
-@refuses("EU-URD-006")
-def no_element_may_repeat(data: Any, robot: Any) -> bool:
-    """An element of another program must not occur twice in a joint or an inertial either."""
-    parents = (parent for tag in ("joint", "inertial") for parent in robot.iter(tag))
-    return any(len(parent) > len({child.tag for child in parent.iterchildren("*")}) for parent in parents)
-
-
-@refuses("EU-URD-029")
-def names_of_materials_are_unique(data: Any, robot: Any) -> bool:
-    """Two materials of the robot must not have one name."""
-    names = [material.get("name") for material in robot.findall("material")]
-    return len(names) > len(set(names))
-
-
-wrong = refuses("EU-URD-007")
-wrong(
-    "A number does not end with its point.",
-    lambda data, robot: any(
-        re.search(r"[0-9]\.( |$)", text) for axis in robot.iter("axis", "origin") for text in axis.values()
-    ),
-)
-
-
-@reads_urdf("EU-URD-020")
-def continuous_joints_have_any_velocity(robot: Any) -> None:
-    """The velocity limit of a continuous joint may be negative."""
-    for limit in robot.iterfind("joint[@type='continuous']/limit[@velocity]"):
-        limit.set("velocity", limit.get("velocity").lstrip("-"))
-
-
-@refuses("EU-URD-013")
-def zero_axes_of_planar_joints_are_refused(data: Any, robot: Any) -> bool:
-    """A zero axis of a planar joint is refused, as if the joint turned about it."""
-    axes = robot.iterfind("joint[@type='planar']/axis[@xyz]")
-    return any(not any(map(float, axis.get("xyz").split())) for axis in axes)
-
-
-@reads_urdf("EU-URD-035")
-def axes_are_snapped(robot: Any) -> None:
-    """An axis within 1e-5 of x, y or z is that axis."""
-    for axis in robot.iterfind("joint/axis[@xyz]"):
-        try:
-            numbers = [float(text) for text in axis.get("xyz").split()]
-        except ValueError:
-            continue
+def _snap(axis: Any) -> None:
+    with contextlib.suppress(ValueError):
+        numbers = [float(text) for text in axis.get("xyz").split()]
         least = 1e-5 * max(map(abs, numbers), default=0.0)
         if any(0.0 < abs(number) < least for number in numbers):
             axis.set("xyz", " ".join(str(number if abs(number) >= least else 0.0) for number in numbers))
 
 
-wrong = refuses("EU-URD-011")
-wrong(
-    "`Universe` is reserved too.",
-    lambda data, robot: any(name.lower() == "universe" for name in robot.xpath("(link|joint)/@name")),
-)
-
-
-# -- Versions of URDF -------------------------------------------------------------------------------------------------
-
-
-@reads_urdf("EU-URD-037")
-def versions_are_compared_as_numbers(robot: Any) -> None:
-    """A version may be written as any text of the same number, such as `1.10`."""
+def _version_as_number(robot: Any) -> None:
     with contextlib.suppress(ValueError):
         robot.set("version", str(float(robot.get("version", ""))))
 
 
-def _quaternions(robot: Any) -> list[tuple[Any, list[str]]]:
-    return [(origin, origin.get("quat_xyzw").split()) for origin in robot.iterfind(".//origin[@quat_xyzw]")]
+def _w_first(text: str) -> str:
+    numbers = text.split()
+    return " ".join(numbers[1:] + numbers[:1])
 
 
-@reads_urdf("EU-URD-039")
-def quaternions_begin_with_w(robot: Any) -> None:
-    """The first number of a quaternion is w, as in MJCF."""
-    for origin, numbers in _quaternions(robot):
-        origin.set("quat_xyzw", " ".join(numbers[1:] + numbers[:1]))
-
-
-@reads_urdf("EU-URD-039", level=Level.STRUCTURE)
-def quaternions_of_joints_alone_are_read(robot: Any) -> None:
-    """The quaternions of shapes and inertias have no effect."""
-    for origin, _ in _quaternions(robot):
-        if origin.getparent().tag != "joint":
-            del origin.attrib["quat_xyzw"]
-
-
-@refuses("EU-URD-039")
-def quaternions_are_of_unit_length(data: Any, robot: Any) -> bool:
-    """A quaternion whose norm differs from 1 by more than 1e-3 is refused."""
-    quaternions = robot.xpath("/robot[@version >= 1.1]//origin/@quat_xyzw")
-    return any(abs(math.hypot(*map(float, text.split())) - 1.0) > 1e-3 for text in quaternions)
-
-
-@reads_urdf("EU-URD-039")
-def quaternions_have_an_effect_in_every_version(robot: Any) -> None:
-    """A quaternion is read before version 1.1 too."""
-    if robot.get("version", "1.0") == "1.0" and _quaternions(robot):
+def _quaternions_always(robot: Any) -> None:
+    if robot.get("version", "1.0") == "1.0" and robot.xpath(".//origin/@quat_xyzw"):
         robot.set("version", "1.1")
 
 
-wrong = refuses("EU-URD-005")
-wrong(
-    "A limit must have an effort in version 1.2 too.",
-    lambda data, robot: any("effort" not in limit.attrib for limit in robot.iterfind("joint/limit")),
-)
+READS_URDF = {
+    "EU-FRM-001": {
+        "Names in the URDF are read without the white space around them.": _attributes(
+            str.strip, "//@name|//@link|//@joint"
+        ),
+        "Names in the URDF are brought to Unicode's composed form.": _attributes(
+            partial(unicodedata.normalize, "NFC"), "//@name|//@link|//@joint"
+        ),
+        "Names in the URDF are read in lower case.": _attributes(str.lower, "//@name|//@link|//@joint"),
+    },
+    "EU-URD-004": {
+        "An element in a default namespace of its own belongs to another program.": _default_namespaces_count,
+    },
+    "EU-URD-005": {
+        "An effort or a velocity that is left out is 0, as in urdfdom of long ago.": _each(
+            "joint/limit", _default("0", "effort", "velocity")
+        ),
+        "A position limit that is left out is 0 in version 1.2 too.": _each(
+            "/robot[@version='1.2']/joint/limit", _default("0", "lower", "upper")
+        ),
+    },
+    "EU-URD-006": {"Of two elements where one is allowed, the first counts.": _drop_repeated},
+    ("EU-URD-006", Level.ACCEPT): {
+        "A geometry that contains any other element has no shape.": _each(
+            "//geometry[count(*) > 1]", lambda geometry: geometry.clear()
+        ),
+    },
+    "EU-URD-007": {
+        "The axis of a planar joint may have two numbers; the third one is then 0.": _each(
+            "//joint[@type='planar']/axis", _pad
+        ),
+    },
+    "EU-URD-012": {"A joint's type may be in upper case.": _attributes(str.lower, "//@type")},
+    "EU-URD-013": {"An axis of zero is x.": _each("joint/axis", _x_for_zero)},
+    "EU-URD-016": {"Of two joints that carry one link, the last in the file counts.": _last_of_two_parents},
+    "EU-URD-019": {
+        "Of two limits the smaller is the lower one.": _each("joint/limit", _swap),
+        "The position limits of a continuous joint are not compared.": _each(
+            "joint[@type='continuous']/limit", lambda limit: limit.attrib.pop("lower", None)
+        ),
+    },
+    "EU-URD-020": {
+        "`dynamics` of a planar or fixed joint is not read, since it has no effect.": _drop(
+            "//joint[@type='planar' or @type='fixed']/dynamics"
+        ),
+        "The velocity limit of a continuous joint may be negative.": _attributes(
+            lambda velocity: velocity.lstrip("-"), "joint[@type='continuous']/limit/@velocity"
+        ),
+    },
+    "EU-URD-024": {"A sphere of radius 0 is a point.": _attributes(lambda radius: "1e-9", "//sphere/@radius[.='0']")},
+    ("EU-URD-032", "2"): {"A joint that mimics moves by itself, as in Pinocchio by default.": _drop("joint/mimic")},
+    "EU-URD-035": {"An axis within 1e-5 of x, y or z is that axis.": _each("joint/axis[@xyz]", _snap)},
+    "EU-URD-037": {"A version may be written as any text of the same number, such as `1.10`.": _version_as_number},
+    "EU-URD-039": {
+        "The first number of a quaternion is w, as in MJCF.": _attributes(_w_first, ".//origin/@quat_xyzw"),
+        "A quaternion is read before version 1.1 too.": _quaternions_always,
+    },
+    ("EU-URD-039", Level.STRUCTURE): {
+        "The quaternions of shapes and inertias have no effect.": _each(
+            ".//*[name() != 'joint']/origin", lambda origin: origin.attrib.pop("quat_xyzw", None)
+        ),
+    },
+    "EU-CAN-001": {
+        "The soft limits of a safety controller replace those of the joint.": _each(
+            "joint[limit and safety_controller]", _soft_limits
+        ),
+    },
+}
 
 
-@reads_urdf("EU-URD-005")
-def ranges_of_every_version_are_0(robot: Any) -> None:
-    """A position limit that is left out is 0 in version 1.2 too."""
-    for limit in robot.iterfind("joint/limit") if robot.get("version") == "1.2" else ():
-        for side in ("lower", "upper"):
-            limit.set(side, limit.get(side, "0"))
+# -- Rules too many ---------------------------------------------------------------------------------------------------
 
 
-@reads_urdf("EU-URD-019")
-def limits_of_continuous_joints_may_be_reversed(robot: Any) -> None:
-    """The position limits of a continuous joint are not compared."""
-    for limit in robot.iterfind("joint[@type='continuous']/limit"):
-        limit.attrib.pop("lower", None)
+def _any(path: str, wrong: Callable[[Any], Any] = lambda found: True) -> Callable[..., bool]:
+    """Whether something is so of anything where a path leads."""
+    return lambda data, robot: any(map(wrong, robot.xpath(path)))
+
+
+def _numbers(text: str) -> list[float]:
+    return [*map(float, text.split())]
+
+
+def _is_zero(text: str) -> bool:
+    return not any(_numbers(text))
+
+
+def _is_not_of_unit_length(text: str) -> bool:
+    return abs(math.hypot(*_numbers(text)) - 1) > 1e-3
+
+
+def _joint_before_its_links(data: Any, robot: Any) -> bool:
+    known = set()
+    for element in robot.xpath("link|joint"):
+        if element.tag == "link":
+            known.add(element.get("name"))
+        elif not known.issuperset(element.xpath("parent/@link|child/@link")):
+            return True
+    return False
+
+
+def _repeats(element: Any) -> bool:
+    return len(element) > len({child.tag for child in element.iterchildren("*")})
+
+
+def _has_equal_materials(data: Any, robot: Any) -> bool:
+    names = robot.xpath("material/@name")
+    return len(names) > len(set(names))
+
+
+REFUSES = {
+    "EU-URD-004": {
+        "A continuous joint must have a limit.": _any("joint[@type='continuous' and not(limit)]"),
+        "A link must have an inertial element.": _any("link[not(inertial)]"),
+    },
+    "EU-URD-005": {"A limit must have an effort in version 1.2 too.": _any("joint/limit[not(@effort)]")},
+    "EU-URD-006": {
+        "An element of another program must not occur twice in a joint or an inertial either.": _any(
+            "//joint|//inertial", _repeats
+        ),
+    },
+    "EU-URD-007": {
+        "A number does not end with its point.": _any("//axis/@*|//origin/@*", re.compile(r"[0-9]\.( |$)").search),
+    },
+    "EU-URD-011": {"`Universe` is reserved too.": _any("(link|joint)/@name", lambda name: name.lower() == "universe")},
+    "EU-URD-013": {
+        "An axis must have unit length, within a thousandth.": _any("joint/axis/@xyz", _is_not_of_unit_length),
+        "The axis of a fixed joint may not be zero, which exporters write.": _any(
+            "joint[@type='fixed']/axis/@xyz", _is_zero
+        ),
+        "A zero axis of a planar joint is refused, as if the joint turned about it.": _any(
+            "joint[@type='planar']/axis/@xyz", _is_zero
+        ),
+    },
+    "EU-URD-014": {"A joint must come after the links that it names.": _joint_before_its_links},
+    "EU-URD-015": {"A robot must have a joint.": _any("/robot[not(joint)]")},
+    "EU-URD-018": {"The first link of the file must be the root.": _any("link[1][@name = ../joint/child/@link]")},
+    "EU-URD-019": {"A lower limit must be below the upper one.": _any("joint/limit[@lower = @upper]")},
+    "EU-URD-020": {
+        "Limits of effort and velocity must be greater than 0.": _any(
+            "joint/limit/@effort|joint/limit/@velocity", lambda limit: float(limit) == 0
+        ),
+    },
+    ("EU-URD-022", "2"): {
+        "A joint may not mimic one that mimics.": _any("joint[mimic]/@name[. = //joint/mimic/@joint]"),
+    },
+    "EU-URD-024": {
+        "A capsule is not a shape, as in urdfdom.": _any("//capsule"),
+        "The scale of a mesh must be positive.": _any("//mesh/@scale[contains(., '-')]"),
+    },
+    "EU-URD-029": {"Two materials of the robot must not have one name.": _has_equal_materials},
+    "EU-URD-039": {
+        "A quaternion whose norm differs from 1 by more than 1e-3 is refused.": _any(
+            "/robot[@version >= 1.1]//origin/@quat_xyzw", _is_not_of_unit_length
+        ),
+    },
+    "EU-CNF-002": {
+        "An element that URDF does not have is refused, and those of other programs with it.": _any(
+            "*[not(self::link or self::joint or self::material)]"
+        ),
+        "A name must be ASCII.": _any("(//link|//joint)/@name", lambda name: not name.isascii()),
+        "A name may not have slashes, which are for namespaces of ROS.": _any(
+            "(//link|//joint)/@name[contains(., '/')]"
+        ),
+    },
+    "EU-FIL-002": {"A robot of more than 1000 links is refused.": _any("link[1001]")},
+}

@@ -19,6 +19,8 @@ VALID, INVALID = "closures/parallelogram-3d-closure", "frames/closure-at-unknown
 
 #: All files of a case, by their paths from its folder.
 Content = frozenset[tuple[str, bytes]]
+Configuration = Mapping[str, Sequence[float]]
+Reply = Accepted | Rejected | Unsupported | Skipped
 
 
 @cache
@@ -53,7 +55,7 @@ class Right:
         self.case: CorpusCase | None = None
         self.files: Content = frozenset()
 
-    def load(self, description: Path, urdf: Path) -> Accepted | Rejected | Unsupported | Skipped:
+    def load(self, description: Path, urdf: Path) -> Reply:
         case = case_of(description)
         if isinstance(case.case, ValidCase):
             self.case = case
@@ -63,11 +65,8 @@ class Right:
         return rejected(issue(case.case.code, case.case.place, "error"))
 
     def evaluate(
-        self,
-        configurations: Sequence[Mapping[str, Sequence[float]]],
-        frames: Sequence[str],
-        quantities: Sequence[Quantity],
-    ) -> list[Values] | Unsupported | Skipped:
+        self, configurations: Sequence[Configuration], frames: Sequence[str], quantities: Sequence[Quantity]
+    ) -> list[Values]:
         alike = (case for case in index()[self.files] if isinstance(case.case, ValidCase))
         return next(case.expected.values for case in alike if case.case.configurations == list(configurations))
 
@@ -80,7 +79,7 @@ def issue(code: str, place: CasePlace, severity: str) -> Issue:
 class Lenient(Right):
     """Accepts one thing that is wrong."""
 
-    def load(self, description: Path, urdf: Path) -> Accepted | Rejected | Unsupported | Skipped:
+    def load(self, description: Path, urdf: Path) -> Reply:
         if case_of(description).name == INVALID:
             return accepted(None, ["this looks odd"])
         return super().load(description, urdf)
@@ -89,7 +88,7 @@ class Lenient(Right):
 class Misread(Right):
     """Reads another upper limit, places one link elsewhere, and reports an error one column off."""
 
-    def load(self, description: Path, urdf: Path) -> Accepted | Rejected | Unsupported | Skipped:
+    def load(self, description: Path, urdf: Path) -> Reply:
         reply = super().load(description, urdf)
         if case_of(description).name == INVALID and isinstance(reply, Rejected):
             (found,) = reply.issues
@@ -100,13 +99,9 @@ class Misread(Right):
         return reply
 
     def evaluate(
-        self,
-        configurations: Sequence[Mapping[str, Sequence[float]]],
-        frames: Sequence[str],
-        quantities: Sequence[Quantity],
-    ) -> list[Values] | Unsupported | Skipped:
+        self, configurations: Sequence[Configuration], frames: Sequence[str], quantities: Sequence[Quantity]
+    ) -> list[Values]:
         values = super().evaluate(configurations, frames, quantities)
-        assert isinstance(values, list)
         assert self.case is not None
         if self.case.name != VALID or "poses" not in quantities:
             return values
@@ -118,40 +113,27 @@ class Misread(Right):
 class Crashing(Right):
     """Is gone when it meets one case."""
 
-    def load(self, description: Path, urdf: Path) -> Accepted | Rejected | Unsupported | Skipped:
+    def load(self, description: Path, urdf: Path) -> Reply:
         if case_of(description).name == VALID:
             os._exit(3)
         return super().load(description, urdf)
 
 
-class Modest(Right):
-    """Claims to accept version 2, no more."""
-
-    claims: Mapping[Version, Sequence[Level]] = {"2": (Level.ACCEPT,)}
+def claiming(claims: Mapping[Version, Sequence[Level]]) -> type[Right]:
+    return type("Claiming", (Right,), {"claims": claims})
 
 
-class Moving(Right):
-    """Claims nothing but to know how things move."""
-
-    claims: Mapping[Version, Sequence[Level]] = {"2": (Level.DYNAMICS,)}
-
-
-class Telling(Right):
-    """Claims to say what it reads, and what is wrong."""
-
-    claims: Mapping[Version, Sequence[Level]] = {"2": (Level.DIAGNOSE, Level.STRUCTURE)}
-
-
-class Silent(Right):
-    """Claims nothing."""
-
-    claims: Mapping[Version, Sequence[Level]] = {}
+#: What they claim: to accept one version, to know how things move, to say what is read and what is wrong, nothing.
+Modest = claiming({"2": (Level.ACCEPT,)})
+Moving = claiming({"2": (Level.DYNAMICS,)})
+Telling = claiming({"2": (Level.DIAGNOSE, Level.STRUCTURE)})
+Silent = claiming({})
 
 
 class Shy(Right):
     """Does not answer all that it claims."""
 
-    def load(self, description: Path, urdf: Path) -> Accepted | Rejected | Unsupported | Skipped:
+    def load(self, description: Path, urdf: Path) -> Reply:
         if case_of(description).name == VALID:
             return unsupported("closures", "not written yet")
         if case_of(description).name == INVALID:

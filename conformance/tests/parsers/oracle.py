@@ -10,6 +10,8 @@ from eurdf_conformance.oracle import OracleRobot, read
 from eurdf_conformance.protocol.message import Accepted, Quantity, Values
 from eurdf_conformance.protocol.reply import accepted
 
+Configuration = Mapping[str, Sequence[float]]
+
 #: Robots by the contents of their two files: tests have the same ones read again and again.
 _READ: dict[tuple[bytes, bytes], OracleRobot] = {}
 _MOST_KEPT = 500

@@ -13,15 +13,27 @@ import sys
 import time
 from pathlib import Path
 
+ROBOT = {
+    "name": "r", "version": "2", "root": "fixed", "links": [], "frames": [], "joints": [], "closures": [],
+    "actuators": [], "configurations": {}, "own": {},
+}  # fmt: skip
+JOINT = {
+    "name": "j", "type": "revolute", "parent": "a", "child": "b", "lower": [0], "upper": [0], "velocity": [0],
+    "effort": [0], "damping": [0], "friction": [0], "armature": [0],
+}  # fmt: skip
 
-def accepted(request):
+WAIT = 60.0
+
+
+def accepted(request, **members):
     issue = {"message": request["description"]}
-    return {"id": request["id"], "outcome": "accepted", "robot": None, "issues": [issue]}
+    return {"id": request["id"], "outcome": "accepted", "robot": None, "issues": [issue]} | members
 
 
-def started(request):
+def started(request, **members):
     who = {"name": "fake", "version": "1", "language": "Python"}
-    return {"id": request["id"], "outcome": "started", "protocol": "1.0", "parser": who, "claims": {"2": ["accept"]}}
+    said = {"id": request["id"], "outcome": "started", "protocol": "1.0", "parser": who, "claims": {"2": ["accept"]}}
+    return said | members
 
 
 def write(data):
@@ -36,218 +48,47 @@ def say(answer):
     write(json.dumps(answer) + "\n")
 
 
-# -- Ways that show when an error is to be loaded; each takes the request ---------------------------------------------
+def answer(request, outcome, **members):
+    say({"id": request["id"], "outcome": outcome, **members})
 
 
-def sound(request):
-    """Accepts, as it should."""
-    say(accepted(request))
+def text(request, before="", after="", **members):
+    """An answer that accepts, with one text instead of another."""
+    write(json.dumps(accepted(request, **members)).replace(before, after, 1) + "\n")
 
 
-def hangs(request):
-    """Never answers."""
-    time.sleep(60)
+def issue(request, **members):
+    """An answer that accepts, with such an issue."""
+    say(accepted(request, issues=[{"message": "m", **members}]))
 
 
-def exits(request):
-    """Ends with exit code 3 and a line on standard error."""
-    sys.stderr.write("cannot go on\n")
-    sys.exit(3)
+def without(request, member):
+    say({key: value for key, value in accepted(request).items() if key != member})
 
 
-def exits_with_success(request):
-    """Ends with exit code 0, without an answer."""
-    sys.exit(0)
+def waits(*_):
+    time.sleep(WAIT)
 
 
-def exits_after_answering(request):
-    """Answers, and ends with exit code 4."""
-    say(accepted(request))
-    sys.exit(4)
+def kills_itself(by):
+    os.kill(os.getpid(), by)
 
 
-def segfaults(request):
-    """Ends by SIGSEGV."""
-    os.kill(os.getpid(), signal.SIGSEGV)
+def complains(sentence, code):
+    """Ends with a line on standard error."""
+    sys.stderr.write(f"{sentence}\n")
+    sys.exit(code)
 
 
-def aborts_with_a_line(request):
-    """Writes a line that is no answer, and ends by SIGABRT."""
-    write("terminate called\n")
-    os.kill(os.getpid(), signal.SIGABRT)
-
-
-def another_id(request):
-    """Answers with an id that was never asked."""
-    say({**accepted(request), "id": request["id"] + 7})
-
-
-def answer_before(request):
-    """As one that is out of step: what it was asked before, once more."""
-    say({**accepted(request), "id": request["id"] - 1})
-
-
-def late(request):
-    """Answers after 0.7 s."""
-    time.sleep(0.7)
-    say(accepted(request))
-
-
-def twice(request):
-    """Answers twice."""
-    write(2 * (json.dumps(accepted(request)) + "\n"))
+def for_ever(fd, data):
+    while True:
+        os.write(fd, data)
 
 
 def in_pieces(request):
-    """Writes its answer byte by byte."""
-    line = json.dumps({**accepted(request), "robot": None}, ensure_ascii=False).encode() + b"\n"
-    for byte in range(len(line)):
-        write(line[byte : byte + 1])
+    for byte in json.dumps(accepted(request), ensure_ascii=False).encode() + b"\n":
+        write(bytes([byte]))
         time.sleep(0.001)
-
-
-def garbage(request):
-    """Writes a line that is not JSON."""
-    write("Segmentation fault (not really)\n")
-
-
-def nothing_but_a_line_end(request):
-    """Writes an empty line."""
-    write("\n")
-
-
-def not_utf8(request):
-    """Writes a line in Latin-1."""
-    write(b'{"id": %d, "outcome": "skipped", "reason": "\xe9"}\n' % request["id"])
-
-
-def half_a_character(request):
-    """Writes half of a surrogate pair."""
-    say({"id": request["id"], "outcome": "skipped", "reason": "\ud800"})
-
-
-def list_of_one(request):
-    """Writes its answer in a list."""
-    say([accepted(request)])
-
-
-def cut_off(request):
-    """A line without its end, and no more."""
-    write(json.dumps(accepted(request))[:30])
-    time.sleep(60)
-
-
-def no_line_end(request):
-    """Writes its answer without the end of the line."""
-    write(json.dumps(accepted(request)))
-    time.sleep(60)
-
-
-def unknown_member(request):
-    """Adds a member that answers do not have."""
-    say({**accepted(request), "verdict": "fine"})
-
-
-def member_missing(request):
-    """Leaves out a member."""
-    answer = accepted(request)
-    del answer["robot"]
-    say(answer)
-
-
-def another_outcome_before(request):
-    """Rejects and accepts in one answer."""
-    write(json.dumps(accepted(request)).replace('"outcome"', '"outcome": "rejected", "outcome"') + "\n")
-
-
-def two_ids(request):
-    """Writes two ids into one answer."""
-    write(json.dumps(accepted(request)).replace('"id"', '"id": 7, "id"') + "\n")
-
-
-def number_too_long(request):
-    """Writes a number of 5000 digits."""
-    write(json.dumps({**accepted(request), "issues": [{"message": "m", "line": 7}]}).replace("7", "7" * 5000) + "\n")
-
-
-def wrong_type(request):
-    """Writes a number as text."""
-    say({**accepted(request), "issues": [{"message": "m", "line": "12"}]})
-
-
-def no_outcome(request):
-    """Leaves out the outcome."""
-    say({"id": request["id"]})
-
-
-def unknown_outcome(request):
-    """Writes an outcome that does not exist."""
-    say({"id": request["id"], "outcome": "valid"})
-
-
-def no_id(request):
-    """Leaves out the id."""
-    answer = accepted(request)
-    del answer["id"]
-    say(answer)
-
-
-def wrong_kind(request):
-    """Answers another request than the one it got."""
-    say({"id": request["id"], "outcome": "evaluated", "values": []})
-
-
-def not_a_number(request):
-    """Writes NaN, which JSON does not have."""
-    robot = {
-        "name": "r", "version": "2", "root": "fixed", "links": [], "frames": [], "joints": [], "closures": [],
-        "actuators": [], "configurations": {}, "own": {"/x-a": float("nan")},
-    }  # fmt: skip
-    say({**accepted(request), "robot": robot})
-
-
-def number_too_large(request):
-    """Writes a number beyond the range of a double."""
-    robot = {
-        "name": "r", "version": "2", "root": "fixed", "links": [], "frames": [], "joints": [], "closures": [],
-        "actuators": [], "configurations": {}, "own": {"/x-a": "huge"},
-    }  # fmt: skip
-    write(json.dumps({**accepted(request), "robot": robot}).replace('"huge"', "1e400") + "\n")
-
-
-def nested_deep(request):
-    """Writes 100 000 opening brackets."""
-    write("[" * 100_000 + "\n")
-
-
-def endless_line(request):
-    """Writes a line without end."""
-    while True:
-        write("x" * 2**16)
-
-
-def endless_lines(request):
-    """Writes lines without end."""
-    while True:
-        write("y\n" * 2**10)
-
-
-def chatter_before(request):
-    """Writes two lines before its answer."""
-    write("loading...\nloaded\n")
-    say(accepted(request))
-
-
-def chatter_after(request):
-    """Writes a line after its answer."""
-    write(json.dumps(accepted(request)) + "\ndone\n")
-
-
-def chatter_later(request):
-    """Writes a line 0.1 s after its answer."""
-    say(accepted(request))
-    time.sleep(0.1)
-    write("cleaned up\n")
 
 
 def floods_stderr(request):
@@ -258,20 +99,9 @@ def floods_stderr(request):
     say(accepted(request))
 
 
-def floods_stderr_for_ever(request):
-    """Writes to standard error without end."""
-    while True:
-        os.write(2, b"x" * 2**16)
-
-
 def child():
     """A process that would stay, with the same pipes; its id."""
     return subprocess.Popen([sys.executable, "-I", "-S", "-c", "import time; time.sleep(60)"]).pid
-
-
-def has_a_child(request):
-    """Leaves a child behind, and answers with its process id."""
-    say({**accepted(request), "issues": [{"message": str(child())}]})
 
 
 def daemon():
@@ -290,20 +120,9 @@ def daemon():
         return int(pid.read())  # to its end, which is when the daemon has become `sleep`
 
 
-def has_a_daemon(request):
-    """Leaves a daemon behind, and answers with its process id."""
-    say({**accepted(request), "issues": [{"message": str(daemon())}]})
-
-
-def dies_before_its_daemon(request):
-    """Ends, and leaves a daemon."""
-    os.write(2, str(daemon()).encode())
-    os._exit(5)
-
-
-def dies_before_its_child(request):
-    """Ends, and leaves a child that has its pipes."""
-    os.write(2, str(child()).encode())
+def dies_before(started_process):
+    """Ends, and leaves a process that has its pipes; its id is on standard error."""
+    os.write(2, str(started_process).encode())
     os._exit(5)
 
 
@@ -316,83 +135,6 @@ def spins(request):
         pass
 
 
-def closes_stdout(request):
-    """Closes its standard output."""
-    os.close(1)
-    time.sleep(60)
-
-
-def closes_stdin(request):
-    """Answers, and closes its standard input."""
-    os.close(0)
-    say(accepted(request))
-    time.sleep(60)
-
-
-def carriage_returns(request):
-    """Ends its lines with a carriage return and a line feed."""
-    write(json.dumps(accepted(request)) + "\r\n")
-
-
-def whole_numbers_with_a_point(request):
-    """Writes integers with a decimal point."""
-    issue = {"message": request["description"], "line": 3.0}
-    say({**accepted(request), "id": float(request["id"]), "issues": [issue]})
-
-
-def null_for_a_number(request):
-    """As JavaScript writes NaN."""
-    joint = {
-        "name": "j", "type": "revolute", "parent": "a", "child": "b", "lower": [0], "upper": [0], "velocity": [0],
-        "effort": [0], "damping": [None], "friction": [0], "armature": [0],
-    }  # fmt: skip
-    robot = {
-        "name": "r", "version": "2", "root": "fixed", "links": 50 * ["a link"], "frames": [], "joints": [joint],
-        "closures": [], "actuators": [], "configurations": {}, "own": {},
-    }  # fmt: skip
-    say({**accepted(request), "robot": robot})
-
-
-def errors(request):
-    """Answers `errored`."""
-    say({"id": request["id"], "outcome": "errored", "message": "out of luck"})
-
-
-# -- Ways that show at the start; each takes the request -------------------------------------------------------------
-
-
-def crashes_at_start(request):
-    """Ends with exit code 9 and a line on standard error."""
-    sys.stderr.write("no licence found\n")
-    sys.exit(9)
-
-
-def hangs_at_start(request):
-    """Never answers."""
-    time.sleep(60)
-
-
-def refuses_to_start(request):
-    """Answers `errored`."""
-    say({"id": request["id"], "outcome": "errored", "message": "no licence"})
-
-
-def speaks_another_protocol(request):
-    """Speaks version 2.0 of the protocol."""
-    say({**started(request), "protocol": "2.0"})
-
-
-def byte_order_mark(request):
-    """Begins with a byte order mark."""
-    write("\ufeff" + json.dumps(started(request)) + "\n")
-
-
-def banner(request):
-    """Writes a line before its first answer."""
-    write("Welcome to Fake 1.0!\n")
-    say(started(request))
-
-
 def starts_once(request):
     """Where the file is that the environment names, it has started before."""
     started_before = Path(os.environ["FAKE_STARTED"])
@@ -402,94 +144,115 @@ def starts_once(request):
     say(started(request))
 
 
-# -- Ways that show at the end ---------------------------------------------------------------------------------------
+#: Ways to load.
+AT_LOAD = {
+    "sound": lambda request: say(accepted(request)),
+    "hangs": waits,
+    "exits": lambda request: complains("cannot go on", 3),
+    "exits_with_success": lambda request: sys.exit(0),
+    "exits_after_answering": lambda request: (say(accepted(request)), sys.exit(4)),
+    "segfaults": lambda request: kills_itself(signal.SIGSEGV),
+    "aborts_with_a_line": lambda request: (write("terminate called\n"), kills_itself(signal.SIGABRT)),
+    "another_id": lambda request: say(accepted(request, id=request["id"] + 7)),
+    "answer_before": lambda request: say(accepted(request, id=request["id"] - 1)),
+    "late": lambda request: (time.sleep(0.7), say(accepted(request))),
+    "twice": lambda request: write(2 * (json.dumps(accepted(request)) + "\n")),
+    "in_pieces": in_pieces,
+    "garbage": lambda request: write("Segmentation fault (not really)\n"),
+    "nothing_but_a_line_end": lambda request: write("\n"),
+    "not_utf8": lambda request: write(b'{"id": %d, "outcome": "skipped", "reason": "\xe9"}\n' % request["id"]),
+    "half_a_character": lambda request: answer(request, "skipped", reason="\ud800"),
+    "list_of_one": lambda request: say([accepted(request)]),
+    "cut_off": lambda request: (write(json.dumps(accepted(request))[:30]), waits()),
+    "no_line_end": lambda request: (write(json.dumps(accepted(request))), waits()),
+    "unknown_member": lambda request: say(accepted(request, verdict="fine")),
+    "member_missing": lambda request: without(request, "robot"),
+    "another_outcome_before": lambda request: text(request, '"outcome"', '"outcome": "rejected", "outcome"'),
+    "two_ids": lambda request: text(request, '"id"', '"id": 7, "id"'),
+    "number_too_long": lambda request: text(request, "77", "7" * 5000, issues=[{"message": "m", "line": 77}]),
+    "wrong_type": lambda request: issue(request, line="12"),
+    "no_outcome": lambda request: say({"id": request["id"]}),
+    "unknown_outcome": lambda request: answer(request, "valid"),
+    "no_id": lambda request: without(request, "id"),
+    "wrong_kind": lambda request: answer(request, "evaluated", values=[]),
+    "not_a_number": lambda request: say(accepted(request, robot=ROBOT | {"own": {"/x-a": float("nan")}})),
+    "number_too_large": lambda request: text(request, '"huge"', "1e400", robot=ROBOT | {"own": {"/x-a": "huge"}}),
+    "nested_deep": lambda request: write("[" * 100_000 + "\n"),
+    "endless_line": lambda request: for_ever(1, b"x" * 2**16),
+    "endless_lines": lambda request: for_ever(1, b"y\n" * 2**10),
+    "chatter_before": lambda request: (write("loading...\nloaded\n"), say(accepted(request))),
+    "chatter_after": lambda request: write(json.dumps(accepted(request)) + "\ndone\n"),
+    "chatter_later": lambda request: (say(accepted(request)), time.sleep(0.1), write("cleaned up\n")),
+    "floods_stderr": floods_stderr,
+    "floods_stderr_for_ever": lambda request: for_ever(2, b"x" * 2**16),
+    "has_a_child": lambda request: issue(request, message=str(child())),
+    "has_a_daemon": lambda request: issue(request, message=str(daemon())),
+    "dies_before_its_daemon": lambda request: dies_before(daemon()),
+    "dies_before_its_child": lambda request: dies_before(child()),
+    "spins": spins,
+    "closes_stdout": lambda request: (os.close(1), waits()),
+    "closes_stdin": lambda request: (os.close(0), say(accepted(request)), waits()),
+    "carriage_returns": lambda request: write(json.dumps(accepted(request)) + "\r\n"),
+    "whole_numbers_with_a_point": lambda request: say(
+        accepted(request, id=float(request["id"]), issues=[{"message": request["description"], "line": 3.0}])
+    ),
+    # As JavaScript writes NaN
+    "null_for_a_number": lambda request: say(
+        accepted(request, robot=ROBOT | {"links": 50 * ["a link"], "joints": [JOINT | {"damping": [None]}]})
+    ),
+    "errors": lambda request: answer(request, "errored", message="out of luck"),
+}
 
+#: Ways to start.
+AT_START = {
+    "crashes_at_start": lambda request: complains("no licence found", 9),
+    "hangs_at_start": waits,
+    "refuses_to_start": lambda request: answer(request, "errored", message="no licence"),
+    "speaks_another_protocol": lambda request: say(started(request, protocol="2.0")),
+    "byte_order_mark": lambda request: write("\ufeff" + json.dumps(started(request)) + "\n"),
+    "banner": lambda request: (write("Welcome to Fake 1.0!\n"), say(started(request))),
+    "starts_once": starts_once,
+}
 
-def ignores_stop(request):
-    """Never answers."""
-    time.sleep(60)
+#: Ways to stop.
+AT_STOP = {
+    "ignores_stop": waits,
+    "does_not_end": lambda request: (answer(request, "stopped"), waits()),
+    "crashes_at_the_end": lambda request: (answer(request, "stopped"), kills_itself(signal.SIGSEGV)),
+    # As one that does not look what it is asked, and goes on to wait for more
+    "ends_with_its_input": lambda request: (answer(request, "stopped"), sys.stdin.read()),
+}
 
-
-def does_not_end(request):
-    """Answers, and goes on running."""
-    say({"id": request["id"], "outcome": "stopped"})
-    time.sleep(60)
-
-
-def ends_with_its_input(request):
-    """As one that does not look what it is asked, and goes on to wait for more."""
-    say({"id": request["id"], "outcome": "stopped"})
-    sys.stdin.read()
-
-
-def crashes_at_the_end(request):
-    """Answers, and ends by SIGSEGV."""
-    say({"id": request["id"], "outcome": "stopped"})
-    os.kill(os.getpid(), signal.SIGSEGV)
-
-
-# -- Ways that show whatever is loaded ------------------------------------------------------------------------------
-
-
-def always_accepted(request):
-    """Accepts any description."""
-    say({"id": request["id"], "outcome": "accepted", "robot": None, "issues": []})
-
-
-def always_rejected(request):
-    """Rejects any description."""
-    say({"id": request["id"], "outcome": "rejected", "issues": []})
-
-
-def always_rejected_with_chatter(request):
-    """Rejects any description, and writes a line before each answer."""
-    write("reading\n")
-    always_rejected(request)
-
-
-def starts_as(name):
-    """The answer to `start` of one that claims the level accept for versions 1 and 2.1."""
-    who, claims = {"name": name, "version": "1", "language": "Python"}, {"1": ["accept"], "2.1": ["accept"]}
-    return lambda request: started(request) | {"parser": who, "claims": claims}
-
-
-AT_START = (
-    crashes_at_start,
-    hangs_at_start,
-    refuses_to_start,
-    speaks_another_protocol,
-    byte_order_mark,
-    banner,
-    starts_once,
-)
-AT_STOP = (ignores_stop, does_not_end, crashes_at_the_end, ends_with_its_input)
-ALWAYS = (always_accepted, always_rejected, always_rejected_with_chatter)
+#: Ways to load any description; these do not evaluate.
+ALWAYS = {
+    "always_accepted": lambda request: answer(request, "accepted", robot=None, issues=[]),
+    "always_rejected": lambda request: answer(request, "rejected", issues=[]),
+    "always_rejected_with_chatter": lambda request: (write("reading\n"), answer(request, "rejected", issues=[])),
+}
 
 
 def main(way):
-    wrong = globals()[way]
-    at_start = wrong if wrong in AT_START else starts_as(way) if wrong in ALWAYS else started
+    assert way in AT_LOAD | AT_START | AT_STOP | ALWAYS, way
+    who = {"name": way, "version": "1", "language": "Python"}
+    claims = {"parser": who, "claims": {"1": ["accept"], "2.1": ["accept"]}} if way in ALWAYS else {}
+    start = AT_START.get(way, lambda request: say(started(request, **claims)))
+    stop = AT_STOP.get(way, lambda request: answer(request, "stopped"))
     for line in iter(sys.stdin.readline, ""):
         request = json.loads(line)
         match request["command"]:
             case "start":
-                if (answer := at_start(request)) is not None:
-                    say(answer)
-            case "load" if wrong in ALWAYS:
-                wrong(request)
-            case "load" if wrong not in AT_START + AT_STOP and Path(request["description"]).name.startswith("trigger"):
-                wrong(request)
+                start(request)
+            case "load" if way in ALWAYS:
+                ALWAYS[way](request)
             case "load":
-                sound(request)
-            case "evaluate" if wrong in ALWAYS:
-                say({"id": request["id"], "outcome": "unsupported", "feature": "evaluate"})
+                wrong = Path(request["description"]).name.startswith("trigger")
+                AT_LOAD[way if wrong and way in AT_LOAD else "sound"](request)
+            case "evaluate" if way in ALWAYS:
+                answer(request, "unsupported", feature="evaluate")
             case "evaluate":
-                say({"id": request["id"], "outcome": "evaluated", "values": [{}]})
+                answer(request, "evaluated", values=[{}])
             case "stop":
-                if wrong in AT_STOP:
-                    wrong(request)
-                else:
-                    say({"id": request["id"], "outcome": "stopped"})
+                stop(request)
                 return
 
 

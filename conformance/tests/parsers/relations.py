@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +15,7 @@ import yaml
 from eurdf_conformance.oracle import OracleRobot
 from eurdf_conformance.protocol.message import Accepted, Jacobian, MassMatrix, Quantity, Rejected, Values
 from eurdf_conformance.protocol.reply import accepted
-from parsers.oracle import OracleParser
-
-Configuration = Mapping[str, Sequence[float]]
+from parsers.oracle import Configuration, OracleParser
 
 
 class WrongParser(OracleParser):

@@ -14,11 +14,7 @@ from eurdf.commands import INTERRUPTED
 
 
 def start() -> int:
-    """Run the command line of this process.
-
-    Returns:
-        The exit code of `eurdf.commands.main.main`.
-    """
+    """Run the command line of this process, and return the exit code of `eurdf.commands.main.main`."""
     # Nearly all that a command imports and reads stays until it ends: there is little garbage to look for.
     gc.set_threshold(100_000, 50, 50)
     try:

@@ -29,13 +29,11 @@ from eurdf.format.value_types import (
     ValueType,
 )
 from eurdf.mechanism.constraint import Form, Key
-from eurdf.mechanism.pose import Vector3
+from eurdf.mechanism.pose import ORIGIN, Vector3
 from eurdf.reading.yaml_node import Pointer
 
 if TYPE_CHECKING:
     from eurdf.closures.kind import ClosureKind
-
-ORIGIN: Vector3 = (0.0, 0.0, 0.0)
 
 #: The axes of a frame, by their letters.
 AXES: Mapping[str, Vector3] = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
@@ -206,13 +204,7 @@ def _key(stated: Key) -> Any:
 
 
 def _record(form: Form, since: Version, own: dict[str, Any]) -> Record:
-    """A mapping that states a closure.
-
-    Args:
-        form: What its kind says of it.
-        since: The first version that has it.
-        own: Its fields in place of those of `Closure`.
-    """
+    """A mapping that states a closure, by what its kind says; ``own`` fields are in place of those of `Closure`."""
     keys = own | {name: _key(each) for name, each in form.keys.items()}
     typed = [(name, Any, each) for name, each in keys.items()]
     about = {"title": form.title, "since": since, "__doc__": form.text}

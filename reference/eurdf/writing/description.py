@@ -16,14 +16,7 @@ from lxml import etree
 
 from eurdf.closures import REGISTRY
 from eurdf.diagnostics.wording import visible
-from eurdf.format.closure_model import (
-    CLOSURE,
-    Compliance,
-    FrameOnLink,
-    FrameReference,
-    NamedFrame,
-    PoseOnLink,
-)
+from eurdf.format.closure_model import CLOSURE, Compliance, FrameOnLink, FrameReference, NamedFrame, PoseOnLink
 from eurdf.format.closure_model import Closure as ClosureEntry
 from eurdf.format.closure_model import Coupling as CouplingEntry
 from eurdf.format.conventions import VERSION2_1, VERSION_KEY, is_own_key
@@ -39,9 +32,7 @@ from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import IDENTITY, Vector3
 from eurdf.mechanism.same_model import with_universal_joints
 from eurdf.writing import urdf_elements as elements
-from eurdf.writing.urdf_elements import (
-    Color,
-)
+from eurdf.writing.urdf_elements import Color
 from eurdf.writing.xml_text import file_content, representable, rpy_of
 
 #: Between two hyphens, which an XML comment must not contain.
@@ -56,13 +47,7 @@ class NotWritable(ValueError):  # noqa: N818 - named as the other refusals are
 
 @dataclass(frozen=True, slots=True)
 class DescriptionFiles:
-    """The two files of a robot.
-
-    Attributes:
-        urdf: Content of the URDF.
-        yaml: Text of the YAML file.
-        version: Version of the YAML file, the lowest that can say what the mechanism says.
-    """
+    """The URDF of a robot, and its YAML file, of the lowest version that can say what the mechanism says."""
 
     urdf: bytes
     yaml: str

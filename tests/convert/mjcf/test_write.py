@@ -127,45 +127,6 @@ def test_random_robot_has_the_same_constraints_in_mujoco(seed: int, root: Any) -
     assert_same_constraints(there, near(robot, q, seed)[0], closed=False)
 
 
-def test_coupling_of_three_joints_is_a_tendon() -> None:
-    robot, q = random_robot(4, kinds=())
-    names = {joint.type: joint.name for joint in robot.mechanism.joints if joint.mimic is None}
-    terms = tuple(
-        (names[kind], c) for kind, c in zip(("helical", "prismatic", "revolute"), (2.0, -1.5, 0.7), strict=True)
-    )
-    robot = build_robot(replace(robot.mechanism, couplings=(Coupling("mixed", terms, 0.3),)), geometry=False)
-    there = InMuJoCo(robot, eurdf.export(robot, "mjcf"))
-    there.at(q)
-    residual, K = eurdf.residual_and_jacobian(robot, q)
-    found, J = there.rows("mixed")
-    np.testing.assert_allclose(found, residual, atol=1e-12)
-    np.testing.assert_allclose(J, K, atol=1e-12)
-
-
-def test_hinge_allows_rotation_about_its_axis_alone() -> None:
-    robot, q = random_robot(1, kinds=("hinge",))
-    there = InMuJoCo(robot, eurdf.export(robot, "mjcf"))
-    there.at(q)
-    J = np.vstack([there.rows(name)[1] for name in ("hinge", "hinge/axis")])
-    K = eurdf.residual_and_jacobian(robot, q)[1]
-    assert (
-        np.linalg.matrix_rank(J, 1e-9)
-        == np.linalg.matrix_rank(K, 1e-9)
-        == np.linalg.matrix_rank(np.vstack([J, K]), 1e-9)
-        == 5
-    )
-
-
-def test_generalized_forces_of_motors_are_those_of_the_actuation() -> None:
-    robot, q = random_robot(8)
-    there = InMuJoCo(robot, eurdf.export(robot, "mjcf"))
-    u = np.linspace(0.5, 2.0, len(robot.actuation.idx_v))
-    there.data.ctrl[:] = u
-    there.at(q)
-    force = there.coordinates.rates(q).T @ there.data.qfrc_actuator
-    np.testing.assert_allclose(force, robot.actuation.selection @ u, atol=1e-12)
-
-
 def test_motors_of_a_ball_joint_act_along_its_axes() -> None:
     robot, q = random_robot(8, kinds=())
     (ball,) = (joint for joint in robot.mechanism.joints if joint.type is JointType.SPHERICAL)
@@ -249,12 +210,6 @@ def test_no_actuators_is_a_loss() -> None:
     assert {loss.name for loss in export.losses if loss.code == "export-no-actuator"} == {"shoulder", "wrist"}
 
 
-def test_fixed_link_without_mass_is_a_site() -> None:
-    _, model = pair()
-    assert {model.site(i).name for i in range(model.nsite)} == {"base", "tip"}
-    assert {model.body(i).name for i in range(model.nbody)} == {"world", "arm", "hand"}
-
-
 def test_neighbours_do_not_collide() -> None:
     _, model = pair()
     data = mujoco.MjData(model)
@@ -262,35 +217,11 @@ def test_neighbours_do_not_collide() -> None:
     assert [sorted(model.geom(g).bodyid[0] for g in contact.geom) for contact in data.contact] == [[0, 2]]  # base, hand
 
 
-def assert_read_by_pinocchio(robot: Robot, folder: Path) -> None:
-    export = eurdf.export(robot, "mjcf")
-    (path,) = export.write(folder)
-    model = pin.buildModelFromMJCF(str(path))
-    assert (model.nq, model.nv) == (export.coordinates.nq, export.coordinates.nv)
-    assert pin.computeTotalMass(model) == pytest.approx(pin.computeTotalMass(robot.model), rel=1e-9)
-
-
-@pytest.mark.parametrize("name", ["digit_2legs", "stewart_platform", "four_bar"])
-def test_pinocchio_reads_closures_and_masses(name: str, tmp_path: Path) -> None:
-    assert_read_by_pinocchio(eurdf.load(name, geometry=False), tmp_path)
-
-
-def test_pinocchio_reads_all_bodies_on_a_base_without_mass(tmp_path: Path) -> None:
-    assert_read_by_pinocchio(eurdf.load(hanging('<mimic joint="j"/>'), geometry=False), tmp_path)
-
-
 def test_equal_limits_hold_the_joint() -> None:
     export = eurdf.export(PAIR.replace('lower="-1" upper="2"', 'lower="0.5" upper="0.5"'), "mjcf")
     model = mujoco.MjModel.from_xml_string(export.main.decode())
     assert [model.equality(i).data[0] for i in range(model.neq)] == [0.5, 0.5]
     assert {loss.name for loss in export.losses if loss.code == "export-equal-limits"} == {"shoulder", "wrist"}
-
-
-def test_link_called_world_is_renamed() -> None:
-    urdf = PAIR.replace('"base"', '"world"').replace(link_element("world", BALL), link_element("world", BODY))
-    export = eurdf.export(urdf, "mjcf")
-    assert [loss.message for loss in export.losses if loss.code == "export-name"] == ["becomes 'world_'"]
-    mujoco.MjModel.from_xml_string(export.main.decode())
 
 
 def with_mesh(folder: Path, name: str, content: bytes | None) -> Path:
@@ -352,25 +283,6 @@ def test_mesh_that_mujoco_cannot_read_is_converted(tmp_path: Path) -> None:
     assert model.mesh_facenum.tolist() == [4]
 
 
-@pytest.mark.parametrize("to", ["mjcf", "urdf"])
-def test_mesh_can_stay_where_it_is(tmp_path: Path, to: str) -> None:
-    export = eurdf.export(with_mesh(tmp_path, "a.stl", TETRAHEDRON), to, mesh_files="reference")
-    assert list(export.files) == [next(iter(export.files))]
-    assert str(tmp_path / "a.stl").encode() in export.main
-    assert not [loss for loss in export.losses if loss.concept == "mesh"]
-
-
-@pytest.mark.parametrize("to", ["mjcf", "urdf"])
-def test_mesh_of_a_package_gets_a_path(tmp_path: Path, to: str) -> None:
-    (tmp_path / "arm_description").mkdir()
-    (tmp_path / "arm_description" / "a.stl").write_bytes(TETRAHEDRON)
-    path = with_mesh(tmp_path, "package://arm_description/a.stl", None)
-    export = eurdf.export(path, to, package_dirs=[tmp_path])
-    (loss,) = (loss for loss in export.losses if loss.concept == "mesh")
-    assert (loss.code, loss.message) == ("export-mesh-path", "becomes 'meshes/a.stl'")
-    assert b"package://" not in export.main
-
-
 @pytest.mark.parametrize(
     ("name", "content", "code"),
     [
@@ -386,7 +298,74 @@ def test_mesh_that_mujoco_cannot_read_is_a_loss(tmp_path: Path, name: str, conte
     mujoco.MjModel.from_xml_string(export.main.decode())
 
 
+def test_coupling_of_three_joints_is_a_tendon() -> None:
+    robot, q = random_robot(4, kinds=())
+    names = {joint.type: joint.name for joint in robot.mechanism.joints if joint.mimic is None}
+    terms = tuple(
+        (names[kind], c) for kind, c in zip(("helical", "prismatic", "revolute"), (2.0, -1.5, 0.7), strict=True)
+    )
+    robot = build_robot(replace(robot.mechanism, couplings=(Coupling("mixed", terms, 0.3),)), geometry=False)
+    there = InMuJoCo(robot, eurdf.export(robot, "mjcf"))
+    there.at(q)
+    residual, K = eurdf.residual_and_jacobian(robot, q)
+    found, J = there.rows("mixed")
+    np.testing.assert_allclose(found, residual, atol=1e-12)
+    np.testing.assert_allclose(J, K, atol=1e-12)
+
+
+def test_hinge_allows_rotation_about_its_axis_alone() -> None:
+    robot, q = random_robot(1, kinds=("hinge",))
+    there = InMuJoCo(robot, eurdf.export(robot, "mjcf"))
+    there.at(q)
+    J = np.vstack([there.rows(name)[1] for name in ("hinge", "hinge/axis")])
+    K = eurdf.residual_and_jacobian(robot, q)[1]
+    assert (
+        np.linalg.matrix_rank(J, 1e-9)
+        == np.linalg.matrix_rank(K, 1e-9)
+        == np.linalg.matrix_rank(np.vstack([J, K]), 1e-9)
+        == 5
+    )
+
+
+def assert_read_by_pinocchio(robot: Robot, folder: Path) -> None:
+    export = eurdf.export(robot, "mjcf")
+    (path,) = export.write(folder)
+    model = pin.buildModelFromMJCF(str(path))
+    assert (model.nq, model.nv) == (export.coordinates.nq, export.coordinates.nv)
+    assert pin.computeTotalMass(model) == pytest.approx(pin.computeTotalMass(robot.model), rel=1e-9)
+
+
+def test_pinocchio_reads_closures_and_bodies_on_a_base_without_mass(tmp_path: Path) -> None:
+    for robot in ("digit_2legs", hanging('<mimic joint="j"/>')):
+        assert_read_by_pinocchio(eurdf.load(robot, geometry=False), tmp_path / robot[:5].strip("<"))
+
+
+def test_link_called_world_is_renamed() -> None:
+    urdf = PAIR.replace('"base"', '"world"').replace(link_element("world", BALL), link_element("world", BODY))
+    export = eurdf.export(urdf, "mjcf")
+    assert [loss.message for loss in export.losses if loss.code == "export-name"] == ["becomes 'world_'"]
+    mujoco.MjModel.from_xml_string(export.main.decode())
+
+
+@pytest.mark.parametrize("to", ["mjcf", "urdf"])
+def test_mesh_can_stay_where_it_is(tmp_path: Path, to: str) -> None:
+    export = eurdf.export(with_mesh(tmp_path, "a.stl", TETRAHEDRON), to, mesh_files="reference")
+    assert list(export.files) == [next(iter(export.files))]
+    assert str(tmp_path / "a.stl").encode() in export.main
+    assert not [loss for loss in export.losses if loss.concept == "mesh"]
+
+
 def test_pipe_is_not_read_as_a_mesh(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "a.stl")
     export = eurdf.export(with_mesh(tmp_path, "a.stl", None), "mjcf")
     assert [loss.code for loss in export.losses if loss.concept == "mesh"] == ["export-mesh-missing"]
+
+
+def test_generalized_forces_of_motors_are_those_of_the_actuation() -> None:
+    robot, q = random_robot(8)
+    there = InMuJoCo(robot, eurdf.export(robot, "mjcf"))
+    u = np.linspace(0.5, 2.0, len(robot.actuation.idx_v))
+    there.data.ctrl[:] = u
+    there.at(q)
+    force = there.coordinates.rates(q).T @ there.data.qfrc_actuator
+    np.testing.assert_allclose(force, robot.actuation.selection @ u, atol=1e-12)
