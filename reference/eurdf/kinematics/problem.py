@@ -73,12 +73,16 @@ class Group:
         """The same at q (B, nq)."""
         return self.jacobian(self.evaluator.at(q))
 
-    def following(self, q: Matrix, driven: Matrix) -> tuple[Matrix, Mask]:
+    def following(self, q: Matrix, driven: Matrix, whole: Matrix | None = None) -> tuple[Matrix, Mask]:
         """Their own velocities (B, n, k) for given ones (B, g, k), and where (B,) these exist beyond doubt.
 
-        They are the least ones, in rad/s and m/s.
+        They are the least ones, in rad/s and m/s. ``whole`` is K (B, nc, nv) of the robot, if it is known.
         """
-        K = self.evaluator.jacobian(self.evaluator.at(q)) * self.row_scale[:, None]
+        if whole is None:
+            K = self.evaluator.jacobian(self.evaluator.at(q))
+        else:
+            K = whole[:, self.loops.rows[:, None], np.concatenate((self.loops.velocities, self.by))]
+        K = K * self.row_scale[:, None]
         norm = self.spread * norms(K)
         n = len(self.unit)
         return least_solution(K[:, :, :n], -product(K[:, :, n:], driven), norm)
@@ -125,6 +129,8 @@ class Problem:
             self.parts = (self._group(robot, merged(loops), few),)
         # One matrix of all loops takes less time for one element; for many, small ones do.
         self.together = self.parts if few else self.groups
+        # But their K takes less time to evaluate at once.
+        self._is_evaluated_whole = len(self.parts) < len(self.together)
 
     def _group(self, robot: Robot, loops: LoopGroup, few: bool) -> Group:
         moving = moving_velocities(robot, loops.closures)
@@ -207,11 +213,12 @@ class Problem:
         """
         v, sure = np.zeros((len(q), self.tree.nv)), np.ones(len(q), dtype=bool)
         v[:, self.given] = driven
+        whole = self.jacobian(q) if self._is_evaluated_whole else None
         for group in self.together:
             if len(group.by) and len(group.unit):
                 drive = driven if len(group.by) == len(self.given) else v[:, group.by]
                 if np.count_nonzero(drive):
-                    solution, is_sure = group.following(q, drive[:, :, None])
+                    solution, is_sure = group.following(q, drive[:, :, None], whole)
                     v[:, group.own] = solution[:, :, 0]
                     if np.count_nonzero(is_sure) < len(q):
                         sure &= is_sure | ~drive.any(axis=1)
@@ -222,9 +229,10 @@ class Problem:
         B, k = len(q), len(self.given)
         D, sure = np.zeros((B, self.tree.nv, k)), np.ones(B, dtype=bool)
         D[:, self.given, np.arange(k)] = 1.0
+        whole = self.jacobian(q) if self._is_evaluated_whole else None
         for group in self.together:
             if len(group.by) and len(group.unit):
-                solution, is_sure = group.following(q, np.eye(len(group.by))[None])
+                solution, is_sure = group.following(q, np.eye(len(group.by))[None], whole)
                 D[:, group.loops.velocities[:, None], self._place[group.by]] = solution
                 sure &= is_sure
         return D, sure
