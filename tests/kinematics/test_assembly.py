@@ -5,9 +5,7 @@ from __future__ import annotations
 import gc
 import weakref
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -25,7 +23,6 @@ from support.linkage import (
     Z,
     bennett,
     closure,
-    flat_sarrus,
     loop,
     n_bar,
     pulled_apart,
@@ -175,22 +172,6 @@ def test_unknown_held_joint_is_refused_with_nearest_name() -> None:
         assemble(linkage, hold=["motor_kne"])
 
 
-@pytest.mark.parametrize(
-    ("q0", "reason"),
-    [
-        (np.zeros(3), r"shape \(3,\); expected \(4,\)"),
-        (np.array([1.0, 0.0, 0.0, np.nan]), "not finite"),
-        (np.zeros(4), "length is zero"),
-    ],
-)
-def test_invalid_start_is_refused(q0: Any, reason: str) -> None:
-    model = pin.Model()
-    parent = model.addJoint(0, pin.JointModelSpherical(), pin.SE3.Identity(), "ball")
-    linkage = Linkage(model, [closure(model, 0, pin.SE3.Identity(), parent, pin.SE3.Identity())])
-    with pytest.raises(ValueError, match=reason):
-        assemble(linkage, q0)
-
-
 def test_default_start_is_assembled_configuration() -> None:
     linkage = n_bar(4, away=0.7)
     linkage.configurations["assembled"] = np.full(4, 0.7)
@@ -220,19 +201,6 @@ def test_opening_is_euclidean_length_of_all_axes(off: float, closes: bool) -> No
     assembly = assemble(pulled_apart(linkage, translation(0.0, 0.0, 0.3) * translation(off, off, off)))
     assert assembly.closes is closes
     assert assembly.open[0].is_open is not closes
-
-
-def test_limits_are_respected_when_no_solution_exists() -> None:
-    linkage = four_bar(1.0, 3.0, 2.0, 3.5)
-    linkage.model.lowerPositionLimit = np.full(3, -0.2)
-    linkage.model.upperPositionLimit = np.full(3, 0.2)
-    assembly = assemble(linkage, limits=True)
-    assert not assembly.closes
-    assert np.abs(assembly.q).max() <= 0.2
-    # The end comes nearest to the ground pin with all joints bent to their limit, in the same direction.
-    angles = np.cumsum([0.2, 0.2, 0.2])
-    end = np.array([1.0, 3.0, 2.0]) @ np.column_stack([np.cos(angles), np.sin(angles)])
-    assert assembly.residual <= np.linalg.norm(end - [3.5, 0.0]) + 1e-6
 
 
 def test_limits_that_keep_loop_open_are_named() -> None:
@@ -301,17 +269,6 @@ def test_six_decimal_file_closes_to_its_precision(build: Callable[..., Linkage])
     np.testing.assert_allclose(rounded.q, exact.q, atol=1e-4)
 
 
-def test_large_robot_closes_without_pinocchio_data(monkeypatch: pytest.MonkeyPatch) -> None:
-    def refused(self: Any) -> Any:
-        raise AssertionError("pin.Data of a large model")
-
-    monkeypatch.setattr(pin.Model, "createData", refused)
-    linkage = n_bar(150, away=0.02)
-    assembly = assemble(linkage)
-    assert assembly.converged
-    assert assembly.iterations < 15
-
-
 def test_robot_with_other_closures_is_assembled_anew() -> None:
     linkage = four_bar(1.0, 3.0, 2.5, 2.8)
     start = np.array([0.3, 0.5, 0.5])
@@ -341,20 +298,6 @@ def test_cached_assembler_keeps_no_reference_to_robot() -> None:
     assert alive() is None
 
 
-def test_threads_get_single_threaded_results() -> None:
-    robot = eurdf.load("digit_leg", geometry=False)
-    random = np.random.default_rng(0)
-    starts = [
-        pin.integrate(robot.model, pin.neutral(robot.model), random.uniform(-0.5, 0.5, robot.model.nv))
-        for _ in range(40)
-    ]
-    alone = [assemble(robot, start).q for start in starts]
-    with ThreadPoolExecutor(4) as threads:
-        together = list(threads.map(lambda start: assemble(robot, start).q, starts))
-    for one, other in zip(alone, together, strict=True):
-        np.testing.assert_allclose(one, other, atol=1e-9)
-
-
 def test_chain_of_loops_needs_evaluations_of_slowest_loop() -> None:
     model, constraints = pin.Model(), []
     foot = 0
@@ -374,19 +317,6 @@ def test_chain_of_loops_needs_evaluations_of_slowest_loop() -> None:
     assert np.abs(residual(chain, assembly.q)).max() <= 1e-10
 
 
-@pytest.mark.parametrize("name", ["digit_leg", "four_bar"])
-def test_disturbed_robot_closes_within_limits(name: str) -> None:
-    robot = eurdf.load(name, geometry=False)
-    model, closed, random = robot.model, eurdf.assemble(robot).q, np.random.default_rng(5)
-    bounded = np.isfinite(model.lowerPositionLimit) & np.isfinite(model.upperPositionLimit)
-    for _ in range(20):
-        start = pin.integrate(model, closed, random.uniform(-0.5, 0.5, model.nv))
-        assembly = assemble(robot, start, limits=True)
-        assert assembly.converged
-        assert (assembly.q >= model.lowerPositionLimit)[bounded].all()
-        assert (assembly.q <= model.upperPositionLimit)[bounded].all()
-
-
 def test_robot_without_closures_is_closed() -> None:
     assembly = assemble(Linkage(n_bar(4).model))
     assert assembly.converged
@@ -401,14 +331,6 @@ def test_result_is_never_more_open_than_start(seed: int) -> None:
     q0 = random.uniform(-3.0, 3.0, 3)
     assembly = assemble(linkage, q0, restarts=0)
     assert assembly.residual <= np.linalg.norm(residual(linkage, q0)) + 1e-12
-
-
-@pytest.mark.parametrize("build", [flat_sarrus, n_bar])
-def test_closed_start_is_unchanged(build: Callable[..., Linkage]) -> None:
-    linkage = build() if build is flat_sarrus else build(6)
-    assembly = assemble(linkage)
-    np.testing.assert_array_equal(assembly.q, np.zeros(6))
-    assert assembly.iterations == 1
 
 
 @needs_wild

@@ -18,7 +18,6 @@ from hypothesis import strategies as st
 
 import eurdf
 from eurdf.collection import collection_names
-from eurdf.kinematics.evaluate import many_tree
 from eurdf.pinocchio.robot import Robot, build_robot
 from support.actuated import robot_called
 from support.described import body, load, revolute
@@ -401,20 +400,6 @@ def test_error_in_a_block_is_raised() -> None:
 
 
 # --- the tree --------------------------------------------------------------------------------------------------------
-
-
-@settings(max_examples=25, deadline=None)
-@given(seed=seeds, size=st.sampled_from([1e-9, 1e-4, 0.02, 0.5, 2.0]))
-def test_configurations_of_every_joint_move_as_in_pinocchio(seed: int, size: float) -> None:
-    random = np.random.default_rng(seed)
-    robot, q = closed_tree(random, (), "floating")
-    tree, model = many_tree(robot), robot.model
-    v = random.uniform(-size, size, model.nv)
-    other = pin.integrate(model, q, v)
-    np.testing.assert_allclose(tree.integrate(q[None], v[None])[0], pin.normalize(model, other), atol=EQUAL)
-    np.testing.assert_allclose(tree.difference(q[None], other[None])[0], pin.difference(model, q, other), atol=EQUAL)
-    by_pinocchio = pin.dDifference(model, q, other, pin.ARG1)
-    np.testing.assert_allclose(tree.difference_derivative(q[None], other[None])[0], by_pinocchio, atol=1e-8)
 
 
 # --- errors ----------------------------------------------------------------------------------------------------------

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -23,11 +22,8 @@ from eurdf.errors import (
 from eurdf.kinematics import independence
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.dynamics import achievable_acceleration, forward_dynamics, inverse_dynamics
-from eurdf.kinematics.residual import residual, residual_and_jacobian
+from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.kinematics.simulation import simulate
-from eurdf.pinocchio.configuration import joint_coordinates
-from eurdf.pinocchio.robot import build_robot
-from support import by_hand
 from support.described import LIMITED, body, load, mass_matrix
 from support.linkage import (
     Linkage,
@@ -127,71 +123,6 @@ every_robot = pytest.mark.parametrize("name", [*ROBOTS, *LINKAGES])
 
 
 # --- against equations written by hand -----------------------------------------------------------------------------
-
-
-def matrices_by_hand(robot: Any, q: Any) -> tuple[Any, Any, float]:
-    """M, K and the potential energy at a closed configuration, in NumPy from the definitions of the joints."""
-    mechanism = robot.mechanism
-    coordinates = joint_coordinates(mechanism, robot.model, q)
-    J, places = by_hand.jacobians(mechanism, coordinates), by_hand.poses(mechanism, coordinates)
-    M = np.zeros((robot.model.nv, robot.model.nv))
-    potential = 0.0
-    for part in mechanism.bodies:
-        if part.inertia is not None:
-            M += J[part.name].T @ by_hand.spatial_inertia(part.inertia) @ J[part.name]
-            centre = places[part.name] @ np.array([*part.inertia.pose.xyz, 1.0])
-            potential += 9.81 * part.inertia.mass * centre[2]
-    rows = []
-    for found in mechanism.closures:
-        seen = []
-        for anchor in (found.a, found.b):
-            local = by_hand.pose_matrix(anchor.pose)
-            R = (places[anchor.body] @ local)[:3, :3]
-            own = by_hand.seen_from(local, J[anchor.body])
-            seen.append((R, np.vstack([R @ own[:3], R @ own[3:]])))
-        (R, of_a), (_, of_b) = seen  # A and B coincide, in the axes of the world
-        moved = of_b - of_a
-        rows.append(np.vstack([R.T @ moved[:3], R.T @ moved[3:]])[: 3 if found.type == "3d" else 6])
-    return M, np.vstack(rows), potential
-
-
-def bias_by_hand(robot: Any, q: Any, v: Any, step: float = 1e-4) -> Any:
-    """Ṁ v - ∂(½ vᵀ M v - V)/∂q, by central differences; for joints without quaternions where v is not zero."""
-    model = robot.model
-
-    def at(direction: Any) -> tuple[Any, float]:
-        there = [matrices_by_hand(robot, pin.integrate(model, q, sign * step * direction)) for sign in (1.0, -1.0)]
-        return (there[0][0] - there[1][0]) / (2.0 * step), (there[0][2] - there[1][2]) / (2.0 * step)
-
-    bias = at(v)[0] @ v
-    for index, unit in enumerate(np.eye(model.nv)):
-        dM, dV = at(unit)
-        bias[index] += dV - v @ dM @ v / 2.0
-    return bias
-
-
-@pytest.mark.parametrize(("name", "moving"), [("four_bar", True), ("four_bar", False), ("digit_leg", False)])
-def test_forward_dynamics_solves_handwritten_equations(name: str, moving: bool) -> None:
-    random = np.random.default_rng(3)
-    robot = eurdf.load(name, geometry=False)
-    q, v = closed_state(robot, random)
-    if not moving:
-        v = np.zeros(robot.model.nv)
-    robot.model.armature = armature = random.uniform(0.0, 0.1, robot.model.nv)
-    u = random.uniform(-5.0, 5.0, robot.actuation.selection.shape[1])
-    M, K, _ = matrices_by_hand(robot, q)
-    M += np.diag(armature)
-    step = 1e-4
-    around = [matrices_by_hand(robot, pin.integrate(robot.model, q, t * v))[1] for t in (step, -step)]
-    drift = (around[0] - around[1]) @ v / (2.0 * step)
-    zero = np.zeros((len(K), len(K)))
-    right = np.concatenate([robot.actuation.selection @ u - bias_by_hand(robot, q, v), -drift])
-    # The four-bar is planar: its force across the plane is the least, nought.
-    expected = np.linalg.lstsq(np.block([[M, -K.T], [K, zero]]), right, rcond=1e-12)[0]
-    found = forward_dynamics(robot, q, v, u)
-    nv = robot.model.nv
-    np.testing.assert_allclose(found.a, expected[:nv], atol=1e-5 * np.abs(expected[:nv]).max())
-    np.testing.assert_allclose(stacked(found.forces), expected[nv:], atol=1e-5 * np.abs(expected[nv:]).max())
 
 
 def test_closure_force_holds_body_of_frame_b() -> None:
@@ -318,16 +249,6 @@ def test_scaling_mass_keeps_acceleration(name: str, factor: float) -> None:
 # --- redundant rows, followers, missing inertia ---------------------------------------------------------------------
 
 
-@given(seed=seeds)
-@settings(max_examples=10, deadline=None)
-def test_planar_loop_moves_alike_in_6d_and_3d(seed: int) -> None:
-    random = np.random.default_rng(seed)
-    spatial, point = weighted(n_bar(5, "6d"), 1), weighted(n_bar(5, "3d"), 1)
-    q, v = closed_state(spatial, random)
-    a = forward_dynamics(spatial, q, v, np.ones(1)).a
-    np.testing.assert_allclose(a[:4], forward_dynamics(point, q[:4], v[:4], np.ones(1)).a, rtol=1e-8, atol=1e-8)
-
-
 def test_rounding_does_not_lock_redundant_loop() -> None:
     exact = weighted(tilted(5, actuated=("j0",)), 2)
     rounded = weighted(tilted(5, actuated=("j0",), decimals=6), 2)
@@ -358,30 +279,6 @@ FOLLOWING = (
     + joint_element("c", "revolute", "middle", "lower", LIMITED.format("0 1 0"), '<origin xyz="0.4 0 0"/>')
     + "</robot>"
 )
-
-
-def test_mimic_joint_moves_as_constrained_free_joint() -> None:
-    yaml = PIN % "lower"
-    robot, free = load(FOLLOWING, yaml), load(FOLLOWING, yaml, mimic=False)
-    assert (robot.model.nv, free.model.nv) == (2, 3)
-    bound = np.array([[1.0, 0.0], [-1.5, 0.0], [0.0, 1.0]])
-    q = assemble(robot, np.array([0.4, 0.9])).q
-    full = bound @ q + np.array([0.0, 0.3, 0.0])
-    assert np.abs(residual(free, full)).max() < 1e-9
-    # Two coordinates and a planar pin: a structure, which cannot move. Without the pin it moves.
-    found = forward_dynamics(robot, q, np.zeros(2), np.array([3.0]))
-    np.testing.assert_allclose(found.a, 0.0, atol=1e-9)
-    held = inverse_dynamics(robot, q, np.zeros(2), np.zeros(2))
-    np.testing.assert_allclose(held.u, 0.0, atol=1e-9)  # the least
-    K = residual_and_jacobian(robot, q)[1]
-    weight = pin.rnea(robot.model, robot.data, q, np.zeros(2), np.zeros(2))
-    np.testing.assert_allclose(K.T @ held.forces[0], weight, rtol=1e-9)
-    robot, free = (build_robot(replace(each.mechanism, closures=()), geometry=False) for each in (robot, free))
-    v = np.array([0.8, -1.1])
-    M = bound.T @ mass_matrix(free.model, full) @ bound
-    h = bound.T @ pin.rnea(free.model, free.data, full, bound @ v, np.zeros(3))
-    found = forward_dynamics(robot, q, v, np.array([3.0]))
-    np.testing.assert_allclose(found.a, np.linalg.solve(M, np.array([3.0, 0.0]) - h), rtol=1e-9)
 
 
 def test_late_leader_is_named_in_errors() -> None:
@@ -443,22 +340,6 @@ def test_massless_free_motion_is_named() -> None:
     assert refused.value.missing == {"spinner": (pytest.approx(-1.0),)}
 
 
-def test_tree_without_closures_matches_pinocchio() -> None:
-    model = pin.buildSampleModelManipulator()
-    random = np.random.default_rng(0)
-    q, v, tau = pin.randomConfiguration(model), random.normal(size=model.nv), random.normal(size=model.nv)
-    found = forward_dynamics(Linkage(model), q, v, tau=tau)
-    np.testing.assert_allclose(found.a, pin.aba(model, model.createData(), q, v, tau), rtol=1e-9)
-    assert found.forces == ()
-
-
-def test_single_joint_falls() -> None:
-    model = pin.Model()
-    model.addJoint(0, pin.JointModelPZ(), pin.SE3.Identity(), "drop")
-    model.inertias[1] = pin.Inertia(2.0, np.zeros(3), np.eye(3))
-    np.testing.assert_allclose(forward_dynamics(Linkage(model), np.zeros(1), np.zeros(1)).a, [-9.81])
-
-
 # --- actuation ------------------------------------------------------------------------------------------------------
 
 
@@ -506,15 +387,6 @@ def test_motion_without_motor_is_refused_with_joint_names() -> None:
     u = inverse_dynamics(robot, q, v, a + spin, tau=tau).u
     np.testing.assert_allclose(forward_dynamics(robot, q, v, u, tau=tau).a, a + spin, atol=1e-6)
     np.testing.assert_allclose(achievable_acceleration(robot, q, v, a + spin), a, atol=1e-6)
-
-
-def test_robot_without_motors_only_moves_passively() -> None:
-    robot = weighted(n_bar(4, actuated=()))
-    q, v = closed_state(robot, np.random.default_rng(0))
-    a = forward_dynamics(robot, q, v).a
-    assert inverse_dynamics(robot, q, v, a).u.shape == (0,)
-    with pytest.raises(UnderactuatedMotion):
-        inverse_dynamics(robot, q, v, a + free_part(robot, q, np.array([1.0, 0.0, 0.0, 0.0])))
 
 
 def test_motion_that_opens_closures_is_refused_with_names() -> None:
@@ -595,25 +467,6 @@ def test_gains_close_open_mechanism(name: str) -> None:
     for found in robot.constraint_models:
         found.m_baumgarte_parameters.Kp, found.m_baumgarte_parameters.Kd = kp, kd
     assert_same(forward_dynamics(robot, q, v).a, a)
-
-
-def test_invalid_vector_is_refused() -> None:
-    robot = eurdf.load("four_bar", geometry=False)
-    q, v = assemble(robot).q, np.zeros(3)
-    for arguments in (
-        {"v": np.zeros(4)},
-        {"q": np.zeros(2)},
-        {"u": np.zeros(3)},
-        {"tau": np.zeros(1)},
-        {"v": np.array([0.0, np.nan, 0.0])},
-        {"external": {"rocker": np.zeros(3)}},
-    ):
-        with pytest.raises(ValueError, match=r"shape|finite"):
-            forward_dynamics(robot, **{"q": q, "v": v, **arguments})
-    with pytest.raises(ValueError, match="did you mean 'motor_crank'"):
-        forward_dynamics(robot, q, v, external={"motor_crnak": np.zeros(6)})
-    with pytest.raises(ValueError, match="a has the shape"):
-        inverse_dynamics(robot, q, v, np.zeros(2))
 
 
 def test_given_data_does_not_change_result() -> None:
@@ -719,9 +572,6 @@ def test_empty_simulation_returns_projected_start() -> None:
     r, K = residual_and_jacobian(robot, motion.q[0])
     assert np.abs(r).max() < 1e-9
     assert np.abs(K @ motion.v[0]).max() < 1e-12
-    for wrong in ({"duration": -1.0}, {"duration": 1.0, "step": 0.0}, {"duration": np.inf}):
-        with pytest.raises(ValueError, match="duration"):
-            simulate(robot, q, **wrong)
 
 
 def test_simulation_of_open_robot_is_refused() -> None:

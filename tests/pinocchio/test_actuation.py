@@ -32,20 +32,6 @@ def test_actuated_joints_are_in_file_order_with_all_coordinates(names: list[str]
     np.testing.assert_array_equal(actuation.selection, expected)
 
 
-def test_spherical_joint_has_three_actuated_velocities() -> None:
-    loaded = load(STAR, f"{BALL}actuators: [d]\n")
-    assert (len(loaded.actuation.idx_q), len(loaded.actuation.idx_v)) == (4, 3)
-    assert loaded.actuation.selection.shape == (loaded.model.nv, 3)
-
-
-def test_selection_maps_motor_torques_to_velocities() -> None:
-    loaded = load(STAR, "actuators: [c, a]\n")
-    torques = loaded.actuation.selection @ np.array([3.0, 5.0])
-    assert torques[at(loaded.model, "c")[2]] == 3
-    assert torques[at(loaded.model, "a")[2]] == 5
-    assert np.count_nonzero(torques) == 2
-
-
 @pytest.mark.parametrize(
     ("joints", "actuator", "gear_ratio", "rotor_inertia", "armature"),
     [
@@ -103,26 +89,6 @@ def test_merged_spherical_joint_can_be_actuated() -> None:
     assert codes(urdf, merged + "actuators: [z]\n") == ["actuator-merged"]
 
 
-@pytest.mark.parametrize(
-    ("yaml", "error"),
-    [
-        ("actuators: [a, a]\n", "actuator-duplicate"),
-        ("actuators: [a, {joint: a}]\n", "actuator-duplicate"),
-        ("actuators: [g]\n", "actuator-immobile"),
-        ("joints: {a: fixed}\nactuators: [a]\n", "actuator-immobile"),
-        ("actuators: [la]\n", "unknown-actuator"),
-        ("actuators: [A]\n", "unknown-actuator"),
-    ],
-)
-def test_actuator_is_moving_joint_listed_once(yaml: str, error: str) -> None:
-    assert codes(STAR, yaml) == [error]
-
-
-def test_selection_is_computed_once() -> None:
-    actuation = load(STAR, "actuators: [c, a]\n").actuation
-    assert actuation.selection is actuation.selection
-
-
 # -- names and control ranges ----------------------------------------------------------------------------------------
 
 MOTORS = """\
@@ -145,10 +111,6 @@ def test_control_range_holds_for_each_velocity() -> None:
     unlimited = [-np.inf, np.inf]
     expected = [[-3.0, 4.5], unlimited, [0.0, 2.0], [0.0, 2.0], [0.0, 2.0], unlimited]
     assert load(STAR, MOTORS).actuation.control.tolist() == expected
-
-
-def test_robot_without_actuators_has_no_control_range() -> None:
-    assert load(STAR).actuation.control.shape == (0, 2)
 
 
 def test_locked_actuator_loses_name_and_range() -> None:

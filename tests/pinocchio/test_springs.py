@@ -14,10 +14,8 @@ import numpy as np
 import pytest
 
 import eurdf
-from eurdf.kinematics.project import project_velocity
 from eurdf.mechanism.joint import JointProperties
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.pinocchio.configuration import configuration_vector
 from eurdf.pinocchio.robot import build_robot
 from support.mujoco_witness import read_urdf
 from support.plain_urdf import inertial, joint_element, link_element
@@ -80,14 +78,8 @@ def test_accelerations_are_those_of_mujoco(tmp_path: Path) -> None:
         a = eurdf.forward_dynamics(robot, q, v).a
         np.testing.assert_allclose(a, data.qacc, rtol=1e-8, atol=1e-8)
         np.testing.assert_allclose(eurdf.springs.spring_force(robot, q), data.qfrc_spring, rtol=1e-12, atol=1e-12)
-        found = eurdf.inverse_dynamics(actuated(robot), q, v, a).u
+        found = eurdf.inverse_dynamics(actuated_of(robot), q, v, a).u
         np.testing.assert_allclose(found, np.zeros(4), atol=1e-9)
-
-
-def actuated(robot: Any) -> Any:
-    """The robot with a motor at each joint."""
-    names = tuple(joint.name for joint in robot.mechanism.joints)
-    return build_robot(replace(robot.mechanism, actuators=names), geometry=False)
 
 
 def test_force_is_minus_the_gradient_of_the_energy() -> None:
@@ -104,24 +96,6 @@ def test_force_is_minus_the_gradient_of_the_energy() -> None:
     ]
     np.testing.assert_allclose(eurdf.springs.spring_force(robot, q), -np.array(slopes), atol=1e-8)
     assert np.abs(slopes).max() > 0.1
-
-
-def test_spring_in_a_loop_acts_as_a_force_at_its_joint() -> None:
-    plain = eurdf.load("four_bar", geometry=False)
-    robot = sprung("four_bar", {"motor_crank": (3.0, 0.4)})
-    q = eurdf.assemble(robot).q
-    v = project_velocity(robot, q, np.ones(robot.model.nv))
-    at = robot.model.joints[robot.model.getJointId("motor_crank")]
-    tau = np.zeros(robot.model.nv)
-    tau[at.idx_v] = -3.0 * (q[at.idx_q] - 0.4)
-    there = configuration_vector(plain.mechanism, plain.model, robot.joint_positions(q))
-    found, expected = eurdf.forward_dynamics(robot, q, v), eurdf.forward_dynamics(plain, there, v, tau=tau)
-    np.testing.assert_allclose(found.a, expected.a, rtol=1e-10)
-    np.testing.assert_allclose(np.concatenate(found.forces), np.concatenate(expected.forces), rtol=1e-8, atol=1e-10)
-    a = found.a
-    u = eurdf.inverse_dynamics(robot, q, v, a).u
-    np.testing.assert_allclose(u, 0.0, atol=1e-9)
-    assert np.abs(eurdf.inverse_dynamics(plain, there, v, a).u).max() > 0.1
 
 
 def quiet(*given: Any, **options: Any) -> Any:
@@ -142,21 +116,6 @@ def test_oscillator_has_its_period_and_keeps_its_energy(tmp_path: Path) -> None:
     np.testing.assert_allclose(motion.potential, 0.5 * stiffness * motion.q[:, 0] ** 2, rtol=1e-12, atol=1e-12)
     assert motion.energy_error < 1e-7 * motion.energy_exchanged
     assert not motion.work.any()
-
-
-def test_loop_with_springs_keeps_its_energy() -> None:
-    robot = sprung("four_bar", {"motor_crank": (5.0, 0.4), "free_rocker": (2.0, 1.0)})
-    motion = quiet(robot, eurdf.assemble(robot).q, duration=0.1, step=2.5e-4)
-    assert motion.energy_exchanged > 1e-3
-    assert motion.energy_error < 1e-6 * motion.energy_exchanged
-    plain = eurdf.load("four_bar", geometry=False)
-    other = quiet(plain, eurdf.assemble(plain).q, duration=0.1, step=2.5e-4)
-    assert (
-        abs(
-            plain.joint_positions(other.q[-1])["motor_crank"][0] - robot.joint_positions(motion.q[-1])["motor_crank"][0]
-        )
-        > 0.01
-    )
 
 
 # -- continuous joints -----------------------------------------------------------------------------------------------
@@ -253,10 +212,3 @@ def test_bare_urdf_leaves_the_damping_of_mimic_joints_to_pinocchio(tmp_path: Pat
     assert eurdf.load(path, geometry=False).model.damping[0] == damping[0]
     (tmp_path / "robot.yaml").write_text('extended_urdf: "2.0"\n', encoding="utf-8")
     assert eurdf.load(tmp_path, geometry=False).model.damping[0] == pytest.approx(damping[1])
-
-
-@pytest.mark.parametrize("function", [eurdf.springs.spring_force, eurdf.springs.spring_energy])
-def test_wrong_configuration_is_refused(function: Any) -> None:
-    robot = sprung("four_bar", {"motor_crank": (3.0, 0.4)})
-    with pytest.raises(ValueError, match="q"):
-        function(robot, np.zeros(99))

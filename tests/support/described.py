@@ -65,16 +65,6 @@ def q_of(robot: eurdf.Robot, coordinates: Mapping[str, Sequence[float]]) -> Any:
     return configuration_vector(robot.mechanism, robot.model, coordinates)
 
 
-def frame_poses(model: Any, q: Any) -> dict[tuple[str, str], Any]:
-    """Pose in the world of every frame, by name and whether it is a link's."""
-    data = model.createData()
-    pin.framesForwardKinematics(model, data, q)
-    return {
-        (frame.name, "link" if frame.type == pin.FrameType.BODY else "other"): data.oMf[index].homogeneous.copy()
-        for index, frame in enumerate(model.frames)
-    }
-
-
 def mass_matrix(model: Any, q: Any) -> Any:
     """Column i is the force that unit acceleration i takes, from the inverse dynamics.
 

@@ -368,21 +368,6 @@ def far_from_half_a_turn(linkage: Linkage, q: Any) -> bool:
     return all(opening.angle < np.pi - 0.2 for opening in closure_openings(linkage, q))
 
 
-MIMIC = """<robot name="mimic">
-  <link name="ground"/><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
-  <joint name="lead" type="revolute"><parent link="ground"/><child link="a"/><origin xyz="0.1 0 0.2" rpy="0.1 0.2 0.3"/>
-    <axis xyz="0 0 1"/><limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
-  <joint name="slide" type="prismatic"><parent link="a"/><child link="b"/><origin xyz="0.3 0.1 0" rpy="0.5 0 0"/>
-    <axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
-  <joint name="same" type="revolute"><parent link="b"/><child link="c"/><origin xyz="0.2 0 0.1" rpy="0 0.7 0"/>
-    <axis xyz="0 1 0"/><limit lower="-9" upper="9" effort="1" velocity="1"/>
-    <mimic joint="lead" multiplier="-2" offset="0.4"/></joint>
-  <joint name="other" type="revolute"><parent link="ground"/><child link="d"/><origin xyz="-0.2 0 0.1"/>
-    <axis xyz="1 0 0"/><limit lower="-9" upper="9" effort="1" velocity="1"/>
-    <mimic joint="lead" multiplier="0.5" offset="0"/></joint>
-</robot>"""
-
-
 def scissors(mimic: bool = True) -> Linkage:
     """Two bars of which the second folds back twice as fast as the first turns, and a slide under their end."""
     text = """<robot name="scissors"><link name="g"/><link name="a"/><link name="b"/><link name="c"/>

@@ -21,46 +21,6 @@ from support.transmissions import DRIVEN
 ANKLE = ("free_pitch", "free_roll")
 
 
-def grid(lower: tuple[float, float], upper: tuple[float, float], n: int) -> list[tuple[float, float]]:
-    """Points of a grid, each next to the one before."""
-    rows = np.linspace(lower[0], upper[0], n)
-    columns = np.linspace(lower[1], upper[1], n)
-    return [(a, b) for i, a in enumerate(rows) for b in (columns if i % 2 == 0 else columns[::-1])]
-
-
-@pytest.mark.parametrize(
-    ("name", "lower", "upper"),
-    [
-        ("unitree_g1_ankle", (-0.6, -0.2), (0.4, 0.2)),
-        ("tesla_optimus_ankle", (-0.5, -0.2), (0.4, 0.2)),
-    ],
-)
-def test_positions_and_derivatives_agree_with_c_over_the_workspace(
-    name: str, lower: tuple[float, float], upper: tuple[float, float], tmp_path: Path
-) -> None:
-    robot = eurdf.load(name, geometry=False)
-    prepared = eurdf.transmissions.prepare_transmission(robot, ANKLE)
-    compiled = Compiled(prepared, tmp_path)
-    index = [robot.slots[motor].idx_q for motor in prepared.motors]
-    before = np.zeros(2)
-    for point in grid(lower, upper, 11):
-        motors, G = prepared.at_joints(point)
-        for way in np.linspace(before, point, 21 if not before.any() else 4)[1:]:
-            status, c_motors, c_G = compiled.at_joints(way)
-            assert status == OK
-        before = np.array(point)
-        assert c_motors == pytest.approx(motors, abs=1e-9)
-        assert c_G == pytest.approx(G, abs=1e-9)
-        q = eurdf.forward_kinematics(robot, dict(zip(ANKLE, point, strict=True)), prepared.q)
-        assert motors == pytest.approx(q[index], abs=1e-9)
-        joints, B = prepared.at_motors(motors)
-        assert joints == pytest.approx(point, abs=1e-9)
-        assert pytest.approx(np.eye(2), abs=1e-9) == B @ G
-        status, c_joints, c_B = compiled.at_motors(motors)
-        assert (status, c_joints) == (OK, pytest.approx(point, abs=1e-9))
-        assert c_B == pytest.approx(B, abs=1e-9)
-
-
 def loop(*types: str, closure: str, seed: int, slow: bool = True, **options: bool) -> Any:
     title = ", ".join((*types, *options)) + f" in {closure}"
     return pytest.param((types, closure, seed, options), id=title, marks=[pytest.mark.slow] if slow else [])
@@ -108,6 +68,9 @@ def test_long_motions_follow_the_path() -> None:
     for pitch in np.linspace(0.0, -0.8, 81):
         found = near.at_joints([pitch, 0.02]).positions
     assert far == pytest.approx(found, abs=1e-9)
+    joints, B = near.at_motors(found)
+    assert joints == pytest.approx([-0.8, 0.02], abs=1e-9)
+    assert pytest.approx(np.eye(2), abs=1e-9) == B @ near.at_joints(joints)[1]
 
 
 def status_in_python(call: Callable[[Any], object], positions: Any) -> int:

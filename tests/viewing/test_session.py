@@ -209,16 +209,6 @@ def test_drag_brings_frame_to_target_with_loops_closed() -> None:
     assert session.residual < 1e-9
 
 
-def test_sweep_stays_closed_and_says_what_ends_it() -> None:
-    robot = eurdf.load("unitree_g1_ankle")
-    session = Session(robot)
-    configurations, ends = session.sweep(0, steps=10)
-    assert ends.count("passive limit of 'free_roll'") == 2
-    for q in configurations:
-        assert np.abs(eurdf.residual(robot, q)).max() < 1e-9
-    assert configurations[0] == pytest.approx(configurations[-1])
-
-
 def test_configuration_is_carried_to_changed_robot(tmp_path: Path) -> None:
     session = Session(eurdf.load("digit_leg"))
     session.move(index_of(session, "motor_knee"), 0.3)
