@@ -19,7 +19,6 @@ from eurdf.errors import (
     UnderactuatedMotion,
     UndeterminedMotion,
 )
-from eurdf.kinematics import independence
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.dynamics import achievable_acceleration, forward_dynamics, inverse_dynamics
 from eurdf.kinematics.residual import residual_and_jacobian
@@ -191,42 +190,10 @@ def test_forward_dynamics_recovers_acceleration(name: str, seed: int) -> None:
     np.testing.assert_allclose(found.a, a, atol=1e-6 * (1.0 + np.abs(a).max()))
 
 
-@every_robot
-@given(seed=seeds)
-@settings(max_examples=5, deadline=None)
-def test_closures_do_no_work(name: str, seed: int) -> None:
-    """The energy of the tree changes by the power of the motors alone."""
-    random = np.random.default_rng(seed)
-    robot = robot_named(name)
-    model, S = robot.model, robot.actuation.selection
-    q, v = closed_state(robot, random)
-    u = random.uniform(-5.0, 5.0, S.shape[1])
-    a = forward_dynamics(robot, q, v, u).a
-    step = 1e-5
-    around = [energy(robot, pin.integrate(model, q, t * v + t * t / 2.0 * a), v + t * a) for t in (step, -step)]
-    power = (around[0] - around[1]) / (2.0 * step)
-    assert power == pytest.approx(u @ (S.T @ v), abs=1e-5 * (1.0 + abs(energy(robot, q, v)) + abs(v @ a)))
-
-
 # --- two methods, one answer -----------------------------------------------------------------------------------------
 
 # With these, K has rounding in no row that would count.
 by_pinocchio = pytest.mark.parametrize("name", [*ROBOTS, *(name for name in LINKAGES if "rounded" not in name)])
-
-
-@by_pinocchio
-def test_pinocchio_solver_and_elimination_agree(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    robot = robot_named(name)
-    q, v = closed_state(robot, np.random.default_rng(7))
-    u = np.ones(robot.actuation.selection.shape[1])
-
-    one = forward_dynamics(robot, q, v, u, gains=(100.0, 20.0))
-    with monkeypatch.context() as patched:
-        patched.setattr(independence, "INDEPENDENT", 0.0)
-        other = forward_dynamics(robot, q, v, u, gains=(100.0, 20.0))
-    np.testing.assert_allclose(one.a, other.a, atol=1e-7 * (1.0 + np.abs(other.a).max()))
-    largest = np.abs(stacked(other.forces)).max()
-    np.testing.assert_allclose(stacked(one.forces), stacked(other.forces), atol=1e-6 * (1.0 + largest))
 
 
 @by_pinocchio

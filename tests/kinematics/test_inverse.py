@@ -164,13 +164,6 @@ def test_target_at_edge_of_reach_is_reached() -> None:
     assert answer.converged
 
 
-def test_limits_that_are_both_zero_are_no_range() -> None:
-    robot = arm(1.0, 1.0, limit=0.0)
-    assert inverse_kinematics(robot, {"end": [0.0, 1.5, 0.0]}, np.zeros(2)).converged
-    with pytest.raises(ValueError, match="limits is 'all'; use True or False"):
-        inverse_kinematics(robot, {}, limits="all")  # type: ignore[arg-type]
-
-
 def test_joints_at_limits_are_the_reason() -> None:
     answer = inverse_kinematics(arm(1.0, 1.0, limit=0.5), {"end": [0.0, 2.0, 0.0]}, np.zeros(2))
     assert answer.reason == "joint limits"

@@ -14,11 +14,10 @@ import numpy as np
 import pytest
 
 import eurdf
-from eurdf.mechanism.joint import JointProperties
-from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.robot import build_robot
 from support.mujoco_witness import read_urdf
 from support.plain_urdf import inertial, joint_element, link_element
+from support.transmissions import with_properties
 
 LIMIT = '<limit lower="-9" upper="9" effort="1" velocity="1"/>'
 
@@ -43,21 +42,10 @@ CHAIN = {
 SPRINGS = {"turn": (30.0, 0.2), "slide": (200.0, -0.05), "spin": (4.0, 1.0)}
 
 
-def with_springs(mechanism: Mechanism, springs: Mapping[str, tuple[float, float]], **more: Any) -> Mechanism:
-    """The mechanism with springs: by joint stiffness and rest."""
-    joints = []
-    for joint in mechanism.joints:
-        if joint.name in springs:
-            stiffness, rest = springs[joint.name]
-            properties = replace(joint.properties, stiffness=(stiffness,), rest=(rest,), **more)
-            joint = replace(joint, properties=properties)
-        joints.append(joint)
-    return replace(mechanism, joints=tuple(joints))
-
-
-def sprung(given: str | Path, springs: Mapping[str, tuple[float, float]], **options: Any) -> Any:
-    robot = eurdf.load(given, geometry=False, **options)
-    return build_robot(with_springs(robot.mechanism, springs), geometry=False)
+def sprung(given: str | Path, springs: Mapping[str, tuple[float, float]]) -> Any:
+    """A robot with springs: by joint stiffness and rest."""
+    stated = {name: {"stiffness": (stiffness,), "rest": (rest,)} for name, (stiffness, rest) in springs.items()}
+    return with_properties(eurdf.load(given, geometry=False), stated)
 
 
 def test_accelerations_are_those_of_mujoco(tmp_path: Path) -> None:
@@ -147,20 +135,14 @@ def led(tmp_path: Path, *, mimic: bool) -> Any:
     """A robot with a description, mimic joints in a chain, and springs, armatures, damping and friction on them."""
     (tmp_path / "robot.urdf").write_text(urdf(LED), encoding="utf-8")
     (tmp_path / "robot.yaml").write_text('extended_urdf: "2.0"\n', encoding="utf-8")
-    mechanism = eurdf.load(tmp_path, geometry=False, mimic=mimic).mechanism
+    names = ("armature", "damping", "friction", "stiffness", "rest")
     added = {
-        "one": JointProperties(armature=(0.7,), damping=(0.4,), friction=(0.05,), stiffness=(11.0,), rest=(0.25,)),
-        "two": JointProperties(armature=(5.0,), damping=(6.0,), friction=(0.5,), stiffness=(90.0,), rest=(-0.1,)),
-        "leader": JointProperties(armature=(0.9,), damping=(0.3,), friction=(0.2,), stiffness=(2.0,), rest=(0.3,)),
+        "one": (0.7, 0.4, 0.05, 11.0, 0.25),
+        "two": (5.0, 6.0, 0.5, 90.0, -0.1),
+        "leader": (0.9, 0.3, 0.2, 2.0, 0.3),
     }
-    joints = []
-    for joint in mechanism.joints:
-        if joint.name in added:
-            own = joint.properties
-            limits = {name: getattr(own, name) for name in ("lower", "upper", "velocity", "effort")}
-            joint = replace(joint, properties=replace(added[joint.name], **limits))
-        joints.append(joint)
-    return build_robot(replace(mechanism, joints=tuple(joints)), geometry=False)
+    properties = {joint: {name: (each,) for name, each in zip(names, own, strict=True)} for joint, own in added.items()}
+    return with_properties(eurdf.load(tmp_path, geometry=False, mimic=mimic), properties)
 
 
 def test_mimic_joints_load_their_leader_as_if_they_were_free_and_led(tmp_path: Path) -> None:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 import eurdf
+from eurdf.pinocchio.robot import build_robot
 from support.described import load
 from support.plain_urdf import inertial, joint_element, link_element, robot
 
@@ -31,6 +33,15 @@ def posed(name: str, seed: int = 0) -> tuple[Any, Any]:
         half = 0.15 * (properties.upper[0] - properties.lower[0])
         motors[joint] = found.joint_positions(found.configurations["assembled"])[joint][0] + random.uniform(-half, half)
     return found, eurdf.forward_kinematics(found, motors)
+
+
+def with_properties(robot: Any, joints: Mapping[str, Mapping[str, Any]], **changes: Any) -> Any:
+    """The robot with other properties of some joints, and other changes of its mechanism."""
+    changed = [
+        replace(each, properties=replace(each.properties, **joints.get(each.name, {})))
+        for each in robot.mechanism.joints
+    ]
+    return build_robot(replace(robot.mechanism, joints=tuple(changed), **changes), geometry=False)
 
 
 _LIMIT = '<limit lower="-9" upper="9" effort="10" velocity="3"/>'

@@ -2,26 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Any
-
 import numpy as np
 import pinocchio as pin
 import pytest
 
 import eurdf
-from eurdf.pinocchio.robot import build_robot
-from support.transmissions import DRIVEN, posed, slider_crank
-
-
-def with_armature(robot: Any, values: dict[str, float]) -> Any:
-    joints = tuple(
-        replace(each, properties=replace(each.properties, armature=(values.get(each.name, 0.0),)))
-        if each.name in values
-        else each
-        for each in robot.mechanism.joints
-    )
-    return build_robot(replace(robot.mechanism, joints=joints), geometry=False)
+from support.transmissions import DRIVEN, posed, slider_crank, with_properties
 
 
 @pytest.mark.parametrize("name", DRIVEN)
@@ -29,7 +15,7 @@ def test_joint_torque_accelerates_the_inertia(name: str) -> None:
     found, q = posed(name)
     armature = {motor: 0.01 * (index + 1) for index, motor in enumerate(found.actuation.joints)}
     armature[DRIVEN[name][0]] = 0.02  # of a passive joint too
-    robot = with_armature(found, armature)
+    robot = with_properties(found, {name: {"armature": (value,)} for name, value in armature.items()})
     inertia = eurdf.transmissions.reflected_inertia(robot, DRIVEN[name], q)
     others = [motor for motor in robot.actuation.joints if motor not in inertia.motors]
     alone = eurdf.lock(robot, others, q)

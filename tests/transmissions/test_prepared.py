@@ -12,11 +12,10 @@ import numpy as np
 import pytest
 
 import eurdf
-from eurdf.mechanism.joint import JointProperties
 from eurdf.pinocchio.robot import build_robot
 from support.compiled import NOT_CLOSED, NOT_FINITE, OK, SINGULAR, TOO_FAR, Compiled
 from support.mechanisms import one_loop
-from support.transmissions import DRIVEN
+from support.transmissions import DRIVEN, with_properties
 
 ANKLE = ("free_pitch", "free_roll")
 
@@ -267,10 +266,8 @@ def test_motors_in_the_chain_are_their_own() -> None:
 
 
 def test_springs_that_no_motor_controls_are_held(tmp_path: Path) -> None:
-    mechanism = one_loop(["revolute"] * 5, "3d", 31).mechanism
-    spring = JointProperties(stiffness=(10.0,), rest=(0.0,))
-    joints = tuple(replace(joint, properties=spring) if joint.name == "j4" else joint for joint in mechanism.joints)
-    robot = build_robot(replace(mechanism, joints=joints), geometry=False)
+    robot = one_loop(["revolute"] * 5, "3d", 31)
+    robot = with_properties(robot, {"j4": {"stiffness": (10.0,), "rest": (0.0,)}})
     prepared = eurdf.transmissions.prepare_transmission(robot, "j0")
     compiled = Compiled(prepared, tmp_path)
     at = robot.slots["j4"].idx_q

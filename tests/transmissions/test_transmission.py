@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import eurdf
-from eurdf.pinocchio.robot import build_robot
 from support.described import body, load
 from support.linkage import described, n_bar
 from support.plain_urdf import joint_element
 from support.plain_urdf import robot as urdf
-from support.transmissions import DRIVEN, posed, slider_crank
+from support.transmissions import DRIVEN, posed, slider_crank, with_properties
 
 G1 = "unitree_g1_ankle", DRIVEN["unitree_g1_ankle"]
 
@@ -181,12 +179,7 @@ def test_redundant_motors_share_a_torque() -> None:
 
 
 def sprung(robot: Any, joint: str, rest: float = 0.0) -> Any:
-    spring = {"stiffness": (50.0,), "rest": (rest,)}
-    joints = tuple(
-        replace(each, properties=replace(each.properties, **spring)) if each.name == joint else each
-        for each in robot.mechanism.joints
-    )
-    return build_robot(replace(robot.mechanism, joints=joints), geometry=False)
+    return with_properties(robot, {joint: {"stiffness": (50.0,), "rest": (rest,)}})
 
 
 def test_springs_hold_what_no_motor_decides() -> None:
