@@ -23,6 +23,7 @@ from support.linkage import (
     Z,
     bennett,
     closure,
+    four_bar,
     loop,
     n_bar,
     pulled_apart,
@@ -44,15 +45,6 @@ OPEN = {
     "Sarrus": lambda: sarrus(away=(0.3, -0.2, 0.4, 0.1, 0.2, 0.3)),
     "Bennett": bennett,
 }
-
-
-def four_bar(crank: float, coupler: float, rocker: float, ground: float) -> Linkage:
-    """Planar four-bar with all bars along x at zero, pinned at its end by a 3d closure to the ground at ``ground``."""
-    linkage = loop([("R", (0, 0, 0), Z), ("R", (crank, 0, 0), Z), ("R", (crank + coupler, 0, 0), Z)], "3d")
-    model = linkage.model
-    turn = model.jointPlacements[1] * model.jointPlacements[2] * model.jointPlacements[3]
-    tip = turn.inverse() * translation(crank + coupler + rocker, 0.0, 0.0)
-    return Linkage(model, [closure(model, 0, translation(ground, 0.0, 0.0), 3, tip, "3d", "end")], ["j0"])
 
 
 def sized(pose: Pose, size: float) -> Pose:
@@ -258,15 +250,6 @@ def test_loop_with_mimic_joint_closes() -> None:
     assembly = assemble(scissors(), np.array([0.8, 0.3]), hold=["fold"])
     assert assembly.converged
     np.testing.assert_allclose(assembly.q, [0.8, 2.0 * np.cos(0.8)], atol=1e-9)
-
-
-@pytest.mark.parametrize("build", [n_bar, lambda *a, **k: sarrus(**k)])
-def test_six_decimal_file_closes_to_its_precision(build: Callable[..., Linkage]) -> None:
-    exact = assemble(build(4, away=0.6))
-    assert exact.converged
-    rounded = assemble(build(4, away=0.6, decimals=6))
-    assert rounded.closes
-    np.testing.assert_allclose(rounded.q, exact.q, atol=1e-4)
 
 
 def test_robot_with_other_closures_is_assembled_anew() -> None:

@@ -24,7 +24,7 @@ from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.robot import build_robot
 from support.actuated import ROBOTS, actuated, closed_near, robot_called
-from support.linkage import Linkage, X, Z, bennett, closure, loop, n_bar, slider_crank, stewart, translation
+from support.linkage import Linkage, X, Z, bennett, four_bar, loop, n_bar, slider_crank, stewart, translation
 
 BUILD = {
     "slider-crank": lambda: actuated(slider_crank()),
@@ -38,11 +38,7 @@ BUILD = {
 
 def crank_and_rocker(ground: float = 2.5) -> Any:
     """Planar: a crank of 1 m, a coupler of 2.5 m, a rocker of 2 m, all along x at zero; the crank goes all around."""
-    model, parent = pin.Model(), 0
-    for index, length in enumerate((0.0, 1.0, 2.5)):
-        parent = model.addJoint(parent, pin.JointModelRZ(), translation(length, 0.0, 0.0), f"j{index}")
-    end = closure(model, 0, translation(ground, 0.0, 0.0), parent, translation(2.0, 0.0, 0.0), "3d", "end")
-    return actuated(Linkage(model, [end], ["j0"]))
+    return actuated(four_bar(1.0, 2.5, 2.0, ground))
 
 
 def above(ground: float, angle: float) -> float:

@@ -15,7 +15,7 @@ from eurdf.closures.hinge import HingeClosure
 from eurdf.kinematics import forward_solver
 from eurdf.kinematics.equation_of_motion import EquationOfMotion
 from eurdf.kinematics.independence import INDEPENDENT, Independence
-from support.linkage import Y, Z, loop, weighted
+from support.linkage import loop, stretched, weighted
 
 seeds = st.integers(0, 2**32 - 1)
 
@@ -104,17 +104,6 @@ def test_redundant_rows_get_least_forces(name: str, eliminations: Counted) -> No
     _, K = eurdf.residual_and_jacobian(robot, q)
     h = pin.rnea(robot.model, robot.data, q, v, found.a)
     np.testing.assert_allclose(K.T @ np.concatenate(found.forces), h, atol=1e-9 * (1.0 + np.abs(h).max()))
-
-
-def stretched(bend: float, size: float = 1.0) -> Any:
-    """Two bars in a vertical slide whose ends are held, stretched but for a bend: K loses rank where it is 0."""
-    joints = [
-        ("P", (0.0, 0.0, 0.0), Z),
-        ("R", (0.0, 0.0, 0.0), Z),
-        ("R", (1.0, 0.0, 0.0), Z),
-        ("R", (1.5, bend / 2.0, 0.0), Y),
-    ]
-    return weighted(loop(joints, "3d", (2.0, bend, 0.0), actuated=(), size=size), size=size)
 
 
 @pytest.mark.parametrize(("bend", "rank", "eliminated"), [(1e-2, 3, 0), (1e-3, 3, 1), (0.0, 2, 0)])

@@ -20,7 +20,7 @@ from eurdf.kinematics.residual import residual
 from eurdf.kinematics.sensitivity import actuated_jacobian
 from eurdf.kinematics.split import split_configuration
 from support.actuated import ROBOTS, actuated, closed_near, robot_called
-from support.linkage import Linkage, Z, loop, n_bar, stewart, translation
+from support.linkage import Linkage, Z, chain, loop, n_bar, stewart, translation
 
 # For each robot a frame to lead.
 LED = {
@@ -47,11 +47,7 @@ def outside_limits(robot: Any, q: Any) -> float:
 
 def arm(*lengths: float, limit: float = np.inf) -> Any:
     """A planar arm without loops, along x at zero, with a frame at its end."""
-    model, parent, before = pin.Model(), 0, 0.0
-    for index, length in enumerate(lengths):
-        parent = model.addJoint(parent, pin.JointModelRZ(), translation(before, 0.0, 0.0), f"j{index}")
-        before = length
-    model.addFrame(pin.Frame("end", parent, 0, translation(before, 0.0, 0.0), pin.FrameType.OP_FRAME))
+    model = chain(*lengths)
     model.lowerPositionLimit = np.full(len(lengths), -limit)
     model.upperPositionLimit = np.full(len(lengths), limit)
     return actuated(Linkage(model), ["j0"])

@@ -27,11 +27,11 @@ from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.joint import Joint, JointProperties, Mimic
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.pose import Pose
 from eurdf.mechanism.spanning_tree import rigid_roots
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand
 from support.described import LIMITED, body, load, mass_matrix, q_of, revolute
+from support.linkage import pose_of
 from support.places import WILD
 from support.plain_urdf import joint_element, link_element
 from support.plain_urdf import robot as urdf_of
@@ -93,11 +93,6 @@ def assert_same_robot_at(robot: Robot, locked: LockedRobot, whole: Any, atol: fl
     r, K = residual_and_jacobian(locked, q)
     np.testing.assert_allclose(r, before_r[rows], atol=atol)
     np.testing.assert_allclose(K, before_K[np.ix_(rows, locked.idx_v)], atol=10 * atol)
-
-
-def pose_of(M: Any) -> Pose:
-    x, y, z, qx, qy, qz, qw = pin.SE3ToXYZQUAT(M).tolist()
-    return Pose((x, y, z), (qx, qy, qz, qw))
 
 
 def some_robot(random: np.random.Generator, mimic: bool, root: str = "fixed") -> tuple[Robot, Coordinates]:

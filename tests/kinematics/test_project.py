@@ -19,6 +19,7 @@ from support.linkage import (
     Z,
     bennett,
     closure,
+    drift_by_differences,
     loop,
     n_bar,
     pulled_apart,
@@ -40,19 +41,6 @@ BUILD: dict[str, Callable[[], Any]] = {
     "Stewart": stewart,
     **{name: (lambda name=name: robot_called(name)) for name in ROBOTS},  # type: ignore[misc]
 }
-
-
-def derivative(f: Callable[[float], Any], step: float) -> Any:
-    """By central differences of the sixth order."""
-    weights = {1: 45.0, 2: -9.0, 3: 1.0}
-    return sum(weight * (f(k * step) - f(-k * step)) for k, weight in weights.items()) / (60.0 * step)
-
-
-def drift_by_differences(robot: Any, q: Any, v: Any) -> Any:
-    def rate(t: float) -> Any:
-        return residual_and_jacobian(robot, pin.integrate(robot.model, q, t * v))[1] @ v
-
-    return derivative(rate, 2e-3)
 
 
 def null_space(K: Any) -> Any:

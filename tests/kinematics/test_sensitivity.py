@@ -12,16 +12,12 @@ import eurdf
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.residual import residual_and_jacobian
 from support.actuated import actuated, closed_near, robot_called
-from support.linkage import Linkage, n_bar, translation
+from support.linkage import Linkage, chain, n_bar, translation
 
 
 def arm(count: int = 2) -> Any:
     """A planar arm along x at zero, of bars of 1 m, with a motor at each joint and a frame at its end."""
-    model, parent = pin.Model(), 0
-    for index in range(count):
-        parent = model.addJoint(parent, pin.JointModelRZ(), translation(float(index > 0), 0.0, 0.0), f"j{index}")
-    model.addFrame(pin.Frame("end", parent, 0, translation(1.0, 0.0, 0.0), pin.FrameType.OP_FRAME))
-    return actuated(Linkage(model), [f"j{index}" for index in range(count)])
+    return actuated(Linkage(chain(*[1.0] * count)), [f"j{index}" for index in range(count)])
 
 
 def five_bar(motors: list[str]) -> Any:

@@ -102,12 +102,7 @@ _TURN, _AT = '<axis xyz="0 0 1"/><limit lower="-9" upper="9" effort="1" velocity
 
 
 def strut(kind: str, reach: float = 0.9) -> Any:
-    """The robot.
-
-    Args:
-        kind: Of the actuator: planar, spherical or floating.
-        reach: Position limit of the slide, both ways, m.
-    """
+    """A robot whose actuator is planar, spherical or floating, with a slide that moves `reach` both ways, m."""
     slide = f'<axis xyz="0 0 1"/><limit lower="{-reach!r}" upper="{reach!r}" effort="1" velocity="1"/>'
     own = "revolute" if kind == "spherical" else kind
     urdf = robot(

@@ -96,12 +96,7 @@ def one_loop(
 ) -> eurdf.Robot:
     """A chain of joints j0, j1, …, on a fixed root, whose end is closed at the configuration `assembled`.
 
-    Args:
-        types: The types of the joints.
-        closure: The type of the closure.
-        seed: Of the random numbers.
-        follower: Whether a joint that mimics j1 is added at the end.
-        coupled: Whether j0 and j1 are coupled.
+    A joint that mimics j1 is added at the end if there is a `follower`; j0 and j1 may be `coupled`.
     """
     random = np.random.default_rng(seed)
     bodies, joints, tip = [Body("b0")], [], IDENTITY

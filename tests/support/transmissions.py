@@ -60,14 +60,9 @@ def _bars(*names: str) -> list[str]:
 
 
 def four_bar(ground: float, crank: float, coupler: float, follower: float, angles: Sequence[float]) -> Any:
-    """A planar four-bar in x and y; the zero of each joint is at x, and the follower turns at (ground, 0).
+    """A planar four-bar of these lengths, m; the zero of each joint is at x, and the follower turns at (ground, 0).
 
-    Args:
-        ground: Length, m.
-        crank: Length, m.
-        coupler: Length, m.
-        follower: Length, m.
-        angles: Of crank, coupler and follower in the world, from which it is assembled, rad.
+    It is assembled from angles of crank, coupler and follower in the world, rad.
     """
     urdf = robot(
         *_bars("crank", "coupler", "follower"),
@@ -81,13 +76,7 @@ def four_bar(ground: float, crank: float, coupler: float, follower: float, angle
 
 
 def slider_crank(crank: float, rod: float, angle: float) -> Any:
-    """A planar slider-crank: the crank turns at the origin, the slider moves along x, and their zero is there.
-
-    Args:
-        crank: Length, m.
-        rod: Length, m.
-        angle: Of the crank, rad.
-    """
+    """A planar slider-crank at an angle of the crank, which turns at the origin, where the zero of the slider is."""
     along = '<axis xyz="1 0 0"/>' + _LIMIT
     urdf = robot(
         *_bars("crank", "rod", "slider"),

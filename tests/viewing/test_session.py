@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ import pytest
 import eurdf
 from eurdf.kinematics.evaluate import frames
 from eurdf.kinematics.position_limit import position_limits
+from eurdf.pinocchio.robot import build_robot
 from eurdf.viewing.session import Session, Stop
 from support.described import STRUT, load, strut
 from support.places import ROBOTS
@@ -144,20 +146,14 @@ def test_full_turn_of_a_crank_returns() -> None:
     assert session.q == pytest.approx(session.first, abs=1e-7)
 
 
-def test_dependent_actuators_follow(tmp_path: Path) -> None:
+def test_dependent_actuators_follow() -> None:
     """With both ends of a four-bar linkage actuated, neither moves with the other one held."""
-    source = ROBOTS / "four_bar"
-    (tmp_path / "robot.urdf").write_text((source / "robot.urdf").read_text())
-    robot = eurdf.load("four_bar")
-    passive = [joint.name for joint in robot.mechanism.joints if joint.name not in robot.mechanism.actuators]
-    both = f"actuators: [motor_crank, {passive[0]}]\n"
-    lines = (source / "robot.yaml").read_text().splitlines(keepends=True)
-    start = next(number for number, line in enumerate(lines) if line.startswith("actuators:"))
-    end = next(number for number in range(start + 1, len(lines)) if lines[number][:1] not in " -#\n")
-    (tmp_path / "robot.yaml").write_text("".join([*lines[:start], both, *lines[end:]]))
-    session = Session(eurdf.load(tmp_path))
+    mechanism = eurdf.load("four_bar", geometry=False).mechanism
+    passive = next(joint.name for joint in mechanism.joints if joint.name not in mechanism.actuators)
+    both = replace(mechanism, actuators=("motor_crank", passive))
+    session = Session(build_robot(both, geometry=False))
     assert session.analysis.dependent == 1
-    assert session.sliders[0].follow == (passive[0],)
+    assert session.sliders[0].follow == (passive,)
     assert session.move(0, 0.5) is None
     assert session.value(0) == pytest.approx(0.5, abs=1e-12)
     assert session.residual < 1e-12
