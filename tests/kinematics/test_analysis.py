@@ -355,6 +355,7 @@ def test_published_robots_have_known_dimensions(name: str) -> None:
         assert getattr(analysis, key) == facts[key], key
     if facts["closes"]:
         assert analysis.redundant == facts["nc"] - facts["rank"]
+        assert analysis.finite_mobility == analysis.mobility
 
 
 def test_digit_leg_has_nine_motions_with_three_spins() -> None:

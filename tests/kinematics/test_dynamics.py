@@ -43,6 +43,7 @@ from support.linkage import (
     weighted,
 )
 from support.plain_urdf import joint_element
+from support.plain_urdf import robot as urdf_of
 
 seeds = st.integers(0, 2**32 - 1)
 ROBOTS = ("four_bar", "digit_leg")
@@ -211,32 +212,23 @@ def test_rounding_does_not_lock_redundant_loop() -> None:
         np.testing.assert_allclose(forward_dynamics(rounded, zero, zero, u).a, a, atol=1e-2 * np.abs(a).max())
 
 
-PIN = """closures: [{name: pin, type: 3d, frames: [{link: base, xyz: [0.7, 0, 0.4]}, {link: %s, xyz: [0.6, 0, 0]}]}]
+PIN = """closures: [{name: pin, type: 3d, frames: [{link: base, xyz: [0.7, 0, 0.4]}, {link: tip, xyz: [0.6, 0, 0]}]}]
 actuators: [a]
 """
 
+ALONG_Y = LIMITED.format("0 1 0")
+MIMIC = '<mimic joint="a" multiplier="-1.5" offset="0.3"/>'
+AT = '<origin xyz="0.4 0 0"/>'
 FOLLOWING = (
-    '<robot name="arm">'
-    + "".join(body(name) for name in ("base", "upper", "middle", "lower"))
-    + joint_element("a", "revolute", "base", "upper", LIMITED.format("0 1 0"), "")
-    + joint_element(
-        "b",
-        "revolute",
-        "upper",
-        "middle",
-        LIMITED.format("0 1 0") + '<mimic joint="a" multiplier="-1.5" offset="0.3"/>',
-        '<origin xyz="0.5 0 0"/>',
-    )
-    + joint_element("c", "revolute", "middle", "lower", LIMITED.format("0 1 0"), '<origin xyz="0.4 0 0"/>')
-    + "</robot>"
+    *(body(name) for name in ("base", "upper", "middle", "lower")),
+    joint_element("a", "revolute", "base", "upper", ALONG_Y),
+    joint_element("b", "revolute", "upper", "middle", ALONG_Y + MIMIC, '<origin xyz="0.5 0 0"/>'),
+    joint_element("c", "revolute", "middle", "lower", ALONG_Y, AT),
 )
 
 
 def test_late_leader_is_named_in_errors() -> None:
-    late = FOLLOWING.replace(
-        '<mimic joint="a" multiplier="-1.5" offset="0.3"/>', '<mimic joint="c" multiplier="-1.5"/>'
-    )
-    robot = load(late)
+    robot = load(urdf_of(*FOLLOWING).replace(MIMIC, '<mimic joint="c" multiplier="-1.5"/>'))
     assert "c/coordinate" in list(robot.model.names)
     with pytest.raises(eurdf.errors.UnderactuatedMotion) as refused:
         inverse_dynamics(robot, np.zeros(2), np.zeros(2), np.ones(2))
@@ -244,10 +236,8 @@ def test_late_leader_is_named_in_errors() -> None:
 
 
 def test_loop_with_mimic_joint_is_solved() -> None:
-    geared = FOLLOWING.replace("</robot>", "") + body("tip")
-    geared += joint_element("d", "revolute", "lower", "tip", LIMITED.format("0 1 0"), '<origin xyz="0.4 0 0"/>')
-    yaml = PIN % "tip"
-    robot = load(geared + "</robot>", yaml)
+    tip = joint_element("d", "revolute", "lower", "tip", ALONG_Y, AT)
+    robot = load(urdf_of(*FOLLOWING, body("tip"), tip), PIN)
     random = np.random.default_rng(0)
     q, v = closed_state(robot, random)
     M, K = mass_matrix(robot.model, q), residual_and_jacobian(robot, q)[1][[0, 2]]

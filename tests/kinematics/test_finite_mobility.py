@@ -35,7 +35,6 @@ from support.linkage import (
     translation,
     written,
 )
-from support.wild import FACTS, WILD, needs_wild
 
 Closed = Literal["6d", "hinge"]
 
@@ -180,13 +179,6 @@ def test_collection_is_regular_where_assembled(name: str) -> None:
     analysis = analyze(eurdf.load(name, geometry=False))
     assert analysis.mobility == analysis.infinitesimal_mobility == analysis.finite_mobility
     assert (analysis.rounded_mobility, analysis.rounded_tolerance) == (None, None)
-
-
-@needs_wild
-@pytest.mark.parametrize("name", [name for name, facts in FACTS.items() if facts["closes"]])
-def test_published_robots_are_not_shaky(name: str) -> None:
-    analysis = analyze(eurdf.load(WILD / name, geometry=False))
-    assert analysis.finite_mobility == analysis.mobility
 
 
 # -- identities -------------------------------------------------------------------------------------------------------

@@ -188,20 +188,3 @@ def test_limits_in_a_workspace_hold_between_its_points() -> None:
     assert 0.0 <= limits.torque_margin < 1e-2
     with pytest.raises(ValueError, match="the workspace is that of another robot, or of other joints: slide"):
         eurdf.transmissions.serial_limits(robot, "pin", space)
-
-
-@pytest.mark.slow
-def test_limits_in_the_workspace_of_an_ankle_hold_at_random_poses() -> None:
-    robot, joints = eurdf.load("unitree_g1_ankle", geometry=False), DRIVEN["unitree_g1_ankle"]
-    space = eurdf.transmissions.workspace(robot, joints, grid=9)
-    limits = eurdf.transmissions.serial_limits(robot, joints, space)
-    random = np.random.default_rng(0)
-    start = random.integers(0, len(space.q), 400)
-    cell = np.array([axis[1] - axis[0] for axis in space.axes])
-    qs = space.moved(space.q[start], space.positions[start] + random.uniform(-1.0, 1.0, (400, 2)) * cell)
-    qs = qs[np.isfinite(qs).all(axis=1)]
-    assert len(qs) > 200
-    signs = np.array([[1.0, 1.0], [1.0, -1.0]])
-    for each in eurdf.transmissions.serial_limits(robot, joints, qs).each:
-        assert each.torque.contains(signs * limits.torque_box, 1e-6).all()
-        assert each.velocity.contains(signs * limits.velocity_box, 1e-6).all()

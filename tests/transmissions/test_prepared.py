@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -189,22 +188,6 @@ def test_an_error_keeps_the_pose(tmp_path: Path) -> None:
     assert compiled.start_at_joints(np.array([5.0])) == NOT_CLOSED
     assert compiled.start_at_joints(np.array([np.nan])) == NOT_FINITE
     assert np.array_equal(compiled.pose, pose)
-
-
-def test_c_refuses_what_the_loops_do_not_reach(tmp_path: Path) -> None:
-    robot = eurdf.load("slider_crank", geometry=False)
-    prepared = eurdf.transmissions.prepare_transmission(robot, ["free_slider"])
-    compiled = Compiled(prepared, tmp_path)
-    statuses, slider = [], prepared.at_motors(prepared._motors.read(prepared.q)).positions
-    for step in itertools.count():
-        status, _, _ = compiled.at_joints(slider + 1e-3 * step)
-        statuses.append(status)
-        if status != OK:
-            break
-    assert statuses[-1] in (NOT_CLOSED, TOO_FAR, SINGULAR)
-    prepared.at_joints(slider + 1e-3 * (step - 1))
-    with pytest.raises(eurdf.errors.NotClosable, match="cannot be closed"):
-        prepared.at_joints(slider + 1e-3 * (step + 1))
 
 
 def test_turns_of_a_motor_are_counted(tmp_path: Path) -> None:

@@ -173,15 +173,11 @@ def test_robot_that_cannot_close_is_moved_open() -> None:
     assert session.is_closed
 
 
-def test_robot_without_actuators_has_sliders_for_its_joints(tmp_path: Path) -> None:
-    file = tmp_path / "arm.urdf"
-    file.write_text(
-        '<robot name="arm"><link name="a"/><link name="b"/><link name="c"/>'
-        '<joint name="turn" type="revolute"><parent link="a"/><child link="b"/><limit lower="-1" upper="2" effort="1" '
-        'velocity="1"/></joint><joint name="slide" type="prismatic"><parent link="b"/><child link="c"/>'
-        '<limit lower="0" upper="0.5" effort="1" velocity="1"/></joint></robot>'
-    )
-    session = Session(eurdf.load(file))
+def test_robot_without_actuators_has_sliders_for_its_joints() -> None:
+    links = [link_element(name) for name in "abc"]
+    turn = joint_element("turn", "revolute", "a", "b", '<limit lower="-1" upper="2" effort="1" velocity="1"/>')
+    slide = joint_element("slide", "prismatic", "b", "c", '<limit lower="0" upper="0.5" effort="1" velocity="1"/>')
+    session = Session(load(robot(*links, turn, slide)))
     assert [(slider.label, slider.unit, slider.lower, slider.upper) for slider in session.sliders] == [
         ("turn", "rad", -1.0, 2.0),
         ("slide", "m", 0.0, 0.5),
