@@ -103,23 +103,6 @@ def test_stewart_legs_are_found_from_platform_pose(seed: int) -> None:
     np.testing.assert_allclose(split_configuration(robot, answer.q)[0], lengths, atol=1e-7)
 
 
-def test_two_feet_reach_targets_together() -> None:
-    if "wild/digit_like_2legs" not in ROBOTS:
-        pytest.skip("no published robots: put their folder at ../shared/wild, beside the checkout")
-    robot, random = robot_called("wild/digit_like_2legs"), np.random.default_rng(1)
-    q0 = assemble(robot).q
-    feet = ["foot", "foot_left"]
-    wanted = closed_near(robot, random, 0.3)
-    # One by its pose, the other by its position alone.
-    targets = {feet[0]: pose(robot, wanted, feet[0]), feet[1]: pose(robot, wanted, feet[1]).translation}
-    answer = inverse_kinematics(robot, targets, q0, limits=False)
-    assert answer.converged
-    assert [error.frame for error in answer.errors] == feet
-    assert pose(robot, answer.q, feet[0]).isApprox(targets[feet[0]], 1e-7)
-    np.testing.assert_allclose(pose(robot, answer.q, feet[1]).translation, targets[feet[1]], atol=1e-7)
-    assert answer.errors[1].angle == 0.0
-
-
 def test_foot_trajectory_has_no_jumps() -> None:
     robot = robot_called("digit_leg")
     q = assemble(robot, limits=True).q

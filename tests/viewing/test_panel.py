@@ -145,6 +145,8 @@ def test_shown_configurations_are_those_given(viewer: eurdf.viewing.Viewer) -> N
         viewer.show(q[:2])
     with pytest.raises(ValueError, match="dt"):
         viewer.animate([q], 0.0)
+    with pytest.raises(ValueError, match="xyz"):
+        viewer.add(robot, xyz=(0.0, 1.0))
     assert (viewer.q == robot.configurations["assembled"]).all()
 
 
