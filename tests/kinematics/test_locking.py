@@ -35,6 +35,7 @@ from support.linkage import pose_of
 from support.places import WILD
 from support.plain_urdf import joint_element, link_element
 from support.plain_urdf import robot as urdf_of
+from support.stl import TETRAHEDRON
 
 AXIAL = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
 LIMITS = ("lowerPositionLimit", "upperPositionLimit")
@@ -359,10 +360,8 @@ def test_opposite_quaternions_are_the_same_configuration() -> None:
 
 
 def test_meshes_are_shared_and_not_read_again(tmp_path: Path) -> None:
-    corners = ("0 0 0", "0 1 0", "1 0 0")
-    facet = "facet normal 0 0 1\nouter loop\n" + "".join(f"vertex {corner}\n" for corner in corners)
     mesh = tmp_path / "part.stl"
-    mesh.write_text(f"solid part\n{facet}endloop\nendfacet\nendsolid part\n", encoding="utf-8")
+    mesh.write_bytes(TETRAHEDRON)
     shape = '<visual><origin xyz="1 2 3"/><geometry><mesh filename="part.stl"/></geometry></visual>'
     text = urdf_of(
         link_element("base"), body("a", shape), revolute("knee", "base", "a", origin='<origin xyz="1 0 0"/>')

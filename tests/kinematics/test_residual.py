@@ -20,7 +20,6 @@ from support.linkage import (
     branching,
     closure,
     far_from_half_a_turn,
-    n_bar,
     somewhere,
     translation,
 )
@@ -151,14 +150,6 @@ def test_openings_at_once_do_not_depend_on_place_of_root() -> None:
     q = robot.configurations["assembled"]
     q[:3] = 1e9, -1e9, 1e9
     assert not any(opening.is_open for opening in openings_once(robot, q))
-
-
-def test_robot_without_closures_has_empty_residual() -> None:
-    linkage = Linkage(n_bar(4).model)
-    r, K = residual_and_jacobian(linkage, np.zeros(4))
-    assert r.shape == residual(linkage, np.zeros(4)).shape == (0,)
-    assert K.shape == (0, 4)
-    assert closure_openings(linkage, np.zeros(4)) == ()
 
 
 @pytest.mark.parametrize("joints", [0, 1])

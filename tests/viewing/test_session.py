@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
@@ -14,10 +12,10 @@ import pytest
 import eurdf
 from eurdf.kinematics.evaluate import frames
 from eurdf.kinematics.position_limit import position_limits
+from eurdf.mechanism.joint_types import JointType
 from eurdf.pinocchio.robot import build_robot
 from eurdf.viewing.session import Session, Stop
 from support.described import STRUT, load, strut
-from support.places import ROBOTS
 from support.plain_urdf import joint_element, link_element, robot
 
 
@@ -76,15 +74,12 @@ def test_slider_stops_at_limit_of_passive_joint() -> None:
     assert session.residual < 1e-12
 
 
-def without_limits(robot: str, folder: Path) -> eurdf.Robot:
+def without_limits(name: str) -> eurdf.Robot:
     """A robot of the collection whose joints have no position limits."""
-    mechanism = ROBOTS / robot
-    text = (mechanism / "robot.urdf").read_text()
-    (folder / "robot.urdf").write_text(
-        re.sub(r'type="revolute"', 'type="continuous"', re.sub(r' (?:lower|upper)="[^"]*"', "", text))
-    )
-    (folder / "robot.yaml").write_text((mechanism / "robot.yaml").read_text())
-    return eurdf.load(folder)
+    mechanism = eurdf.load(name, geometry=False).mechanism
+    joints = [replace(joint, properties=replace(joint.properties, lower=(), upper=())) for joint in mechanism.joints]
+    free = [replace(joint, type=JointType.CONTINUOUS) if joint.type == "revolute" else joint for joint in joints]
+    return build_robot(replace(mechanism, joints=tuple(free)), geometry=False)
 
 
 def test_pose_at_a_passive_limit_is_within_the_tolerance_of_files() -> None:
@@ -122,9 +117,9 @@ def test_springs_press_passive_joints_against_their_limits() -> None:
         assert session.residual < 1e-12
 
 
-def test_slider_stops_at_dead_point(tmp_path: Path) -> None:
+def test_slider_stops_at_dead_point() -> None:
     """A five-bar linkage stretches out: the distance of the two elbows is then the sum of the two outer links."""
-    session = Session(without_limits("five_bar", tmp_path))
+    session = Session(without_limits("five_bar"))
     stop = session.move(0, math.pi)
     assert stop is not None
     assert stop.reason == "dead point"
@@ -201,7 +196,7 @@ def test_drag_brings_frame_to_target_with_loops_closed() -> None:
     assert session.residual < 1e-9
 
 
-def test_configuration_is_carried_to_changed_robot(tmp_path: Path) -> None:
+def test_configuration_is_carried_to_changed_robot() -> None:
     session = Session(eurdf.load("digit_leg"))
     session.move(index_of(session, "motor_knee"), 0.3)
     other = eurdf.load("digit_leg", root="floating")
