@@ -49,7 +49,7 @@ def rod_between_balls() -> Linkage:
 
 
 def folded_parallelogram() -> Linkage:
-    return loop([("R", (0, 0, 0), Z), ("R", (1, 0, 0), Z), ("R", (3, 0, 0), Z), ("R", (2, 0, 0), Z)])
+    return loop([("R", (x, 0, 0), Z) for x in (0, 1, 3, 2)])
 
 
 def side_by_side(*linkages: Linkage) -> Linkage:

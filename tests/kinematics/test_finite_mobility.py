@@ -18,7 +18,7 @@ from eurdf.commands.main import main
 from eurdf.commands.robot_info import robot_info
 from eurdf.kinematics.analysis import Analysis, analyze
 from eurdf.kinematics.quadratic_forms import common_roots
-from support.described import load
+from support.described import load, written
 from support.hostile import four_bars
 from support.linkage import (
     Linkage,
@@ -32,8 +32,8 @@ from support.linkage import (
     loop,
     n_bar,
     pulled_apart,
+    rounded,
     translation,
-    written,
 )
 
 Closed = Literal["6d", "hinge"]
@@ -55,8 +55,8 @@ def cut(pairs: list[Pair], kind: Closed, decimals: int | None = None) -> Linkage
     pin.forwardKinematics(model, data, pin.neutral(model))
     turn = pin.Quaternion.FromTwoVectors(np.array(Z), np.array(axis, dtype=float)).matrix()
     oMc, last = pin.SE3(turn, np.array(point, dtype=float)), model.njoints - 1
-    a = anchor(model, 0, written(oMc, decimals))
-    b = anchor(model, last, written(data.oMi[last].actInv(oMc), decimals))
+    a = anchor(model, 0, rounded(oMc, decimals))
+    b = anchor(model, last, rounded(data.oMi[last].actInv(oMc), decimals))
     return replace(linkage, constraints=[HingeClosure("end", a, b, (Z, Z))])
 
 
@@ -295,19 +295,14 @@ def test_many_free_velocities_are_undecided() -> None:
 def test_large_regular_robot_is_decided_by_its_rank(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("eurdf.kinematics.finite_mobility._MOST_WORK", 0.0)
     description, urdf = four_bars(100, in_series=True)
-    (tmp_path / "robot.yaml").write_text(description, encoding="utf-8")
-    (tmp_path / "robot.urdf").write_text(urdf, encoding="utf-8")
-    assert analyze(eurdf.load(tmp_path, geometry=False)).finite_mobility == 100
+    assert analyze(eurdf.load(written(tmp_path, urdf, description), geometry=False)).finite_mobility == 100
 
 
 # -- info -------------------------------------------------------------------------------------------------------------
 
 
 def shown(linkage: Linkage, folder: Path, capsys: pytest.CaptureFixture[str]) -> str:
-    urdf, yaml = described(linkage)
-    (folder / "robot.urdf").write_text(urdf, encoding="utf-8")
-    (folder / "robot.yaml").write_text('extended_urdf: "2.0"\n' + yaml, encoding="utf-8")
-    main(["info", str(folder)])
+    main(["info", str(written(folder, *described(linkage)))])
     return capsys.readouterr().out
 
 

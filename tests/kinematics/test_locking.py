@@ -19,7 +19,6 @@ import eurdf
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.point import PointClosure
 from eurdf.errors import CannotLock, LockedOpen
-from eurdf.kinematics.locked_mechanism import lock_joints
 from eurdf.kinematics.locking import LockedRobot, lock
 from eurdf.kinematics.residual import residual, residual_and_jacobian
 from eurdf.mechanism.body import Anchor, Frame, Shape
@@ -417,18 +416,6 @@ def test_joint_that_cannot_be_locked_is_refused_with_hint() -> None:
     locked = lock(robot, "motor_crank")
     assert locked.locked_joints == ("motor_crank",)
     assert locked.visual_model is locked.collision_model is None
-
-
-def test_plain_data_is_locked_at_given_coordinates() -> None:
-    joints = (
-        Joint("lead", JointType.PRISMATIC, "base", "a", axes=((0.0, 0.0, 2.0),)),
-        Joint("led", JointType.PRISMATIC, "a", "b", axes=((1.0, 0.0, 0.0),), mimic=Mimic("lead", 3.0, 1.0)),
-    )
-    bodies = tuple(replace(found, inertia=None) for found in by_hand.tree_of_all_types(np.random.default_rng(0)).bodies)
-    bodies = tuple(replace(found, name=name) for found, name in zip(bodies, ("base", "a", "b"), strict=False))
-    locked = lock_joints(Mechanism("slide", "", "fixed", bodies, joints), ["lead"], {"lead": (0.5,), "led": (9.0,)})
-    assert [joint.placement.xyz for joint in locked.mechanism.joints] == [(0.0, 0.0, 0.5), (2.5, 0.0, 0.0)]
-    assert [joint.type for joint in locked.mechanism.joints] == [JointType.FIXED, JointType.FIXED]
 
 
 # -- robots of the collection, and published ones ----------------------------------------------------------------------

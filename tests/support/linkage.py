@@ -123,14 +123,14 @@ def loop(
             "S": pin.SE3.Identity(),
         }[letter]
         joint_model = {"R": pin.JointModelRZ, "P": pin.JointModelPZ, "S": pin.JointModelSpherical}[letter]()
-        joint = model.addJoint(joint, joint_model, written(oMi.actInv(oMj * moved), decimals), f"j{index}")
+        joint = model.addJoint(joint, joint_model, rounded(oMi.actInv(oMj * moved), decimals), f"j{index}")
         oMi = oMj
     oMc = translation(*(size * np.array(end, dtype=float)))
-    constraint = closure(model, 0, written(oMc, decimals), joint, written(oMi.actInv(oMc), decimals), kind, "end")
+    constraint = closure(model, 0, rounded(oMc, decimals), joint, rounded(oMi.actInv(oMc), decimals), kind, "end")
     return Linkage(model, [constraint], actuated)
 
 
-def written(placement: Any, decimals: int | None) -> Any:
+def rounded(placement: Any, decimals: int | None) -> Any:
     """A placement as it comes back from a file."""
     if decimals is None:
         return placement
