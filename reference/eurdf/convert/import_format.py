@@ -15,7 +15,6 @@ from eurdf.mechanism.joint import Joint, JointProperties, is_no_range
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mesh_files.reader import MeshReader
-from eurdf.reading.other_formats import IMPORTED
 from eurdf.reading.resource import FileFinder
 
 
@@ -83,19 +82,12 @@ class ImportFormat:
     """A format to import from.
 
     Attributes:
-        name: As the user gives it, in `eurdf.reading.other_formats.IMPORTED`.
         read: Reads a file.
         losses: Every kind of loss that `read` can record, beside those of all formats.
     """
 
-    name: str
     read: Callable[[ImportInput], RobotRead]
     losses: tuple[LossKind, ...]
-
-    @property
-    def title(self) -> str:
-        """What it is."""
-        return IMPORTED[self.name].title
 
 
 def loss_kinds(rows: Mapping[str, LossKind]) -> tuple[LossKind, ...]:

@@ -99,6 +99,9 @@ class Pose:
 IDENTITY = Pose()
 
 ORIGIN: Vector3 = (0.0, 0.0, 0.0)
+X: Vector3 = (1.0, 0.0, 0.0)
+Y: Vector3 = (0.0, 1.0, 0.0)
+Z: Vector3 = (0.0, 0.0, 1.0)
 
 
 def squarable(axis: Vector3) -> Vector3:

@@ -32,7 +32,7 @@ from eurdf.kinematics.tolerances import (
 )
 from eurdf.mechanism.constraint import Closure, Constraint, Coupling
 from eurdf.mechanism.joint import Joint, Mimic
-from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
+from eurdf.mechanism.pose import IDENTITY, ORIGIN, Pose, Vector3, X, Y, Z, cross, direction
 from eurdf.pinocchio.mimic import following
 from eurdf.transmissions.drive import MOST_SUBSTEPS, SINGULAR, Drive
 from eurdf.writing.output_folder import write_files
@@ -42,9 +42,6 @@ if TYPE_CHECKING:
 
 #: What the kernel calls each kind of constraint.
 _KINDS = {type_: module.upper() for type_, module in MODULES.items()} | {Coupling.type: "COUPLING"}
-
-_X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
-_HERE = (0.0, 0.0, 0.0)
 
 # Given velocities are independent if none of them opens the loops by more, dimensionless.
 _DETERMINED = 1e-6
@@ -199,8 +196,8 @@ def _screws(
     found = []
     for k, (axis, turns, advance) in enumerate(joint.motions):
         numbers = parent, int(axis is None), int(turns), coordinate + k, velocity + k
-        along = [advance * each for each in axis] if axis and advance else _HERE
-        frame = f"{_rotation(pose)}, {_vector(pose.xyz)}, {_vector(axis or _Z)}, {_vector(along)}"
+        along = [advance * each for each in axis] if axis and advance else ORIGIN
+        frame = f"{_rotation(pose)}, {_vector(pose.xyz)}, {_vector(axis or Z)}, {_vector(along)}"
         found.append(f"{{{', '.join(map(str, numbers))}, {_number(factor)}, {_number(offset)}, {frame}}}")
         parent, pose = number + k, IDENTITY
     return found
@@ -245,7 +242,7 @@ def _file(name: str) -> str:
 def _source(tables: _Tables, name: str, drives: Sequence[Drive], steps: int, substeps: int) -> str:
     robot = tables.robot
     scale = row_scale(robot, derived(robot, TangentSpaces).length)
-    rows = {index: loop.rows for index, loop in enumerate(find_loops(robot))}
+    rows = [loop.rows for loop in find_loops(robot)]
     path: list[str] = []
     constraints: list[str] = []
     for index in tables.constraints:
@@ -316,7 +313,7 @@ def _source(tables: _Tables, name: str, drives: Sequence[Drive], steps: int, sub
 def _constraint(constraint: Constraint, tables: _Tables, first: int, last: int, scale: Vector) -> str:
     ends = tables.anchors(constraint) or [(0, IDENTITY), (0, IDENTITY)]
     own = constraint.own if isinstance(constraint, Closure) else {}
-    a, b = (direction(axis) for axis in own.get("axes", (_Z, _Z)))
+    a, b = (direction(axis) for axis in own.get("axes", (Z, Z)))
     length = constraint.offset if isinstance(constraint, Coupling) else own.get("length", 0.0)
     frames = ", ".join(f"{_rotation(pose)}, {_vector(pose.xyz)}" for _, pose in ends)
     return (
@@ -329,15 +326,11 @@ def _constraint(constraint: Constraint, tables: _Tables, first: int, last: int, 
 def _across(a: Vector3) -> tuple[Vector3, Vector3]:
     """Two unit vectors across a unit vector and each other."""
     least = min(range(3), key=lambda k: abs(a[k]))
-    first = direction(_cross(a, (_X, _Y, _Z)[least]))
-    return first, _cross(a, first)
+    first = direction(cross(a, (X, Y, Z)[least]))
+    return first, cross(a, first)
 
 
-def _cross(u: Vector3, v: Vector3) -> Vector3:
-    return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
-
-
-def _drive(number: int, drive: Drive, tables: _Tables, place: Mapping[int, int], rows: Mapping[int, slice]) -> str:
+def _drive(number: int, drive: Drive, tables: _Tables, place: Mapping[int, int], rows: Sequence[slice]) -> str:
     own = [tables.velocity[v] for v in drive.own.tolist()]
     asked = [tables.velocity[v] for v in drive.asked.velocities.tolist()]
     position = {velocity: index for index, velocity in enumerate(own)}
@@ -369,7 +362,7 @@ def _calls(name: str, drive: Drive, number: int) -> str:
     )
 
 
-def _rows_of(rows: Mapping[int, slice], drive: Drive) -> int:
+def _rows_of(rows: Sequence[slice], drive: Drive) -> int:
     return sum(rows[index].stop - rows[index].start for index in drive.closures)
 
 
@@ -396,5 +389,5 @@ def _vector(values: Iterable[float]) -> str:
 
 
 def _rotation(pose: Pose) -> str:
-    columns = [pose.rotate(axis) for axis in (_X, _Y, _Z)]
+    columns = [pose.rotate(axis) for axis in (X, Y, Z)]
     return _vector(columns[column][row] for row in range(3) for column in range(3))
