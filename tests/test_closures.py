@@ -30,8 +30,8 @@ from eurdf.mechanism.constraint import Closure, Constraint, Coupling
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import Robot, build_robot
 from support.described import LIMITED, body, load, revolute
-from support.every_kind import KIND_NAMES, some_robot
 from support.linkage import Linkage, X, loop, pose_of
+from support.mechanisms import KINDS, some_robot
 from support.plain_urdf import joint_element
 from support.plain_urdf import robot as urdf
 
@@ -163,7 +163,7 @@ def far_from_half_a_turn(robot: Robot, q: Any) -> bool:
     return all(opening.angle < np.pi - 0.2 for opening in found if opening.name in closures)
 
 
-@pytest.mark.parametrize("kinds", [*((kind,) for kind in KIND_NAMES), KIND_NAMES, KIND_NAMES[:4] * 2], ids=str)
+@pytest.mark.parametrize("kinds", [*((kind,) for kind in KINDS), KINDS, KINDS[:4] * 2], ids=str)
 @given(seed=seeds)
 @settings(max_examples=10, deadline=None)
 def test_jacobian_and_drift_are_derivatives_of_the_residual(kinds: Sequence[str], seed: int) -> None:

@@ -18,7 +18,6 @@ from hypothesis import strategies as st
 
 import eurdf
 from eurdf.collection import collection_names
-from eurdf.kinematics.evaluate import many_tree
 from eurdf.pinocchio.robot import Robot, build_robot
 from support.actuated import robot_called
 from support.described import body, load, revolute
@@ -159,15 +158,6 @@ def test_results_are_those_of_each_element(compare: Compare, count: int, name: s
     compare(robot, eurdf.assemble(robot).q, np.random.default_rng(1), count)
 
 
-@settings(max_examples=25, deadline=None)
-@given(seed=st.integers(0, 2**32 - 1), root=st.sampled_from(["fixed", "floating"]), count=st.sampled_from(COUNTS))
-def test_residuals_of_every_joint_and_constraint_are_those_of_each_element(seed: int, root: Any, count: int) -> None:
-    random = np.random.default_rng(seed)
-    robot, q = closed_tree(random, root=root)
-    assert np.abs(eurdf.batch.residual(robot, q[None])).max() <= EQUAL
-    same_residual(robot, moved(robot, q, random, count, 0.4))
-
-
 @pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(
@@ -269,24 +259,6 @@ def test_values_beyond_a_dead_point_say_whether_the_loops_close_there() -> None:
     found = same_forward_kinematics(robot, np.array([[0.0], [1.5], [2.0], [3.1], [4.5], [6.0]]), q0)
     assert found.reason == ("not closed", None, None, "not closed", "blocked", "not closed")
     np.testing.assert_array_equal(found.residual > 1e-3, [reason == "not closed" for reason in found.reason])
-
-
-def test_start_whose_loops_cannot_be_closed_is_the_reason() -> None:
-    robot = four_bar(6.0, 2.5, 2.0, "crank_pin")
-    for q0 in (np.zeros(3), np.zeros((2, 3))):
-        found = eurdf.batch.forward_kinematics(robot, [[0.1], [0.2]], q0)
-        assert found.reason == ("start open", "start open")
-        assert (found.residual > 0.4).all()
-
-
-def test_each_element_stays_on_the_branch_of_its_start() -> None:
-    robot = four_bar(2.5, 2.5, 2.0, "crank_pin")
-    below, above = (eurdf.assemble(robot, np.array(q), hold=["crank_pin"]).q for q in ([1, -0.5, 1.7], [1, -2, -1.7]))
-    starts = np.array([below, above, below, above])
-    assert np.abs(below - above).max() > 0.5
-    found = same_forward_kinematics(robot, np.array([[0.9], [0.9], [1.1], [1.1]]), starts)
-    assert found.converged.all()
-    np.testing.assert_array_less(np.abs(found.q - starts).max(axis=1), 0.5)
 
 
 def test_forward_kinematics_from_a_singular_start_is_blocked() -> None:
@@ -403,20 +375,6 @@ def test_error_in_a_block_is_raised() -> None:
 # --- the tree --------------------------------------------------------------------------------------------------------
 
 
-@settings(max_examples=25, deadline=None)
-@given(seed=seeds, size=st.sampled_from([1e-9, 1e-4, 0.02, 0.5, 2.0]))
-def test_configurations_of_every_joint_move_as_in_pinocchio(seed: int, size: float) -> None:
-    random = np.random.default_rng(seed)
-    robot, q = closed_tree(random, (), "floating")
-    tree, model = many_tree(robot), robot.model
-    v = random.uniform(-size, size, model.nv)
-    other = pin.integrate(model, q, v)
-    np.testing.assert_allclose(tree.integrate(q[None], v[None])[0], pin.normalize(model, other), atol=EQUAL)
-    np.testing.assert_allclose(tree.difference(q[None], other[None])[0], pin.difference(model, q, other), atol=EQUAL)
-    by_pinocchio = pin.dDifference(model, q, other, pin.ARG1)
-    np.testing.assert_allclose(tree.difference_derivative(q[None], other[None])[0], by_pinocchio, atol=1e-8)
-
-
 # --- errors ----------------------------------------------------------------------------------------------------------
 
 
@@ -436,20 +394,6 @@ def test_wrong_argument_is_named(arguments: Any, complaint: str) -> None:
     robot = robot_called("digit_leg")
     with pytest.raises(ValueError, match=re.escape(complaint)):
         eurdf.batch.forward_kinematics(robot, **{"values": np.zeros((3, 6)), **arguments})
-
-
-@pytest.mark.parametrize(
-    ("targets", "complaint"),
-    [
-        ({"foot": np.zeros((2, 4))}, "targets['foot'] has the shape (2, 4); expected (B, 3): one row for each element"),
-        ({"foot": np.zeros((2, 4, 4))}, "targets['foot'][0] is not a pose: its rotation is not orthonormal"),
-        ({"foot": np.zeros((2, 3)), "thigh": np.zeros((3, 3))}, "targets['thigh'] has 3 elements; the first"),
-        ({"fot": np.zeros((2, 3))}, "the model has no frame 'fot'; did you mean 'foot'?"),
-    ],
-)  # fmt: skip
-def test_wrong_targets_are_named(targets: Any, complaint: str) -> None:
-    with pytest.raises(ValueError, match=re.escape(complaint)):
-        eurdf.batch.inverse_kinematics(robot_called("digit_leg"), targets)
 
 
 def test_frame_must_be_a_name() -> None:

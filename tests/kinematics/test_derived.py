@@ -26,6 +26,7 @@ def answers(robot: eurdf.Robot, seed: int) -> list[Any]:
         *eurdf.residual_and_jacobian(robot, apart),
         eurdf.assemble(robot, apart, hold=robot.actuation.joints[0]).q,
         eurdf.kinematics.dq_dq_actuated(robot, q),
+        eurdf.forward_dynamics(robot, q, np.zeros(tree.nv)).a,
         eurdf.inverse_kinematics(robot, {robot.mechanism.bodies[-1].name: np.zeros(3)}, apart, restarts=0).q,
     ]
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -20,14 +19,10 @@ from eurdf.errors import (
     UnderactuatedMotion,
     UndeterminedMotion,
 )
-from eurdf.kinematics import independence
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.dynamics import achievable_acceleration, forward_dynamics, inverse_dynamics
-from eurdf.kinematics.residual import residual, residual_and_jacobian
+from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.kinematics.simulation import simulate
-from eurdf.pinocchio.configuration import joint_coordinates
-from eurdf.pinocchio.robot import build_robot
-from support import by_hand
 from support.described import LIMITED, body, load, mass_matrix
 from support.linkage import (
     Linkage,
@@ -36,6 +31,7 @@ from support.linkage import (
     Z,
     bennett,
     closure,
+    drift_by_differences,
     loop,
     n_bar,
     sarrus,
@@ -47,6 +43,7 @@ from support.linkage import (
     weighted,
 )
 from support.plain_urdf import joint_element
+from support.plain_urdf import robot as urdf_of
 
 seeds = st.integers(0, 2**32 - 1)
 ROBOTS = ("four_bar", "digit_leg")
@@ -95,24 +92,10 @@ def free_part(robot: Any, q: Any, v: Any) -> Any:
     return v - np.linalg.pinv(K, rcond=1e-4) @ (K @ v)
 
 
-def drift_by_differences(robot: Any, q: Any, v: Any, step: float = 1e-3) -> Any:
-    """K̇ v by central differences of the fourth order."""
-
-    def at(t: float) -> Any:
-        return residual_and_jacobian(robot, pin.integrate(robot.model, q, t * v))[1] @ v
-
-    return (8.0 * (at(step) - at(-step)) - at(2.0 * step) + at(-2.0 * step)) / (12.0 * step)
-
-
 def possible(robot: Any, q: Any, v: Any, random: np.random.Generator) -> Any:
     """Some acceleration that keeps the closures closed, after finite differences."""
     K, some = residual_and_jacobian(robot, q)[1], random.uniform(-3.0, 3.0, robot.model.nv)
     return some - np.linalg.pinv(K, rcond=1e-4) @ (K @ some + drift_by_differences(robot, q, v))
-
-
-def energy(robot: Any, q: Any, v: Any) -> float:
-    model = robot.model
-    return float(pin.computePotentialEnergy(model, model.createData(), q) + v @ mass_matrix(model, q) @ v / 2.0)
 
 
 def stacked(forces: Any) -> Any:
@@ -124,74 +107,6 @@ def robot_named(name: str) -> Any:
 
 
 every_robot = pytest.mark.parametrize("name", [*ROBOTS, *LINKAGES])
-
-
-# --- against equations written by hand -----------------------------------------------------------------------------
-
-
-def matrices_by_hand(robot: Any, q: Any) -> tuple[Any, Any, float]:
-    """M, K and the potential energy at a closed configuration, in NumPy from the definitions of the joints."""
-    mechanism = robot.mechanism
-    coordinates = joint_coordinates(mechanism, robot.model, q)
-    J, places = by_hand.jacobians(mechanism, coordinates), by_hand.poses(mechanism, coordinates)
-    M = np.zeros((robot.model.nv, robot.model.nv))
-    potential = 0.0
-    for part in mechanism.bodies:
-        if part.inertia is not None:
-            M += J[part.name].T @ by_hand.spatial_inertia(part.inertia) @ J[part.name]
-            centre = places[part.name] @ np.array([*part.inertia.pose.xyz, 1.0])
-            potential += 9.81 * part.inertia.mass * centre[2]
-    rows = []
-    for found in mechanism.closures:
-        seen = []
-        for anchor in (found.a, found.b):
-            local = by_hand.pose_matrix(anchor.pose)
-            R = (places[anchor.body] @ local)[:3, :3]
-            own = by_hand.seen_from(local, J[anchor.body])
-            seen.append((R, np.vstack([R @ own[:3], R @ own[3:]])))
-        (R, of_a), (_, of_b) = seen  # A and B coincide, in the axes of the world
-        moved = of_b - of_a
-        rows.append(np.vstack([R.T @ moved[:3], R.T @ moved[3:]])[: 3 if found.type == "3d" else 6])
-    return M, np.vstack(rows), potential
-
-
-def bias_by_hand(robot: Any, q: Any, v: Any, step: float = 1e-4) -> Any:
-    """Ṁ v - ∂(½ vᵀ M v - V)/∂q, by central differences; for joints without quaternions where v is not zero."""
-    model = robot.model
-
-    def at(direction: Any) -> tuple[Any, float]:
-        there = [matrices_by_hand(robot, pin.integrate(model, q, sign * step * direction)) for sign in (1.0, -1.0)]
-        return (there[0][0] - there[1][0]) / (2.0 * step), (there[0][2] - there[1][2]) / (2.0 * step)
-
-    bias = at(v)[0] @ v
-    for index, unit in enumerate(np.eye(model.nv)):
-        dM, dV = at(unit)
-        bias[index] += dV - v @ dM @ v / 2.0
-    return bias
-
-
-@pytest.mark.parametrize(("name", "moving"), [("four_bar", True), ("four_bar", False), ("digit_leg", False)])
-def test_forward_dynamics_solves_handwritten_equations(name: str, moving: bool) -> None:
-    random = np.random.default_rng(3)
-    robot = eurdf.load(name, geometry=False)
-    q, v = closed_state(robot, random)
-    if not moving:
-        v = np.zeros(robot.model.nv)
-    robot.model.armature = armature = random.uniform(0.0, 0.1, robot.model.nv)
-    u = random.uniform(-5.0, 5.0, robot.actuation.selection.shape[1])
-    M, K, _ = matrices_by_hand(robot, q)
-    M += np.diag(armature)
-    step = 1e-4
-    around = [matrices_by_hand(robot, pin.integrate(robot.model, q, t * v))[1] for t in (step, -step)]
-    drift = (around[0] - around[1]) @ v / (2.0 * step)
-    zero = np.zeros((len(K), len(K)))
-    right = np.concatenate([robot.actuation.selection @ u - bias_by_hand(robot, q, v), -drift])
-    # The four-bar is planar: its force across the plane is the least, nought.
-    expected = np.linalg.lstsq(np.block([[M, -K.T], [K, zero]]), right, rcond=1e-12)[0]
-    found = forward_dynamics(robot, q, v, u)
-    nv = robot.model.nv
-    np.testing.assert_allclose(found.a, expected[:nv], atol=1e-5 * np.abs(expected[:nv]).max())
-    np.testing.assert_allclose(stacked(found.forces), expected[nv:], atol=1e-5 * np.abs(expected[nv:]).max())
 
 
 def test_closure_force_holds_body_of_frame_b() -> None:
@@ -260,45 +175,7 @@ def test_forward_dynamics_recovers_acceleration(name: str, seed: int) -> None:
     np.testing.assert_allclose(found.a, a, atol=1e-6 * (1.0 + np.abs(a).max()))
 
 
-@every_robot
-@given(seed=seeds)
-@settings(max_examples=5, deadline=None)
-def test_closures_do_no_work(name: str, seed: int) -> None:
-    """The energy of the tree changes by the power of the motors alone."""
-    random = np.random.default_rng(seed)
-    robot = robot_named(name)
-    model, S = robot.model, robot.actuation.selection
-    q, v = closed_state(robot, random)
-    u = random.uniform(-5.0, 5.0, S.shape[1])
-    a = forward_dynamics(robot, q, v, u).a
-    step = 1e-5
-    around = [energy(robot, pin.integrate(model, q, t * v + t * t / 2.0 * a), v + t * a) for t in (step, -step)]
-    power = (around[0] - around[1]) / (2.0 * step)
-    assert power == pytest.approx(u @ (S.T @ v), abs=1e-5 * (1.0 + abs(energy(robot, q, v)) + abs(v @ a)))
-
-
-# --- two methods, one answer -----------------------------------------------------------------------------------------
-
-# With these, K has rounding in no row that would count.
-by_pinocchio = pytest.mark.parametrize("name", [*ROBOTS, *(name for name in LINKAGES if "rounded" not in name)])
-
-
-@by_pinocchio
-def test_pinocchio_solver_and_elimination_agree(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    robot = robot_named(name)
-    q, v = closed_state(robot, np.random.default_rng(7))
-    u = np.ones(robot.actuation.selection.shape[1])
-
-    one = forward_dynamics(robot, q, v, u, gains=(100.0, 20.0))
-    with monkeypatch.context() as patched:
-        patched.setattr(independence, "INDEPENDENT", 0.0)
-        other = forward_dynamics(robot, q, v, u, gains=(100.0, 20.0))
-    np.testing.assert_allclose(one.a, other.a, atol=1e-7 * (1.0 + np.abs(other.a).max()))
-    largest = np.abs(stacked(other.forces)).max()
-    np.testing.assert_allclose(stacked(one.forces), stacked(other.forces), atol=1e-6 * (1.0 + largest))
-
-
-@by_pinocchio
+@pytest.mark.parametrize("name", [*ROBOTS, *(name for name in LINKAGES if "rounded" not in name)])
 @pytest.mark.parametrize("factor", [1e-9, 1e9])
 def test_scaling_mass_keeps_acceleration(name: str, factor: float) -> None:
     robot = robot_named(name)
@@ -318,16 +195,6 @@ def test_scaling_mass_keeps_acceleration(name: str, factor: float) -> None:
 # --- redundant rows, followers, missing inertia ---------------------------------------------------------------------
 
 
-@given(seed=seeds)
-@settings(max_examples=10, deadline=None)
-def test_planar_loop_moves_alike_in_6d_and_3d(seed: int) -> None:
-    random = np.random.default_rng(seed)
-    spatial, point = weighted(n_bar(5, "6d"), 1), weighted(n_bar(5, "3d"), 1)
-    q, v = closed_state(spatial, random)
-    a = forward_dynamics(spatial, q, v, np.ones(1)).a
-    np.testing.assert_allclose(a[:4], forward_dynamics(point, q[:4], v[:4], np.ones(1)).a, rtol=1e-8, atol=1e-8)
-
-
 def test_rounding_does_not_lock_redundant_loop() -> None:
     exact = weighted(tilted(5, actuated=("j0",)), 2)
     rounded = weighted(tilted(5, actuated=("j0",), decimals=6), 2)
@@ -339,56 +206,23 @@ def test_rounding_does_not_lock_redundant_loop() -> None:
         np.testing.assert_allclose(forward_dynamics(rounded, zero, zero, u).a, a, atol=1e-2 * np.abs(a).max())
 
 
-PIN = """closures: [{name: pin, type: 3d, frames: [{link: base, xyz: [0.7, 0, 0.4]}, {link: %s, xyz: [0.6, 0, 0]}]}]
+PIN = """closures: [{name: pin, type: 3d, frames: [{link: base, xyz: [0.7, 0, 0.4]}, {link: tip, xyz: [0.6, 0, 0]}]}]
 actuators: [a]
 """
 
+ALONG_Y = LIMITED.format("0 1 0")
+MIMIC = '<mimic joint="a" multiplier="-1.5" offset="0.3"/>'
+AT = '<origin xyz="0.4 0 0"/>'
 FOLLOWING = (
-    '<robot name="arm">'
-    + "".join(body(name) for name in ("base", "upper", "middle", "lower"))
-    + joint_element("a", "revolute", "base", "upper", LIMITED.format("0 1 0"), "")
-    + joint_element(
-        "b",
-        "revolute",
-        "upper",
-        "middle",
-        LIMITED.format("0 1 0") + '<mimic joint="a" multiplier="-1.5" offset="0.3"/>',
-        '<origin xyz="0.5 0 0"/>',
-    )
-    + joint_element("c", "revolute", "middle", "lower", LIMITED.format("0 1 0"), '<origin xyz="0.4 0 0"/>')
-    + "</robot>"
+    *(body(name) for name in ("base", "upper", "middle", "lower")),
+    joint_element("a", "revolute", "base", "upper", ALONG_Y),
+    joint_element("b", "revolute", "upper", "middle", ALONG_Y + MIMIC, '<origin xyz="0.5 0 0"/>'),
+    joint_element("c", "revolute", "middle", "lower", ALONG_Y, AT),
 )
 
 
-def test_mimic_joint_moves_as_constrained_free_joint() -> None:
-    yaml = PIN % "lower"
-    robot, free = load(FOLLOWING, yaml), load(FOLLOWING, yaml, mimic=False)
-    assert (robot.model.nv, free.model.nv) == (2, 3)
-    bound = np.array([[1.0, 0.0], [-1.5, 0.0], [0.0, 1.0]])
-    q = assemble(robot, np.array([0.4, 0.9])).q
-    full = bound @ q + np.array([0.0, 0.3, 0.0])
-    assert np.abs(residual(free, full)).max() < 1e-9
-    # Two coordinates and a planar pin: a structure, which cannot move. Without the pin it moves.
-    found = forward_dynamics(robot, q, np.zeros(2), np.array([3.0]))
-    np.testing.assert_allclose(found.a, 0.0, atol=1e-9)
-    held = inverse_dynamics(robot, q, np.zeros(2), np.zeros(2))
-    np.testing.assert_allclose(held.u, 0.0, atol=1e-9)  # the least
-    K = residual_and_jacobian(robot, q)[1]
-    weight = pin.rnea(robot.model, robot.data, q, np.zeros(2), np.zeros(2))
-    np.testing.assert_allclose(K.T @ held.forces[0], weight, rtol=1e-9)
-    robot, free = (build_robot(replace(each.mechanism, closures=()), geometry=False) for each in (robot, free))
-    v = np.array([0.8, -1.1])
-    M = bound.T @ mass_matrix(free.model, full) @ bound
-    h = bound.T @ pin.rnea(free.model, free.data, full, bound @ v, np.zeros(3))
-    found = forward_dynamics(robot, q, v, np.array([3.0]))
-    np.testing.assert_allclose(found.a, np.linalg.solve(M, np.array([3.0, 0.0]) - h), rtol=1e-9)
-
-
 def test_late_leader_is_named_in_errors() -> None:
-    late = FOLLOWING.replace(
-        '<mimic joint="a" multiplier="-1.5" offset="0.3"/>', '<mimic joint="c" multiplier="-1.5"/>'
-    )
-    robot = load(late)
+    robot = load(urdf_of(*FOLLOWING).replace(MIMIC, '<mimic joint="c" multiplier="-1.5"/>'))
     assert "c/coordinate" in list(robot.model.names)
     with pytest.raises(eurdf.errors.UnderactuatedMotion) as refused:
         inverse_dynamics(robot, np.zeros(2), np.zeros(2), np.ones(2))
@@ -396,10 +230,8 @@ def test_late_leader_is_named_in_errors() -> None:
 
 
 def test_loop_with_mimic_joint_is_solved() -> None:
-    geared = FOLLOWING.replace("</robot>", "") + body("tip")
-    geared += joint_element("d", "revolute", "lower", "tip", LIMITED.format("0 1 0"), '<origin xyz="0.4 0 0"/>')
-    yaml = PIN % "tip"
-    robot = load(geared + "</robot>", yaml)
+    tip = joint_element("d", "revolute", "lower", "tip", ALONG_Y, AT)
+    robot = load(urdf_of(*FOLLOWING, body("tip"), tip), PIN)
     random = np.random.default_rng(0)
     q, v = closed_state(robot, random)
     M, K = mass_matrix(robot.model, q), residual_and_jacobian(robot, q)[1][[0, 2]]
@@ -441,22 +273,6 @@ def test_massless_free_motion_is_named() -> None:
     with pytest.raises(UnderactuatedMotion) as refused:
         inverse_dynamics(linkage, zero, zero, zero, tau=np.array([0.0, 0.0, 0.0, 0.0, 1.0]))
     assert refused.value.missing == {"spinner": (pytest.approx(-1.0),)}
-
-
-def test_tree_without_closures_matches_pinocchio() -> None:
-    model = pin.buildSampleModelManipulator()
-    random = np.random.default_rng(0)
-    q, v, tau = pin.randomConfiguration(model), random.normal(size=model.nv), random.normal(size=model.nv)
-    found = forward_dynamics(Linkage(model), q, v, tau=tau)
-    np.testing.assert_allclose(found.a, pin.aba(model, model.createData(), q, v, tau), rtol=1e-9)
-    assert found.forces == ()
-
-
-def test_single_joint_falls() -> None:
-    model = pin.Model()
-    model.addJoint(0, pin.JointModelPZ(), pin.SE3.Identity(), "drop")
-    model.inertias[1] = pin.Inertia(2.0, np.zeros(3), np.eye(3))
-    np.testing.assert_allclose(forward_dynamics(Linkage(model), np.zeros(1), np.zeros(1)).a, [-9.81])
 
 
 # --- actuation ------------------------------------------------------------------------------------------------------
@@ -506,15 +322,6 @@ def test_motion_without_motor_is_refused_with_joint_names() -> None:
     u = inverse_dynamics(robot, q, v, a + spin, tau=tau).u
     np.testing.assert_allclose(forward_dynamics(robot, q, v, u, tau=tau).a, a + spin, atol=1e-6)
     np.testing.assert_allclose(achievable_acceleration(robot, q, v, a + spin), a, atol=1e-6)
-
-
-def test_robot_without_motors_only_moves_passively() -> None:
-    robot = weighted(n_bar(4, actuated=()))
-    q, v = closed_state(robot, np.random.default_rng(0))
-    a = forward_dynamics(robot, q, v).a
-    assert inverse_dynamics(robot, q, v, a).u.shape == (0,)
-    with pytest.raises(UnderactuatedMotion):
-        inverse_dynamics(robot, q, v, a + free_part(robot, q, np.array([1.0, 0.0, 0.0, 0.0])))
 
 
 def test_motion_that_opens_closures_is_refused_with_names() -> None:
@@ -597,25 +404,6 @@ def test_gains_close_open_mechanism(name: str) -> None:
     assert_same(forward_dynamics(robot, q, v).a, a)
 
 
-def test_invalid_vector_is_refused() -> None:
-    robot = eurdf.load("four_bar", geometry=False)
-    q, v = assemble(robot).q, np.zeros(3)
-    for arguments in (
-        {"v": np.zeros(4)},
-        {"q": np.zeros(2)},
-        {"u": np.zeros(3)},
-        {"tau": np.zeros(1)},
-        {"v": np.array([0.0, np.nan, 0.0])},
-        {"external": {"rocker": np.zeros(3)}},
-    ):
-        with pytest.raises(ValueError, match=r"shape|finite"):
-            forward_dynamics(robot, **{"q": q, "v": v, **arguments})
-    with pytest.raises(ValueError, match="did you mean 'motor_crank'"):
-        forward_dynamics(robot, q, v, external={"motor_crnak": np.zeros(6)})
-    with pytest.raises(ValueError, match="a has the shape"):
-        inverse_dynamics(robot, q, v, np.zeros(2))
-
-
 def test_given_data_does_not_change_result() -> None:
     robot = eurdf.load("digit_leg", geometry=False)
     q, v = closed_state(robot, np.random.default_rng(0))
@@ -631,13 +419,6 @@ def test_given_data_does_not_change_result() -> None:
 # --- in time --------------------------------------------------------------------------------------------------------
 
 
-def drift_of_energy(robot: Any, motion: Any) -> float:
-    """Largest change of the energy, in parts of the largest kinetic energy."""
-    energies = np.array([energy(robot, q, v) for q, v in zip(motion.q, motion.v, strict=True)])
-    kinetic = max(v @ mass_matrix(robot.model, q) @ v / 2.0 for q, v in zip(motion.q, motion.v, strict=True))
-    return float(np.abs(energies - energies[0]).max() / kinetic)
-
-
 @pytest.mark.parametrize(
     ("name", "duration", "step", "bound"), [("four_bar", 1.0, 2.5e-3, 3e-6), ("digit_leg", 0.1, 1e-3, 1e-8)]
 )
@@ -645,7 +426,8 @@ def test_passive_robot_keeps_energy_and_closure(name: str, duration: float, step
     robot = eurdf.load(name, geometry=False)
     q, v = closed_state(robot, np.random.default_rng(5))
     motion = simulate(robot, q, 2.0 * v, duration=duration, step=step)
-    assert drift_of_energy(robot, motion) < bound
+    total = motion.kinetic + motion.potential
+    assert np.abs(total - total[0]).max() < bound * motion.kinetic.max()
     assert np.abs(pin.difference(robot.model, q, motion.q[-1])).max() > 0.3  # it went somewhere
     for q, v in zip(motion.q, motion.v, strict=True):
         r, K = residual_and_jacobian(robot, q)
@@ -719,9 +501,6 @@ def test_empty_simulation_returns_projected_start() -> None:
     r, K = residual_and_jacobian(robot, motion.q[0])
     assert np.abs(r).max() < 1e-9
     assert np.abs(K @ motion.v[0]).max() < 1e-12
-    for wrong in ({"duration": -1.0}, {"duration": 1.0, "step": 0.0}, {"duration": np.inf}):
-        with pytest.raises(ValueError, match="duration"):
-            simulate(robot, q, **wrong)
 
 
 def test_simulation_of_open_robot_is_refused() -> None:

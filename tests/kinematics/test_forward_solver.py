@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -14,10 +13,9 @@ from hypothesis import strategies as st
 import eurdf
 from eurdf.closures.hinge import HingeClosure
 from eurdf.kinematics import forward_solver
-from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.equation_of_motion import EquationOfMotion
 from eurdf.kinematics.independence import INDEPENDENT, Independence
-from support.linkage import Y, Z, loop, weighted
+from support.linkage import loop, stretched, weighted
 
 seeds = st.integers(0, 2**32 - 1)
 
@@ -108,17 +106,6 @@ def test_redundant_rows_get_least_forces(name: str, eliminations: Counted) -> No
     np.testing.assert_allclose(K.T @ np.concatenate(found.forces), h, atol=1e-9 * (1.0 + np.abs(h).max()))
 
 
-def stretched(bend: float, size: float = 1.0) -> Any:
-    """Two bars in a vertical slide whose ends are held, stretched but for a bend: K loses rank where it is 0."""
-    joints = [
-        ("P", (0.0, 0.0, 0.0), Z),
-        ("R", (0.0, 0.0, 0.0), Z),
-        ("R", (1.0, 0.0, 0.0), Z),
-        ("R", (1.5, bend / 2.0, 0.0), Y),
-    ]
-    return weighted(loop(joints, "3d", (2.0, bend, 0.0), actuated=(), size=size), size=size)
-
-
 @pytest.mark.parametrize(("bend", "rank", "eliminated"), [(1e-2, 3, 0), (1e-3, 3, 1), (0.0, 2, 0)])
 def test_elimination_decides_near_singular_pose(bend: float, rank: int, eliminated: int, eliminations: Counted) -> None:
     robot, zero = stretched(bend), np.zeros(4)
@@ -199,31 +186,3 @@ def test_open_mechanism_is_eliminated(eliminations: Counted) -> None:
     assert eliminations.count == 2
     eurdf.forward_dynamics(robot, q, v)
     assert eliminations.count == 2
-
-
-def test_threads_get_same_result() -> None:
-    robot = eurdf.load("digit_leg", geometry=False)
-    states = [state(robot, seed) for seed in range(4)] * 8
-    alone = [eurdf.forward_dynamics(robot, q, v).a for q, v in states]
-    with ThreadPoolExecutor(4) as pool:
-        together = list(pool.map(lambda at: eurdf.forward_dynamics(robot, *at).a, states))
-    np.testing.assert_allclose(together, alone, rtol=1e-9, atol=1e-9)
-
-
-def test_workspaces_are_kept_for_next_call() -> None:
-    robot = eurdf.load("digit_leg", geometry=False)
-    made = []
-
-    def make(robot: Any) -> object:
-        made.append(robot)
-        return object()
-
-    with borrowed(robot, make) as one, borrowed(robot, make) as other:
-        assert one is not other
-    with borrowed(robot, make) as again:
-        assert again in (one, other)
-    with pytest.raises(ZeroDivisionError), borrowed(robot, make) as broken:
-        raise ZeroDivisionError
-    with borrowed(robot, make) as first, borrowed(robot, make) as second:
-        assert broken not in (first, second)
-    assert len(made) == 3

@@ -12,7 +12,7 @@ import eurdf
 from eurdf.kinematics import dynamics
 from eurdf.kinematics.equation_of_motion import EquationOfMotion
 from eurdf.kinematics.inverse_solver import InverseSolver
-from support.linkage import Y, Z, loop, weighted
+from support.linkage import stretched
 
 
 @pytest.fixture
@@ -54,14 +54,7 @@ def test_both_ways_give_same_torques(name: str, decompositions: list[Any], monke
 def test_decomposition_decides_near_singular_pose(
     bend: float, decomposed: int, size: float, decompositions: list[Any]
 ) -> None:
-    # Two bars in a vertical slide with a motor; their ends are held, and they are stretched but for a bend.
-    joints = [
-        ("P", (0.0, 0.0, 0.0), Z),
-        ("R", (0.0, 0.0, 0.0), Z),
-        ("R", (1.0, 0.0, 0.0), Z),
-        ("R", (1.5, bend / 2.0, 0.0), Y),
-    ]
-    robot, zero = weighted(loop(joints, "3d", (2.0, bend, 0.0), size=size), size=size), np.zeros(4)
+    robot, zero = stretched(bend, size, ("j0",)), np.zeros(4)
     given = np.array([3.0])
     found = eurdf.inverse_dynamics(robot, zero, zero, eurdf.forward_dynamics(robot, zero, zero, given).a)
     assert len(decompositions) == decomposed

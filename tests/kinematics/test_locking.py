@@ -19,20 +19,22 @@ import eurdf
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.point import PointClosure
 from eurdf.errors import CannotLock, LockedOpen
-from eurdf.kinematics.locking import LockedRobot, lock, lock_joints
+from eurdf.kinematics.locking import LockedRobot, lock
 from eurdf.kinematics.residual import residual, residual_and_jacobian
 from eurdf.mechanism.body import Anchor, Frame, Shape
+from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.joint import Joint, JointProperties, Mimic
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.pose import Pose
 from eurdf.mechanism.spanning_tree import rigid_roots
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand
 from support.described import LIMITED, body, load, mass_matrix, q_of, revolute
+from support.linkage import pose_of
 from support.places import WILD
 from support.plain_urdf import joint_element, link_element
 from support.plain_urdf import robot as urdf_of
+from support.stl import TETRAHEDRON
 
 AXIAL = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
 LIMITS = ("lowerPositionLimit", "upperPositionLimit")
@@ -91,11 +93,6 @@ def assert_same_robot_at(robot: Robot, locked: LockedRobot, whole: Any, atol: fl
     r, K = residual_and_jacobian(locked, q)
     np.testing.assert_allclose(r, before_r[rows], atol=atol)
     np.testing.assert_allclose(K, before_K[np.ix_(rows, locked.idx_v)], atol=10 * atol)
-
-
-def pose_of(M: Any) -> Pose:
-    x, y, z, qx, qy, qz, qw = pin.SE3ToXYZQUAT(M).tolist()
-    return Pose((x, y, z), (qx, qy, qz, qw))
 
 
 def some_robot(random: np.random.Generator, mimic: bool, root: str = "fixed") -> tuple[Robot, Coordinates]:
@@ -160,6 +157,20 @@ def leader_of(mechanism: Mechanism, name: str) -> str:
     return name
 
 
+def on_the_path(robot: Robot, closure: Closure) -> set[str]:
+    """Names of the joints that move the two frames of a closure against each other."""
+    carried = {joint.child: joint for joint in robot.mechanism.joints}
+
+    def upwards(body: str) -> set[str]:
+        names = set()
+        while body in carried:
+            names.add(carried[body].name)
+            body = carried[body].parent
+        return names
+
+    return upwards(closure.a.body) ^ upwards(closure.b.body)
+
+
 # -- any robot ---------------------------------------------------------------------------------------------------------
 
 
@@ -172,13 +183,22 @@ def test_locked_robot_moves_as_original_with_held_joints(mimic: bool, seed: int)
     chosen = [joint.name for joint in robot.mechanism.joints if random.random() < 0.5]
     if mimic:
         chosen = [leader_of(robot.mechanism, name) for name in chosen]
-    q = q_of(robot, coordinates)
+    q, before = q_of(robot, coordinates), (robot.model.copy(), robot.visual_model.copy(), robot.mechanism)
     locked = lock(robot, chosen, q)
+    assert (robot.model, robot.mechanism) == (before[0], before[2])
+    assert list(robot.visual_model.geometryObjects) == list(before[1].geometryObjects)
     still = set(locked.locked_joints)
     expected = set(chosen)
     if mimic:
         expected |= {joint.name for joint in robot.mechanism.joints if leader_of(robot.mechanism, joint.name) in chosen}
     assert still == expected & {joint.name for joint in moving(robot.mechanism)}
+    assert still.isdisjoint(joint.name for joint in moving(locked.mechanism))
+    assert locked.actuation.joints == tuple(name for name in robot.actuation.joints if name not in still)
+    assert locked.dropped_actuators == tuple(name for name in robot.actuation.joints if name in still)
+    free_joints = {joint.name for joint in moving(robot.mechanism)} - still
+    assert set(locked.dropped_closures) == {
+        each.name for each in robot.mechanism.closures if not free_joints & on_the_path(robot, each)
+    }
     np.testing.assert_array_equal(
         [getattr(locked.model, name) for name in PROPERTIES],
         [getattr(robot.model, name)[locked.idx_v] for name in PROPERTIES],
@@ -217,20 +237,6 @@ def test_locking_in_sequence_equals_locking_together(seed: int) -> None:
 
 @given(seed=st.integers(0, 2**32 - 1))
 @settings(deadline=None, max_examples=20)
-def test_locking_nothing_gives_equal_robot(seed: int) -> None:
-    robot, _ = some_robot(np.random.default_rng(seed), mimic=True)
-    locked = lock(robot, [])
-    assert locked.model == robot.model
-    assert locked.mechanism == robot.mechanism
-    assert locked.constraint_models == robot.constraint_models
-    assert list(locked.visual_model.geometryObjects) == list(robot.visual_model.geometryObjects)
-    np.testing.assert_array_equal(locked.actuation.selection, robot.actuation.selection)
-    np.testing.assert_array_equal(locked.configurations["here"], robot.configurations["here"])
-    assert locked.locked_joints == locked.dropped_closures == locked.dropped_actuators == ()
-
-
-@given(seed=st.integers(0, 2**32 - 1))
-@settings(deadline=None, max_examples=20)
 def test_locking_all_joints_gives_one_body(seed: int) -> None:
     robot, coordinates = some_robot(np.random.default_rng(seed), mimic=True)
     q = q_of(robot, coordinates)
@@ -245,105 +251,18 @@ def test_locking_all_joints_gives_one_body(seed: int) -> None:
     assert (analysis.nv, analysis.nc, analysis.mobility) == (0, 0, 0)
 
 
-# -- robots of the collection ------------------------------------------------------------------------------------------
-
-
-@pytest.fixture(scope="module")
-def digit_leg() -> Robot:
-    return eurdf.load("digit_leg")
-
-
 @pytest.fixture(scope="module")
 def four_bar() -> Robot:
     return eurdf.load("four_bar")
 
 
-def test_digit_leg_spins_three_rods_with_motors_locked(digit_leg: Robot) -> None:
-    locked = lock(digit_leg, digit_leg.actuation.joints)
-    analysis = eurdf.analyze(locked)
-    assert (analysis.nv, analysis.rank, analysis.mobility, analysis.actuated) == (21, 18, 3, 0)
-    assert locked.dropped_actuators == digit_leg.actuation.joints
-    assert len(locked.constraint_models) == 3
-    assert locked.dropped_closures == ()
-
-
-def test_unlocked_motors_keep_their_order(digit_leg: Robot) -> None:
-    locked = lock(digit_leg, ["motor_hip_z"])
-    assert locked.actuation.joints == tuple(name for name in digit_leg.actuation.joints if name != "motor_hip_z")
-    np.testing.assert_array_equal(locked.idx_v[locked.actuation.idx_v], np.delete(digit_leg.actuation.idx_v, 1))
-    assert eurdf.analyze(locked).mobility == 8
-
-
-def test_four_bar_with_locked_crank_is_immobile(four_bar: Robot) -> None:
-    q = eurdf.assemble(four_bar, q_of(four_bar, {"motor_crank": (0.6,)}), hold=["motor_crank"]).q
-    locked = lock(four_bar, ["motor_crank"], q)
-    analysis = eurdf.analyze(locked, q[locked.idx_q])
-    assert (analysis.nv, analysis.mobility) == (2, 0)
-    np.testing.assert_allclose(analysis.q, q[locked.idx_q], atol=1e-9)
-    assert_same_robot_at(four_bar, locked, q)
-
-
-def test_locked_joint_is_fixed_joint_of_same_name(four_bar: Robot) -> None:
-    locked = lock(four_bar, ["motor_crank"])
-    assert not locked.model.existJointName("motor_crank")
-    frame = locked.model.frames[locked.model.getFrameId("motor_crank")]
-    assert frame.type == pin.FrameType.FIXED_JOINT
-    joint = next(joint for joint in locked.mechanism.joints if joint.name == "motor_crank")
-    assert joint.type is JointType.FIXED
-
-
-def test_original_robot_is_unchanged(four_bar: Robot) -> None:
-    before = four_bar.model.copy(), four_bar.visual_model.copy(), four_bar.mechanism
-    q = q_of(four_bar, {"motor_crank": (0.6,)})
-    lock(four_bar, ["motor_crank"], q)
-    assert (four_bar.model, four_bar.mechanism) == (before[0], before[2])
-    assert list(four_bar.visual_model.geometryObjects) == list(before[1].geometryObjects)
-
-
-def test_default_is_assembled_configuration(digit_leg: Robot) -> None:
+def test_default_is_assembled_configuration() -> None:
+    digit_leg = eurdf.load("digit_leg", geometry=False)
     q = digit_leg.configurations["assembled"]
     assert lock(digit_leg, ["motor_knee"]).mechanism == lock(digit_leg, ["motor_knee"], q).mechanism
 
 
-def test_robot_without_geometry_has_none_when_locked() -> None:
-    locked = lock(eurdf.load("four_bar", geometry=False), ["motor_crank"])
-    assert locked.visual_model is locked.collision_model is None
-
-
 # -- closures that nothing moves ---------------------------------------------------------------------------------------
-
-
-def test_closure_within_one_rigid_body_is_dropped(four_bar: Robot) -> None:
-    q = eurdf.assemble(four_bar, q_of(four_bar, {"motor_crank": (0.6,)}), hold=["motor_crank"]).q
-    locked = lock(four_bar, [joint.name for joint in four_bar.mechanism.joints], q)
-    assert locked.dropped_closures == ("rocker_pin",)
-    assert locked.constraint_models == []
-    assert locked.mechanism.closures == ()
-
-
-def test_only_closures_without_moving_joints_are_dropped(digit_leg: Robot) -> None:
-    q = digit_leg.configurations["assembled"]
-    path = on_the_path(digit_leg, "rod1")
-    locked = lock(digit_leg, path, q)
-    assert locked.dropped_closures == ("rod1",)
-    kept = [constraint.name for constraint in locked.constraint_models]
-    assert kept == ["achilles", "rod2"]
-    np.testing.assert_allclose(residual(locked, q[locked.idx_q]), 0.0, atol=1e-6)
-
-
-def on_the_path(robot: Robot, closure: str) -> list[str]:
-    """Names of the joints that move the two frames of a closure against each other."""
-    found = next(found for found in robot.mechanism.closures if found.name == closure)
-    carried = {joint.child: joint for joint in robot.mechanism.joints}
-
-    def upwards(body: str) -> set[str]:
-        names = set()
-        while body in carried:
-            names.add(carried[body].name)
-            body = carried[body].parent
-        return names
-
-    return sorted(upwards(found.a.body) ^ upwards(found.b.body))
 
 
 def test_closure_locked_open_is_refused_with_opening(four_bar: Robot) -> None:
@@ -375,18 +294,6 @@ GRIPPER = urdf_of(
     joint_element("z_second", "prismatic", "a", "c", LAW.format("a_first", 0.5, -0.1, RANGE)),
     revolute("other", "a", "d"),
 )
-
-
-def test_mimic_joints_are_locked_with_leader() -> None:
-    robot = load(GRIPPER)
-    locked = lock(robot, ["m_lead"], q_of(robot, {"m_lead": (0.4,)}))
-    assert locked.locked_joints == ("m_lead", "a_first", "z_second")
-    assert (locked.model.nv, list(locked.model.names)[1:]) == (1, ["other"])
-    data = locked.model.createData()
-    pin.framesForwardKinematics(locked.model, data, np.zeros(1))
-    angles = {name: pin.rpy.matrixToRpy(data.oMf[locked.model.getFrameId(name)].rotation)[2] for name in "ab"}
-    assert angles == pytest.approx({"a": 0.4, "b": 0.4 - 2 * 0.4 + 0.5})
-    assert data.oMf[locked.model.getFrameId("c")].translation[2] == pytest.approx(0.5 * (-2 * 0.4 + 0.5) - 0.1)
 
 
 @pytest.mark.parametrize("name", ["a_first", "z_second"])
@@ -452,10 +359,8 @@ def test_opposite_quaternions_are_the_same_configuration() -> None:
 
 
 def test_meshes_are_shared_and_not_read_again(tmp_path: Path) -> None:
-    corners = ("0 0 0", "0 1 0", "1 0 0")
-    facet = "facet normal 0 0 1\nouter loop\n" + "".join(f"vertex {corner}\n" for corner in corners)
     mesh = tmp_path / "part.stl"
-    mesh.write_text(f"solid part\n{facet}endloop\nendfacet\nendsolid part\n", encoding="utf-8")
+    mesh.write_bytes(TETRAHEDRON)
     shape = '<visual><origin xyz="1 2 3"/><geometry><mesh filename="part.stl"/></geometry></visual>'
     text = urdf_of(
         link_element("base"), body("a", shape), revolute("knee", "base", "a", origin='<origin xyz="1 0 0"/>')
@@ -492,61 +397,37 @@ def test_diagnostics_survive_locking() -> None:
     light = urdf_of(body("base"), link_element("a"), revolute("knee", "base", "a"))
     robot = load(light)
     assert robot.diagnostics
-    assert lock(robot, []).diagnostics == robot.diagnostics
+    locked = lock(robot, [])
+    assert locked.diagnostics == robot.diagnostics
+    assert (locked.model, locked.mechanism) == (robot.model, robot.mechanism)
 
 
 # -- what is refused ---------------------------------------------------------------------------------------------------
 
 
-def test_unknown_joint_is_refused_with_suggestion(four_bar: Robot) -> None:
-    with pytest.raises(
-        CannotLock, match="'motor_crnk' cannot be locked: the robot has no such joint; did you mean 'motor_crank'"
-    ) as refusal:
-        lock(four_bar, ["motor_crnk"])
-    assert refusal.value.joint == "motor_crnk"
-    with pytest.raises(CannotLock, match="'motor'"):
-        lock(four_bar, "motor")
-
-
-def test_single_joint_name_is_accepted(four_bar: Robot) -> None:
-    assert lock(four_bar, "motor_crank").locked_joints == ("motor_crank",)
-
-
-def test_floating_root_is_refused_with_hint() -> None:
-    robot = eurdf.load("four_bar", root="floating")
+def test_joint_that_cannot_be_locked_is_refused_with_hint() -> None:
+    robot = eurdf.load("four_bar", root="floating", geometry=False)
     with pytest.raises(CannotLock, match="root='fixed'"):
         lock(robot, ["root_joint"])
-    assert lock(robot, ["motor_crank"]).model.nv == robot.model.nv - 1
+    unknown = "'motor_crnk' cannot be locked: the robot has no such joint; did you mean 'motor_crank'"
+    with pytest.raises(CannotLock, match=unknown) as refusal:
+        lock(robot, "motor_crnk")
+    assert refusal.value.joint == "motor_crnk"
+    locked = lock(robot, "motor_crank")
+    assert locked.locked_joints == ("motor_crank",)
+    assert locked.visual_model is locked.collision_model is None
 
 
-def test_invalid_configuration_is_refused(four_bar: Robot) -> None:
-    with pytest.raises(ValueError, match="has the shape"):
-        lock(four_bar, ["motor_crank"], np.zeros(2))
+# -- robots of the collection, and published ones ----------------------------------------------------------------------
+
+WILD_ROBOTS = sorted(path.parent for path in WILD.glob("*/robot.yaml"))
 
 
-def test_plain_data_is_locked_at_given_coordinates() -> None:
-    joints = (
-        Joint("lead", JointType.PRISMATIC, "base", "a", axes=((0.0, 0.0, 2.0),)),
-        Joint("led", JointType.PRISMATIC, "a", "b", axes=((1.0, 0.0, 0.0),), mimic=Mimic("lead", 3.0, 1.0)),
-    )
-    bodies = tuple(replace(found, inertia=None) for found in by_hand.tree_of_all_types(np.random.default_rng(0)).bodies)
-    bodies = tuple(replace(found, name=name) for found, name in zip(bodies, ("base", "a", "b"), strict=False))
-    locked = lock_joints(Mechanism("slide", "", "fixed", bodies, joints), ["lead"], {"lead": (0.5,), "led": (9.0,)})
-    assert [joint.placement.xyz for joint in locked.mechanism.joints] == [(0.0, 0.0, 0.5), (2.5, 0.0, 0.0)]
-    assert [joint.type for joint in locked.mechanism.joints] == [JointType.FIXED, JointType.FIXED]
-
-
-# -- published robots --------------------------------------------------------------------------------------------------
-
-WILD_ROBOTS = sorted(found.parent.name for found in WILD.glob("*/robot.yaml"))
-
-
-@pytest.mark.skipif(
-    not WILD_ROBOTS, reason="no published robots: put their folder at ../shared/wild, beside the checkout"
+@pytest.mark.parametrize(
+    "given", ["digit_leg", "four_bar", *WILD_ROBOTS], ids=lambda given: getattr(given, "name", given)
 )
-@pytest.mark.parametrize("name", WILD_ROBOTS or [""])
-def test_mobility_with_locked_motors_is_uncontrolled_mobility(name: str) -> None:
-    robot = eurdf.load(WILD / name, geometry=False)
+def test_mobility_with_locked_motors_is_uncontrolled_mobility(given: str | Path) -> None:
+    robot = eurdf.load(given, geometry=False)
     before = eurdf.analyze(robot)
     locked = lock(robot, robot.actuation.joints, before.q)
     assert_same_robot_at(robot, locked, before.q, atol=1e-10)

@@ -16,9 +16,9 @@ from eurdf.format.urdf.read import JOINT_LIMIT
 from eurdf.kinematics.evaluate import frames
 from eurdf.kinematics.loop import Loop, find_loops, independent_groups, joints_of_loops
 from eurdf.kinematics.problem import Problem
-from eurdf.linking.link import ROW_LIMIT, VELOCITY_LIMIT
+from eurdf.linking.link import ROW_LIMIT
 from eurdf.pinocchio.ancestry import Ancestry
-from support.hostile import VERSION2, chain, four_bars, joint, numbered, robot, shared, star
+from support.hostile import VERSION2, chain, four_bars, joint, numbered, robot, shared
 
 
 def write(folder: Path, description: str | None, urdf: str) -> Path:
@@ -86,14 +86,6 @@ def test_kinematics_of_hundred_four_bars_needs_small_data_only(tmp_path: Path, m
 
 
 # -- the bounds of EU-FIL-002 --------------------------------------------------------------------------------------
-
-
-@pytest.mark.slow
-def test_number_of_velocities_is_bounded(tmp_path: Path) -> None:
-    spherical = "joints: {j0: spherical}\n"
-    at, beyond = (write(tmp_path / str(count), VERSION2 + spherical, star(count)) for count in (3998, 3999))
-    assert eurdf.load(at, geometry=False).model.nv == VELOCITY_LIMIT
-    assert refusal(beyond) == "the joints of the robot have 4,001 velocities; the maximum is 4,000"
 
 
 def test_mimic_joint_counts_toward_bound(tmp_path: Path) -> None:

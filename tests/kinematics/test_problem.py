@@ -10,7 +10,7 @@ import pytest
 import eurdf
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.residual import residual_and_jacobian
-from support.linkage import X, Z, loop, n_bar, slider_crank, stewart, three_rrr
+from support.linkage import X, Z, loop, n_bar, slider_crank
 
 SOME = ("bennett", "cassie_leg", "delta", "digit_2legs", "five_bar", "kangaroo_2legs", "planar_3rrr", "talos_2legs")
 
@@ -65,9 +65,3 @@ def test_decomposition_decides_at_a_dead_point(lift: float, certain: bool) -> No
     assert Problem(robot, (3,)).derivative(np.zeros((1, 4)))[1][0] == certain
     if certain:
         check(robot, np.zeros(4))
-
-
-@pytest.mark.parametrize("build", [stewart, three_rrr])
-def test_parallel_robots_have_a_derivative(build: Any) -> None:
-    robot = build()
-    check(robot, robot.tree.neutral())

@@ -70,15 +70,3 @@ def test_robot_without_motors_is_all_free() -> None:
     q_actuated, q_free = split_configuration(robot, np.arange(12.0))
     assert q_actuated.shape == (0,)
     np.testing.assert_array_equal(q_free, np.arange(12.0))
-
-
-def test_wrong_size_is_refused_with_both_sizes() -> None:
-    robot = mixed()
-    with pytest.raises(ValueError, match=r"q has the shape \(9,\); expected \(12,\)"):
-        split_configuration(robot, np.zeros(9))
-    with pytest.raises(ValueError, match=r"v has the shape \(12,\); expected \(9,\)"):
-        split_velocity(robot, np.zeros(12))
-    with pytest.raises(ValueError, match=r"q_actuated has the shape \(5,\); expected \(6,\)"):
-        merge_configuration(robot, np.zeros(5), np.zeros(6))
-    with pytest.raises(ValueError, match=r"v_free has the shape \(4, 1\); expected \(4,\)"):
-        merge_velocity(robot, np.zeros(5), np.zeros((4, 1)))

@@ -98,25 +98,6 @@ def test_motion_without_spring_stays_minimal() -> None:
     assert np.abs(eurdf.forward_kinematics(rigid, [0.3]) - q).max() > 1e-3
 
 
-def test_springs_change_no_count() -> None:
-    counts = [
-        (found.nv, found.nc, found.rank, found.mobility, found.redundant, found.uncontrolled)
-        for found in map(eurdf.analyze, (linkage(5, {"j1": "stiffness: 3, rest: 0.4"}), linkage(5, {})))
-    ]
-    assert counts[0] == counts[1]
-
-
-def test_batch_is_in_the_same_equilibrium() -> None:
-    robot = linkage(5, {"j1": "stiffness: 3, rest: 0.4", "j2": "stiffness: 7, rest: 0.2"})
-    values = np.linspace(-0.3, 0.3, 5)[:, None]
-    found = eurdf.batch.forward_kinematics(robot, values)
-    assert found.converged.all()
-    assert found.residual.max() < 1e-9
-    for value, q in zip(values, found.q, strict=True):
-        np.testing.assert_allclose(eurdf.forward_kinematics(robot, value), q, atol=1e-9)
-        np.testing.assert_array_equal(split_configuration(robot, q)[0], value)
-
-
 @pytest.mark.parametrize("name", ["cassie_leg", "digit_2legs"])
 def test_springs_that_loops_let_rest_are_kept_at_rest(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     robot = eurdf.load(name, geometry=False)

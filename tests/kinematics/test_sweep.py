@@ -14,32 +14,20 @@ import eurdf
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import build_robot
 from robots.builder import Cylinder, Drawing, Motor, ball, revolute, write
+from support.described import LIMITED
+from support.plain_urdf import inertial, joint_element, link_element
+from support.plain_urdf import robot as urdf_of
 from support.wild import WILD, needs_wild
 
 LEFT = (0.0, 1.0, 0.0)
 MOTOR = Motor(effort=1.0, velocity=1.0)
 
-SCREW = """\
-<robot name="screw">
-  <link name="base"/>
-  <link name="spindle">{inertial}</link>
-  <link name="nut">{inertial}</link>
-  <link name="carriage">{inertial}</link>
-  <joint name="motor" type="continuous">
-    <parent link="base"/><child link="spindle"/><axis xyz="0 0 1"/>
-  </joint>
-  <joint name="thread" type="continuous">
-    <parent link="spindle"/><child link="nut"/><axis xyz="0 0 1"/>
-  </joint>
-  <joint name="slide" type="prismatic">
-    <parent link="base"/><child link="carriage"/><axis xyz="0 0 1"/>
-    <limit lower="-1" upper="1" effort="1" velocity="1"/>
-  </joint>
-</robot>
-""".replace(
-    "{inertial}", '<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
+SCREW = urdf_of(
+    *(link_element(name, inertial()) for name in ("base", "spindle", "nut", "carriage")),
+    joint_element("motor", "continuous", "base", "spindle", '<axis xyz="0 0 1"/>'),
+    joint_element("thread", "continuous", "spindle", "nut", '<axis xyz="0 0 1"/>'),
+    joint_element("slide", "prismatic", "base", "carriage", LIMITED.format("0 0 1").replace("3", "1")),
 )
-
 SCREW_CLOSED = """\
 extended_urdf: "2.0"
 closures: [{name: fit, type: 6d, frames: [nut, carriage]}]

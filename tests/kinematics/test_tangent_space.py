@@ -13,7 +13,7 @@ from eurdf.collection import collection_names
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
-from support.linkage import flat_sarrus, n_bar, sarrus, slider_crank, stewart, three_rrr
+from support.linkage import n_bar, slider_crank, stewart
 
 
 def check(robot: Any, q: Any) -> int:
@@ -49,18 +49,6 @@ def test_robot_has_a_tangent_space(name: str) -> None:
 def test_redundant_rows_at_any_size(build: Any, size: float) -> None:
     robot = build(size)
     assert check(robot, robot.tree.neutral()) == 3
-
-
-def test_rank_falls_at_a_singular_configuration() -> None:
-    regular, flat = sarrus(), flat_sarrus()
-    assert check(regular, np.zeros(6)) == 5
-    assert check(flat, np.zeros(6)) < 5
-
-
-@pytest.mark.parametrize(("build", "rank"), [(stewart, 30), (three_rrr, 6)])
-def test_parallel_robot_has_a_tangent_space(build: Any, rank: int) -> None:
-    robot = build()
-    assert check(robot, robot.tree.neutral()) == rank
 
 
 def test_rank_in_doubt_is_that_of_the_singular_values() -> None:

@@ -10,8 +10,8 @@ import pytest
 
 import eurdf
 from eurdf.commands.main import main
-from support.described import STAR, STAR_CONTENT, at, body, codes, load, written
-from support.plain_urdf import joint_element, link_element, robot
+from support.described import STAR, at, body, load, revolute, written
+from support.plain_urdf import link_element, robot
 
 BALL = "joints: {d: spherical}\n"
 
@@ -30,20 +30,6 @@ def test_actuated_joints_are_in_file_order_with_all_coordinates(names: list[str]
     for column, row in enumerate(idx_v):
         expected[row, column] = 1.0
     np.testing.assert_array_equal(actuation.selection, expected)
-
-
-def test_spherical_joint_has_three_actuated_velocities() -> None:
-    loaded = load(STAR, f"{BALL}actuators: [d]\n")
-    assert (len(loaded.actuation.idx_q), len(loaded.actuation.idx_v)) == (4, 3)
-    assert loaded.actuation.selection.shape == (loaded.model.nv, 3)
-
-
-def test_selection_maps_motor_torques_to_velocities() -> None:
-    loaded = load(STAR, "actuators: [c, a]\n")
-    torques = loaded.actuation.selection @ np.array([3.0, 5.0])
-    assert torques[at(loaded.model, "c")[2]] == 3
-    assert torques[at(loaded.model, "a")[2]] == 5
-    assert np.count_nonzero(torques) == 2
 
 
 @pytest.mark.parametrize(
@@ -83,44 +69,12 @@ def test_armature_is_stated_or_reflected_rotor_inertia(
 
 
 def test_merged_spherical_joint_can_be_actuated() -> None:
-    urdf = robot(
-        link_element("base"),
-        link_element("one"),
-        link_element("two"),
-        body("hand"),
-        *(
-            joint_element(name, "revolute", parent, child, STAR_CONTENT.replace("0 0 1", axis))
-            for name, parent, child, axis in [
-                ("x", "base", "one", "1 0 0"),
-                ("y", "one", "two", "0 1 0"),
-                ("z", "two", "hand", "0 0 1"),
-            ]
-        ),
-    )
+    axes = {"x": ("base", "one", (1, 0, 0)), "y": ("one", "two", (0, 1, 0)), "z": ("two", "hand", (0, 0, 1))}
+    links = [link_element("base"), link_element("one"), link_element("two"), body("hand")]
+    urdf = robot(*links, *(revolute(name, *of) for name, of in axes.items()))
     merged = "joints: {ball: {type: spherical, merges: [x, y, z]}}\n"
     model = load(urdf, merged + "actuators: [{joint: ball, gear_ratio: 10, rotor_inertia: 0.01}]\n").model
     assert model.armature.tolist() == [1, 1, 1]
-    assert codes(urdf, merged + "actuators: [z]\n") == ["actuator-merged"]
-
-
-@pytest.mark.parametrize(
-    ("yaml", "error"),
-    [
-        ("actuators: [a, a]\n", "actuator-duplicate"),
-        ("actuators: [a, {joint: a}]\n", "actuator-duplicate"),
-        ("actuators: [g]\n", "actuator-immobile"),
-        ("joints: {a: fixed}\nactuators: [a]\n", "actuator-immobile"),
-        ("actuators: [la]\n", "unknown-actuator"),
-        ("actuators: [A]\n", "unknown-actuator"),
-    ],
-)
-def test_actuator_is_moving_joint_listed_once(yaml: str, error: str) -> None:
-    assert codes(STAR, yaml) == [error]
-
-
-def test_selection_is_computed_once() -> None:
-    actuation = load(STAR, "actuators: [c, a]\n").actuation
-    assert actuation.selection is actuation.selection
 
 
 # -- names and control ranges ----------------------------------------------------------------------------------------
@@ -136,19 +90,11 @@ actuators:
 """
 
 
-def test_actuators_have_stated_names_or_those_of_their_joints() -> None:
+def test_actuators_have_names_and_a_control_range_for_each_velocity() -> None:
     actuation = load(STAR, MOTORS).actuation
     assert (actuation.joints, actuation.names) == (("c", "a", "d", "b"), ("a", "c", "d", "b"))
-
-
-def test_control_range_holds_for_each_velocity() -> None:
     unlimited = [-np.inf, np.inf]
-    expected = [[-3.0, 4.5], unlimited, [0.0, 2.0], [0.0, 2.0], [0.0, 2.0], unlimited]
-    assert load(STAR, MOTORS).actuation.control.tolist() == expected
-
-
-def test_robot_without_actuators_has_no_control_range() -> None:
-    assert load(STAR).actuation.control.shape == (0, 2)
+    assert actuation.control.tolist() == [[-3.0, 4.5], unlimited, [0.0, 2.0], [0.0, 2.0], [0.0, 2.0], unlimited]
 
 
 def test_locked_actuator_loses_name_and_range() -> None:

@@ -33,20 +33,7 @@ from support.plain_urdf import (
     robot,
     vector,
 )
-
-TETRAHEDRON = """solid tetrahedron
-{}endsolid tetrahedron
-""".format(
-    "".join(
-        f"facet normal 0 0 0\nouter loop\n{''.join(f'vertex {corner}' + chr(10) for corner in face)}endloop\nendfacet\n"
-        for face in (
-            ("0 0 0", "0 1 0", "1 0 0"),
-            ("0 0 0", "1 0 0", "0 0 1"),
-            ("0 0 0", "0 0 1", "0 1 0"),
-            ("1 0 0", "0 1 0", "0 0 1"),
-        )
-    )
-)
+from support.stl import TETRAHEDRON
 
 MATERIALS = [
     "",
@@ -64,7 +51,7 @@ KINDS = {"visual": pin.GeometryType.VISUAL, "collision": pin.GeometryType.COLLIS
 def parts(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("packages")
     (folder / "parts").mkdir()
-    (folder / "parts" / "tetrahedron.stl").write_text(TETRAHEDRON)
+    (folder / "parts" / "tetrahedron.stl").write_bytes(TETRAHEDRON)
     (folder / "parts" / "wood.png").write_bytes(b"")
     return folder
 

@@ -14,13 +14,10 @@ import numpy as np
 import pytest
 
 import eurdf
-from eurdf.kinematics.project import project_velocity
-from eurdf.mechanism.joint import JointProperties
-from eurdf.mechanism.mechanism import Mechanism
-from eurdf.pinocchio.configuration import configuration_vector
 from eurdf.pinocchio.robot import build_robot
 from support.mujoco_witness import read_urdf
 from support.plain_urdf import inertial, joint_element, link_element
+from support.transmissions import with_properties
 
 LIMIT = '<limit lower="-9" upper="9" effort="1" velocity="1"/>'
 
@@ -45,21 +42,10 @@ CHAIN = {
 SPRINGS = {"turn": (30.0, 0.2), "slide": (200.0, -0.05), "spin": (4.0, 1.0)}
 
 
-def with_springs(mechanism: Mechanism, springs: Mapping[str, tuple[float, float]], **more: Any) -> Mechanism:
-    """The mechanism with springs: by joint stiffness and rest."""
-    joints = []
-    for joint in mechanism.joints:
-        if joint.name in springs:
-            stiffness, rest = springs[joint.name]
-            properties = replace(joint.properties, stiffness=(stiffness,), rest=(rest,), **more)
-            joint = replace(joint, properties=properties)
-        joints.append(joint)
-    return replace(mechanism, joints=tuple(joints))
-
-
-def sprung(given: str | Path, springs: Mapping[str, tuple[float, float]], **options: Any) -> Any:
-    robot = eurdf.load(given, geometry=False, **options)
-    return build_robot(with_springs(robot.mechanism, springs), geometry=False)
+def sprung(given: str | Path, springs: Mapping[str, tuple[float, float]]) -> Any:
+    """A robot with springs: by joint stiffness and rest."""
+    stated = {name: {"stiffness": (stiffness,), "rest": (rest,)} for name, (stiffness, rest) in springs.items()}
+    return with_properties(eurdf.load(given, geometry=False), stated)
 
 
 def test_accelerations_are_those_of_mujoco(tmp_path: Path) -> None:
@@ -80,14 +66,8 @@ def test_accelerations_are_those_of_mujoco(tmp_path: Path) -> None:
         a = eurdf.forward_dynamics(robot, q, v).a
         np.testing.assert_allclose(a, data.qacc, rtol=1e-8, atol=1e-8)
         np.testing.assert_allclose(eurdf.springs.spring_force(robot, q), data.qfrc_spring, rtol=1e-12, atol=1e-12)
-        found = eurdf.inverse_dynamics(actuated(robot), q, v, a).u
+        found = eurdf.inverse_dynamics(actuated_of(robot), q, v, a).u
         np.testing.assert_allclose(found, np.zeros(4), atol=1e-9)
-
-
-def actuated(robot: Any) -> Any:
-    """The robot with a motor at each joint."""
-    names = tuple(joint.name for joint in robot.mechanism.joints)
-    return build_robot(replace(robot.mechanism, actuators=names), geometry=False)
 
 
 def test_force_is_minus_the_gradient_of_the_energy() -> None:
@@ -104,24 +84,6 @@ def test_force_is_minus_the_gradient_of_the_energy() -> None:
     ]
     np.testing.assert_allclose(eurdf.springs.spring_force(robot, q), -np.array(slopes), atol=1e-8)
     assert np.abs(slopes).max() > 0.1
-
-
-def test_spring_in_a_loop_acts_as_a_force_at_its_joint() -> None:
-    plain = eurdf.load("four_bar", geometry=False)
-    robot = sprung("four_bar", {"motor_crank": (3.0, 0.4)})
-    q = eurdf.assemble(robot).q
-    v = project_velocity(robot, q, np.ones(robot.model.nv))
-    at = robot.model.joints[robot.model.getJointId("motor_crank")]
-    tau = np.zeros(robot.model.nv)
-    tau[at.idx_v] = -3.0 * (q[at.idx_q] - 0.4)
-    there = configuration_vector(plain.mechanism, plain.model, robot.joint_positions(q))
-    found, expected = eurdf.forward_dynamics(robot, q, v), eurdf.forward_dynamics(plain, there, v, tau=tau)
-    np.testing.assert_allclose(found.a, expected.a, rtol=1e-10)
-    np.testing.assert_allclose(np.concatenate(found.forces), np.concatenate(expected.forces), rtol=1e-8, atol=1e-10)
-    a = found.a
-    u = eurdf.inverse_dynamics(robot, q, v, a).u
-    np.testing.assert_allclose(u, 0.0, atol=1e-9)
-    assert np.abs(eurdf.inverse_dynamics(plain, there, v, a).u).max() > 0.1
 
 
 def quiet(*given: Any, **options: Any) -> Any:
@@ -142,21 +104,6 @@ def test_oscillator_has_its_period_and_keeps_its_energy(tmp_path: Path) -> None:
     np.testing.assert_allclose(motion.potential, 0.5 * stiffness * motion.q[:, 0] ** 2, rtol=1e-12, atol=1e-12)
     assert motion.energy_error < 1e-7 * motion.energy_exchanged
     assert not motion.work.any()
-
-
-def test_loop_with_springs_keeps_its_energy() -> None:
-    robot = sprung("four_bar", {"motor_crank": (5.0, 0.4), "free_rocker": (2.0, 1.0)})
-    motion = quiet(robot, eurdf.assemble(robot).q, duration=0.1, step=2.5e-4)
-    assert motion.energy_exchanged > 1e-3
-    assert motion.energy_error < 1e-6 * motion.energy_exchanged
-    plain = eurdf.load("four_bar", geometry=False)
-    other = quiet(plain, eurdf.assemble(plain).q, duration=0.1, step=2.5e-4)
-    assert (
-        abs(
-            plain.joint_positions(other.q[-1])["motor_crank"][0] - robot.joint_positions(motion.q[-1])["motor_crank"][0]
-        )
-        > 0.01
-    )
 
 
 # -- continuous joints -----------------------------------------------------------------------------------------------
@@ -188,20 +135,14 @@ def led(tmp_path: Path, *, mimic: bool) -> Any:
     """A robot with a description, mimic joints in a chain, and springs, armatures, damping and friction on them."""
     (tmp_path / "robot.urdf").write_text(urdf(LED), encoding="utf-8")
     (tmp_path / "robot.yaml").write_text('extended_urdf: "2.0"\n', encoding="utf-8")
-    mechanism = eurdf.load(tmp_path, geometry=False, mimic=mimic).mechanism
+    names = ("armature", "damping", "friction", "stiffness", "rest")
     added = {
-        "one": JointProperties(armature=(0.7,), damping=(0.4,), friction=(0.05,), stiffness=(11.0,), rest=(0.25,)),
-        "two": JointProperties(armature=(5.0,), damping=(6.0,), friction=(0.5,), stiffness=(90.0,), rest=(-0.1,)),
-        "leader": JointProperties(armature=(0.9,), damping=(0.3,), friction=(0.2,), stiffness=(2.0,), rest=(0.3,)),
+        "one": (0.7, 0.4, 0.05, 11.0, 0.25),
+        "two": (5.0, 6.0, 0.5, 90.0, -0.1),
+        "leader": (0.9, 0.3, 0.2, 2.0, 0.3),
     }
-    joints = []
-    for joint in mechanism.joints:
-        if joint.name in added:
-            own = joint.properties
-            limits = {name: getattr(own, name) for name in ("lower", "upper", "velocity", "effort")}
-            joint = replace(joint, properties=replace(added[joint.name], **limits))
-        joints.append(joint)
-    return build_robot(replace(mechanism, joints=tuple(joints)), geometry=False)
+    properties = {joint: {name: (each,) for name, each in zip(names, own, strict=True)} for joint, own in added.items()}
+    return with_properties(eurdf.load(tmp_path, geometry=False, mimic=mimic), properties)
 
 
 def test_mimic_joints_load_their_leader_as_if_they_were_free_and_led(tmp_path: Path) -> None:
@@ -253,10 +194,3 @@ def test_bare_urdf_leaves_the_damping_of_mimic_joints_to_pinocchio(tmp_path: Pat
     assert eurdf.load(path, geometry=False).model.damping[0] == damping[0]
     (tmp_path / "robot.yaml").write_text('extended_urdf: "2.0"\n', encoding="utf-8")
     assert eurdf.load(tmp_path, geometry=False).model.damping[0] == pytest.approx(damping[1])
-
-
-@pytest.mark.parametrize("function", [eurdf.springs.spring_force, eurdf.springs.spring_energy])
-def test_wrong_configuration_is_refused(function: Any) -> None:
-    robot = sprung("four_bar", {"motor_crank": (3.0, 0.4)})
-    with pytest.raises(ValueError, match="q"):
-        function(robot, np.zeros(99))

@@ -117,15 +117,3 @@ def test_branched_mimic_joint_matches_constrained_free_joint(tmp_path: Path) -> 
     M = bound.T @ mujoco_witness.mass_matrix(model, data)[np.ix_(order, order)] @ bound
     M[1, 1] += 0.05
     np.testing.assert_allclose(eurdf.mass_matrix(robot, q), M, rtol=1e-6, atol=1e-6)
-
-
-def test_matches_pinocchio_without_mimic_joints() -> None:
-    robot = eurdf.load("digit_leg", geometry=False)
-    q = eurdf.assemble(robot).q
-    M = np.triu(pin.crba(robot.model, robot.model.createData(), q))
-    np.testing.assert_allclose(eurdf.mass_matrix(robot, q, data=robot.data), M + np.triu(M, 1).T, rtol=1e-12)
-
-
-def test_invalid_configuration_is_refused() -> None:
-    with pytest.raises(ValueError, match=r"has the shape \(2,\); expected \(3,\)"):
-        eurdf.mass_matrix(load(hand()), np.zeros(2))

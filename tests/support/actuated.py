@@ -14,7 +14,6 @@ from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.pinocchio.actuation import Actuation
 from eurdf.pinocchio.robot import Robot
 from support.linkage import Linkage
 from support.wild import FACTS, WILD
@@ -36,14 +35,11 @@ def robot_called(name: str) -> Robot:
 
 def actuated(linkage: Linkage, joints: Sequence[str] | None = None) -> Robot:
     """The linkage as a robot, the joints given actuated in that order."""
-    model, names = linkage.model, tuple(linkage.actuated if joints is None else joints)
-    found = [model.joints[model.getJointId(name)] for name in names]
-    idx_q = np.array([joint.idx_q + k for joint in found for k in range(joint.nq)], np.intp)
-    idx_v = np.array([joint.idx_v + k for joint in found for k in range(joint.nv)], np.intp)
-    actuation = Actuation(names, idx_q, idx_v, model.nv, names, np.full((len(idx_v), 2), (-np.inf, np.inf)))
+    names = tuple(linkage.actuated if joints is None else joints)
+    actuation = Linkage(linkage.model, actuated=names).actuation
     closures = tuple(found for found in linkage.constraints if isinstance(found, Closure))
     mechanism = Mechanism("linkage", "", "fixed", (), (), closures=closures)  # without bodies and joints
-    robot = Robot(mechanism, model)
+    robot = Robot(mechanism, linkage.model)
     # In place of what it would make of its mechanism.
     vars(robot).update(tree=linkage.tree, actuation=actuation, configurations=linkage.configurations)
     return robot

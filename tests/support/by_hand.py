@@ -16,6 +16,8 @@ from eurdf.mechanism.pose import Pose
 
 Matrix = Any
 
+#: How many axes a joint type has, where it is not one.
+AXES = {JointType.UNIVERSAL: 2, JointType.SPHERICAL: 0, JointType.PLANAR: 0, JointType.FLOATING: 0}
 MOVING = [kind for kind in JointType if kind is not JointType.FIXED]
 
 
@@ -151,7 +153,7 @@ def some_pose(random: np.random.Generator) -> Pose:
 
 
 def some_joint(kind: JointType, random: np.random.Generator, parent: str = "base", child: str = "tip") -> Joint:
-    count = {JointType.UNIVERSAL: 2, JointType.SPHERICAL: 0, JointType.PLANAR: 0, JointType.FLOATING: 0}.get(kind, 1)
+    count = AXES.get(kind, 1)
     axes = [random.uniform(-1, 1, 3) for _ in range(count)]
     if count == 2 and random.random() < 0.5:
         axes = [np.array((0.0, 0.0, 1.0)), np.array((0.0, -2.0, 0.0))]

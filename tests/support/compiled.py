@@ -40,11 +40,6 @@ class Compiled:
         """Go to the pose that it was generated at."""
         self._library.t_start(_pointer(self.pose))
 
-    @property
-    def both_ways(self) -> bool:
-        """Whether there is a function from motors to joints."""
-        return hasattr(self._library, "t_at_motors")
-
     def start_at_joints(self, positions: Vector) -> int:
         """Start at positions of the joints; the status."""
         return self._start(self._library.t_start_at_joints, positions)

@@ -65,16 +65,6 @@ def q_of(robot: eurdf.Robot, coordinates: Mapping[str, Sequence[float]]) -> Any:
     return configuration_vector(robot.mechanism, robot.model, coordinates)
 
 
-def frame_poses(model: Any, q: Any) -> dict[tuple[str, str], Any]:
-    """Pose in the world of every frame, by name and whether it is a link's."""
-    data = model.createData()
-    pin.framesForwardKinematics(model, data, q)
-    return {
-        (frame.name, "link" if frame.type == pin.FrameType.BODY else "other"): data.oMf[index].homogeneous.copy()
-        for index, frame in enumerate(model.frames)
-    }
-
-
 def mass_matrix(model: Any, q: Any) -> Any:
     """Column i is the force that unit acceleration i takes, from the inverse dynamics.
 
@@ -112,12 +102,7 @@ _TURN, _AT = '<axis xyz="0 0 1"/><limit lower="-9" upper="9" effort="1" velocity
 
 
 def strut(kind: str, reach: float = 0.9) -> Any:
-    """The robot.
-
-    Args:
-        kind: Of the actuator: planar, spherical or floating.
-        reach: Position limit of the slide, both ways, m.
-    """
+    """A robot whose actuator is planar, spherical or floating, with a slide that moves `reach` both ways, m."""
     slide = f'<axis xyz="0 0 1"/><limit lower="{-reach!r}" upper="{reach!r}" effort="1" velocity="1"/>'
     own = "revolute" if kind == "spherical" else kind
     urdf = robot(

@@ -84,33 +84,23 @@ class Place:
 
     def _named(self, secret: str, form: str) -> str:
         path, relative = self._secrets / secret, f"secrets/{secret}"
-        match form:
-            case "absolute":
-                return str(path)
-            case "parent":
-                return f"../{relative}"
-            case "roundabout":
-                return f"sub/../../{relative}"
-            case "file":
-                return f"file://{path}"
-            case "file percent":
-                return f"file://{quote(str(self.robot))}/%2e%2e/{relative}"
-            case "percent":
-                return f"%2e%2e/{relative}"
-            case "package parent":
-                return f"package://../{relative}"
-            case "package robot":
-                return f"package://robot/../{relative}"
-            case "package beside":
-                return f"package://{relative}"
-            case "package no name":
-                return f"package:///../{relative}"
-            case "package root":
-                return f"package://{path}"
-            case "model":
-                return f"model://robot/../{relative}"
-            case "data":
-                return f"data:/../../{path}"
+        named = {
+            "absolute": str(path),
+            "parent": f"../{relative}",
+            "roundabout": f"sub/../../{relative}",
+            "file": f"file://{path}",
+            "file percent": f"file://{quote(str(self.robot))}/%2e%2e/{relative}",
+            "percent": f"%2e%2e/{relative}",
+            "package parent": f"package://../{relative}",
+            "package robot": f"package://robot/../{relative}",
+            "package beside": f"package://{relative}",
+            "package no name": f"package:///../{relative}",
+            "package root": f"package://{path}",
+            "model": f"model://robot/../{relative}",
+            "data": f"data:/../../{path}",
+        }
+        if form in named:
+            return named[form]
         self._count += 1
         if form == "link of folder":
             (self.robot / f"folder{self._count}").symlink_to(self._secrets)

@@ -11,7 +11,7 @@ import numpy as np
 import pinocchio as pin
 
 from eurdf.closures import REGISTRY
-from eurdf.kinematics.residual import closure_openings
+from eurdf.kinematics.residual import closure_openings, residual_and_jacobian
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Closure, Constraint
 from eurdf.mechanism.pose import Pose
@@ -48,21 +48,13 @@ class Linkage:
 
     @property
     def actuation(self) -> Actuation:
-        rows = [row for name in self.actuated for row in velocities(self.model, name)]
-        coordinates = [row for name in self.actuated for row in coordinates_of(self.model, name)]
+        model = self.model
+        found = [model.joints[model.getJointId(name)] for name in self.actuated]
+        rows = [joint.idx_v + k for joint in found for k in range(joint.nv)]
+        coordinates = [joint.idx_q + k for joint in found for k in range(joint.nq)]
         control = np.full((len(rows), 2), (-np.inf, np.inf))
         indices = np.array(coordinates, np.intp), np.array(rows, np.intp)
         return Actuation(tuple(self.actuated), *indices, self.model.nv, tuple(self.actuated), control)
-
-
-def velocities(model: Any, joint: str) -> range:
-    index = model.getJointId(joint)
-    return range(model.idx_vs[index], model.idx_vs[index] + model.nvs[index])
-
-
-def coordinates_of(model: Any, joint: str) -> range:
-    index = model.getJointId(joint)
-    return range(model.idx_qs[index], model.idx_qs[index] + model.nqs[index])
 
 
 def translation(*xyz: float) -> Any:
@@ -112,14 +104,9 @@ def loop(
 ) -> Linkage:
     """One loop through the ground, drawn where it is closed.
 
-    Args:
-        pairs: Its joints from ground to ground: R, P or S for the type, the point, the axis in the world.
-        kind: Type of the closure, whose frame A is on the ground.
-        end: Where it is closed.
-        away: Coordinates of R and P at the closed configuration drawn.
-        actuated: Names of the joints actuated; they are called j0, j1, …
-        size: Factor on all lengths.
-        decimals: Number of decimals that positions and roll, pitch and yaw are written with; None for all.
+    Its joints are called j0, j1, …; each is R, P or S for the type, a point, and the axis in the world. Frame A of the
+    closure, at `end`, is on the ground. Coordinates of R and P are `away` at the closed configuration drawn. `size` is
+    a factor on all lengths; positions and roll, pitch and yaw have so many `decimals`, None for all.
     """
     model = pin.Model()
     joint, oMi = 0, pin.SE3.Identity()
@@ -136,14 +123,14 @@ def loop(
             "S": pin.SE3.Identity(),
         }[letter]
         joint_model = {"R": pin.JointModelRZ, "P": pin.JointModelPZ, "S": pin.JointModelSpherical}[letter]()
-        joint = model.addJoint(joint, joint_model, written(oMi.actInv(oMj * moved), decimals), f"j{index}")
+        joint = model.addJoint(joint, joint_model, rounded(oMi.actInv(oMj * moved), decimals), f"j{index}")
         oMi = oMj
     oMc = translation(*(size * np.array(end, dtype=float)))
-    constraint = closure(model, 0, written(oMc, decimals), joint, written(oMi.actInv(oMc), decimals), kind, "end")
+    constraint = closure(model, 0, rounded(oMc, decimals), joint, rounded(oMi.actInv(oMc), decimals), kind, "end")
     return Linkage(model, [constraint], actuated)
 
 
-def written(placement: Any, decimals: int | None) -> Any:
+def rounded(placement: Any, decimals: int | None) -> Any:
     """A placement as it comes back from a file."""
     if decimals is None:
         return placement
@@ -165,6 +152,40 @@ def n_bar(n: int, kind: str = "6d", **options: Any) -> Linkage:
 
 def slider_crank(**options: Any) -> Linkage:
     return loop([("R", (0, 0, 0), Z), ("R", (1, 0.5, 0), Z), ("R", (3, 0, 0), Z), ("P", (3, 0, 0), X)], **options)
+
+
+def chain(*lengths: float) -> Any:
+    """The model of a planar arm of bars along x at zero, with joints j0, j1, … and a frame at its end."""
+    model, parent, before = pin.Model(), 0, 0.0
+    for index, length in enumerate(lengths):
+        parent = model.addJoint(parent, pin.JointModelRZ(), translation(before, 0.0, 0.0), f"j{index}")
+        before = length
+    model.addFrame(pin.Frame("end", parent, 0, translation(before, 0.0, 0.0), pin.FrameType.OP_FRAME))
+    return model
+
+
+def four_bar(crank: float, coupler: float, rocker: float, ground: float) -> Linkage:
+    """Planar four-bar with all bars along x at zero, pinned at its end by a 3d closure to the ground at ``ground``."""
+    model = chain(crank, coupler, rocker)
+    end = closure(model, 0, translation(ground, 0.0, 0.0), 3, translation(rocker, 0.0, 0.0), "3d", "end")
+    return Linkage(model, [end], ["j0"])
+
+
+def stretched(bend: float, size: float = 1.0, actuated: Sequence[str] = ()) -> Linkage:
+    """Two bars in a vertical slide whose ends are held, stretched but for a bend: K loses rank where it is 0."""
+    joints = [("P", (0.0, 0.0, 0.0), Z), ("R", (0.0, 0.0, 0.0), Z), ("R", (1.0, 0.0, 0.0), Z)]
+    joints.append(("R", (1.5, bend / 2.0, 0.0), Y))
+    return weighted(loop(joints, "3d", (2.0, bend, 0.0), actuated=actuated, size=size), size=size)
+
+
+def drift_by_differences(robot: Any, q: Any, v: Any, step: float = 1e-3) -> Any:
+    """K̇ v by central differences of the sixth order."""
+
+    def at(t: float) -> Any:
+        return residual_and_jacobian(robot, pin.integrate(robot.model, q, t * v))[1] @ v
+
+    weights = {1: 45.0, 2: -9.0, 3: 1.0}
+    return sum(weight * (at(k * step) - at(-k * step)) for k, weight in weights.items()) / (60.0 * step)
 
 
 def spherical_four_bar(**options: Any) -> Linkage:
@@ -366,21 +387,6 @@ def somewhere(model: Any, random: np.random.Generator) -> Any:
 def far_from_half_a_turn(linkage: Linkage, q: Any) -> bool:
     """Where two frames are half a turn apart, log6 jumps and has no derivative."""
     return all(opening.angle < np.pi - 0.2 for opening in closure_openings(linkage, q))
-
-
-MIMIC = """<robot name="mimic">
-  <link name="ground"/><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
-  <joint name="lead" type="revolute"><parent link="ground"/><child link="a"/><origin xyz="0.1 0 0.2" rpy="0.1 0.2 0.3"/>
-    <axis xyz="0 0 1"/><limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
-  <joint name="slide" type="prismatic"><parent link="a"/><child link="b"/><origin xyz="0.3 0.1 0" rpy="0.5 0 0"/>
-    <axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
-  <joint name="same" type="revolute"><parent link="b"/><child link="c"/><origin xyz="0.2 0 0.1" rpy="0 0.7 0"/>
-    <axis xyz="0 1 0"/><limit lower="-9" upper="9" effort="1" velocity="1"/>
-    <mimic joint="lead" multiplier="-2" offset="0.4"/></joint>
-  <joint name="other" type="revolute"><parent link="ground"/><child link="d"/><origin xyz="-0.2 0 0.1"/>
-    <axis xyz="1 0 0"/><limit lower="-9" upper="9" effort="1" velocity="1"/>
-    <mimic joint="lead" multiplier="0.5" offset="0"/></joint>
-</robot>"""
 
 
 def scissors(mimic: bool = True) -> Linkage:

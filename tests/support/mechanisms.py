@@ -1,4 +1,4 @@
-"""Random mechanisms of all joint types and kinds of constraints, closed at a configuration that is known."""
+"""Random mechanisms of all joint types and kinds of constraints."""
 
 from __future__ import annotations
 
@@ -11,10 +11,6 @@ import pinocchio as pin
 
 import eurdf
 from eurdf.closures import REGISTRY
-from eurdf.closures.distance import DistanceClosure
-from eurdf.closures.frame import FrameClosure
-from eurdf.closures.hinge import HingeClosure
-from eurdf.closures.point import PointClosure
 from eurdf.mechanism.body import Anchor, Body
 from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint, Mimic
@@ -25,6 +21,7 @@ from eurdf.pinocchio.configuration import slots
 from eurdf.pinocchio.frames import body_frame_ids
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand
+from support.by_hand import AXES
 from support.linkage import pose_of
 
 KINDS = ("3d", "6d", "hinge", "distance", "coupling")
@@ -60,16 +57,9 @@ def closed_tree(random: np.random.Generator, kinds: tuple[str, ...] = KINDS, roo
         oMA = data.oMf[frames[a]] * pin.SE3(by_hand.pose_matrix(A))
         AMB = pin.SE3(np.eye(3), np.array([0.3, -0.4, 1.2]) if kind == "distance" else np.zeros(3))
         anchors = Anchor(a, A), Anchor(b, pose_of(data.oMf[frames[b]].actInv(oMA * AMB)))
-        axis = tuple(random.uniform(-1.0, 1.0, 3).tolist())
-        match kind:
-            case "3d":
-                closures.append(PointClosure(kind, *anchors))
-            case "6d":
-                closures.append(FrameClosure(kind, *anchors))
-            case "hinge":
-                closures.append(HingeClosure(kind, *anchors, axes=(axis, axis)))
-            case "distance":
-                closures.append(DistanceClosure(kind, *anchors, length=1.3))
+        if kind != "coupling":
+            axis = _vector(random)
+            closures.append(REGISTRY[kind](kind, *anchors, **_stated(kind, 1.3, (axis, axis))))
     names = {joint.type: joint.name for joint in mechanism.joints if joint.mimic is None}
     screw, slide = names[JointType.HELICAL], names[JointType.PRISMATIC]
     at = slots(mechanism)
@@ -80,12 +70,25 @@ def closed_tree(random: np.random.Generator, kinds: tuple[str, ...] = KINDS, roo
     return build_robot(mechanism, geometry=False), q
 
 
-_AXES_OF = {
-    "universal": 2,
-    "spherical": 0,
-    "planar": 0,
-    "floating": 0,
-}
+def some_robot(random: np.random.Generator, kinds: Sequence[str]) -> Robot:
+    """Every joint type once, with a constraint of each of these kinds, which are open."""
+    mechanism = by_hand.tree_of_all_types(random)
+    joints = [joint.name for joint in mechanism.joints if joint.type.nv == len(joint.type.coordinates) == 1]
+    bodies = [each.name for each in mechanism.bodies]
+    closures, couplings = [], []
+    for index, kind in enumerate(kinds):
+        if kind == "coupling":
+            terms = [
+                (name, float(random.uniform(0.5, 3.0))) for name in random.choice(joints, 3, replace=False).tolist()
+            ]
+            couplings.append(Coupling(f"coupling{index}", tuple(terms), 0.3))
+        else:
+            ends = [
+                Anchor(name, by_hand.some_pose(random)) for name in random.choice(bodies, 2, replace=False).tolist()
+            ]
+            stated = _stated(kind, 0.7, (_vector(random), _vector(random)))
+            closures.append(REGISTRY[kind](f"{kind}{index}", *ends, **stated))
+    return build_robot(replace(mechanism, closures=tuple(closures), couplings=tuple(couplings)), geometry=False)
 
 
 def one_loop(
@@ -93,12 +96,7 @@ def one_loop(
 ) -> eurdf.Robot:
     """A chain of joints j0, j1, …, on a fixed root, whose end is closed at the configuration `assembled`.
 
-    Args:
-        types: The types of the joints.
-        closure: The type of the closure.
-        seed: Of the random numbers.
-        follower: Whether a joint that mimics j1 is added at the end.
-        coupled: Whether j0 and j1 are coupled.
+    A joint that mimics j1 is added at the end if there is a `follower`; j0 and j1 may be `coupled`.
     """
     random = np.random.default_rng(seed)
     bodies, joints, tip = [Body("b0")], [], IDENTITY
@@ -113,7 +111,7 @@ def one_loop(
             f"b{index}",
             f"b{index + 1}",
             _pose(random),
-            axes=tuple(_vector(random) for _ in range(_AXES_OF.get(kind, 1))),
+            axes=tuple(_vector(random) for _ in range(AXES.get(type_, 1))),
             pitch=0.3 if kind == "helical" else 0.0,
             mimic=Mimic("j1", -0.7, 0.2) if mimics else None,
         )
@@ -143,16 +141,16 @@ def one_loop(
     return build_robot(mechanism, geometry=False)
 
 
-def _closure(type_: str, a: Pose, b: Pose, body: str, random: np.random.Generator) -> Closure:
-    kind = REGISTRY[type_]
-    if type_ == "distance":
-        away = Pose(tuple(a.act(_vector(random))))
-        length = float(np.linalg.norm(np.subtract(away.xyz, a.xyz)))
-        return kind("loop", Anchor("b0", away), Anchor(body, b), length=length)
-    if type_ == "hinge":
-        axis = _vector(random)
-        return kind("loop", Anchor("b0", a), Anchor(body, b), axes=(axis, axis))
-    return kind("loop", Anchor("b0", a), Anchor(body, b))
+def _closure(kind: str, a: Pose, b: Pose, body: str, random: np.random.Generator) -> Closure:
+    away = Pose(tuple(a.act(_vector(random)))) if kind == "distance" else a
+    axis = _vector(random) if kind == "hinge" else (0.0, 0.0, 1.0)
+    length = float(np.linalg.norm(np.subtract(away.xyz, a.xyz)))
+    return REGISTRY[kind]("loop", Anchor("b0", away), Anchor(body, b), **_stated(kind, length, (axis, axis)))
+
+
+def _stated(kind: str, length: float, axes: Any) -> dict[str, Any]:
+    """What a closure of a kind states beside its name and its frames."""
+    return {"distance": {"length": length}, "hinge": {"axes": axes}}.get(kind, {})
 
 
 def _vector(random: np.random.Generator) -> tuple[float, float, float]:

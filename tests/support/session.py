@@ -33,7 +33,6 @@ FIRST = (
     "test_explore.py",
     "test_oracle_reference.py",
     "test_suite.py",
-    "test_workspace.py",
     "test_reading.py",
     "test_examples.py",
     "test_schema.py",

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 import eurdf
+from eurdf.pinocchio.robot import build_robot
 from support.described import load
 from support.plain_urdf import inertial, joint_element, link_element, robot
 
@@ -33,6 +35,15 @@ def posed(name: str, seed: int = 0) -> tuple[Any, Any]:
     return found, eurdf.forward_kinematics(found, motors)
 
 
+def with_properties(robot: Any, joints: Mapping[str, Mapping[str, Any]], **changes: Any) -> Any:
+    """The robot with other properties of some joints, and other changes of its mechanism."""
+    changed = [
+        replace(each, properties=replace(each.properties, **joints.get(each.name, {})))
+        for each in robot.mechanism.joints
+    ]
+    return build_robot(replace(robot.mechanism, joints=tuple(changed), **changes), geometry=False)
+
+
 _LIMIT = '<limit lower="-9" upper="9" effort="10" velocity="3"/>'
 
 
@@ -49,14 +60,9 @@ def _bars(*names: str) -> list[str]:
 
 
 def four_bar(ground: float, crank: float, coupler: float, follower: float, angles: Sequence[float]) -> Any:
-    """A planar four-bar in x and y; the zero of each joint is at x, and the follower turns at (ground, 0).
+    """A planar four-bar of these lengths, m; the zero of each joint is at x, and the follower turns at (ground, 0).
 
-    Args:
-        ground: Length, m.
-        crank: Length, m.
-        coupler: Length, m.
-        follower: Length, m.
-        angles: Of crank, coupler and follower in the world, from which it is assembled, rad.
+    It is assembled from angles of crank, coupler and follower in the world, rad.
     """
     urdf = robot(
         *_bars("crank", "coupler", "follower"),
@@ -70,13 +76,7 @@ def four_bar(ground: float, crank: float, coupler: float, follower: float, angle
 
 
 def slider_crank(crank: float, rod: float, angle: float) -> Any:
-    """A planar slider-crank: the crank turns at the origin, the slider moves along x, and their zero is there.
-
-    Args:
-        crank: Length, m.
-        rod: Length, m.
-        angle: Of the crank, rad.
-    """
+    """A planar slider-crank at an angle of the crank, which turns at the origin, where the zero of the slider is."""
     along = '<axis xyz="1 0 0"/>' + _LIMIT
     urdf = robot(
         *_bars("crank", "rod", "slider"),

@@ -21,7 +21,6 @@ class ViewerClient:
         nodes: Position and quaternion w, x, y, z of each node of the scene in its parent.
         hidden: The nodes that are not shown; neither is what hangs from them.
         controls: The properties of the controls, by their identifier.
-        scripts: What the page was told to run.
         on_message: Called after each message that was applied.
     """
 
@@ -32,7 +31,6 @@ class ViewerClient:
         self.nodes: dict[str, dict[str, tuple[float, ...]]] = {"": {}}
         self.hidden: set[str] = set()
         self.controls: dict[str, dict[str, Any]] = {}
-        self.scripts: list[str] = []
         self.on_message: Callable[[ViewerClient], None] = lambda _: None
         self.failed: list[BaseException] = []
         self._ready = False
@@ -165,8 +163,6 @@ class ViewerClient:
             self.nodes = {
                 node: pose for node, pose in self.nodes.items() if node != name and not node.startswith(f"{name}/")
             }
-        elif kind == "RunJavascriptMessage":
-            self.scripts.append(message["source"])
         elif kind == "ReplayDoneMessage":
             self._ready = True
         elif kind == "GuiUpdateMessage":

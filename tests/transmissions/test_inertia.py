@@ -2,29 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Any
-
 import numpy as np
 import pinocchio as pin
 import pytest
 
 import eurdf
-from eurdf.pinocchio.robot import build_robot
-from support.exported import InMuJoCo
-from support.transmissions import DRIVEN, posed, slider_crank
-
-ROTORS = 0.003609725  # kg·m², one of Unitree's 5020 after its gear, as mjlab has it
-
-
-def with_armature(robot: Any, values: dict[str, float]) -> Any:
-    joints = tuple(
-        replace(each, properties=replace(each.properties, armature=(values.get(each.name, 0.0),)))
-        if each.name in values
-        else each
-        for each in robot.mechanism.joints
-    )
-    return build_robot(replace(robot.mechanism, joints=joints), geometry=False)
+from support.transmissions import DRIVEN, posed, slider_crank, with_properties
 
 
 @pytest.mark.parametrize("name", DRIVEN)
@@ -32,7 +15,7 @@ def test_joint_torque_accelerates_the_inertia(name: str) -> None:
     found, q = posed(name)
     armature = {motor: 0.01 * (index + 1) for index, motor in enumerate(found.actuation.joints)}
     armature[DRIVEN[name][0]] = 0.02  # of a passive joint too
-    robot = with_armature(found, armature)
+    robot = with_properties(found, {name: {"armature": (value,)} for name, value in armature.items()})
     inertia = eurdf.transmissions.reflected_inertia(robot, DRIVEN[name], q)
     others = [motor for motor in robot.actuation.joints if motor not in inertia.motors]
     alone = eurdf.lock(robot, others, q)
@@ -99,32 +82,6 @@ def test_many_configurations_equal_single_ones() -> None:
             many.total[index], eurdf.transmissions.reflected_inertia(robot, joints, q).total, rtol=1e-12
         )
     assert many.equivalent_armature.shape == (2, 2, 2)
-
-
-def test_mujoco_finds_the_same_inertia() -> None:
-    """Its constraints are soft, so that it is extrapolated to hard ones, in steps of their regularization (1 - d)/d."""
-    found, q = posed("unitree_g1_ankle")
-    robot, joints = with_armature(found, {"motor_a": ROTORS, "motor_b": ROTORS}), DRIVEN["unitree_g1_ankle"]
-    expected = eurdf.transmissions.reflected_inertia(robot, joints, q)
-    assert (np.diagonal(expected.rotors) > np.diagonal(expected.serial)).all()
-    there = InMuJoCo(robot, eurdf.export(robot, "mjcf"))
-    there.model.opt.gravity[:] = 0.0
-    there.model.opt.tolerance = 0.0
-    there.model.opt.iterations = 200
-    index = [there.model.joint(joint).dofadr[0] for joint in joints]
-    soft = np.array([1e-4, 2e-4, 3e-4, 4e-4])
-    inertias = []
-    for softness in soft:
-        there.model.eq_solimp[:, :2] = 1.0 / (1.0 + softness)
-        columns = []
-        for joint in index:
-            there.data.qfrc_applied[:] = 0.0
-            there.data.qfrc_applied[joint] = 1.0
-            there.at(q)
-            columns.append(there.data.qacc[index].copy())
-        inertias.append(np.linalg.inv(np.array(columns)))
-    hard = np.tensordot([4.0, -6.0, 4.0, -1.0], inertias, axes=1)  # the cubic through them, at zero
-    np.testing.assert_allclose(hard, expected.total, atol=1e-3 * np.diagonal(expected.total).min())
 
 
 def test_wrong_inertias_are_refused() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
@@ -12,9 +11,8 @@ from scipy.optimize import linprog, minimize
 
 import eurdf
 from eurdf.mechanism.mechanism import Motor
-from eurdf.pinocchio.robot import build_robot
 from eurdf.transmissions.polytope import image_of_box, largest_box, preimage_of_box
-from support.transmissions import DRIVEN, posed, slider_crank
+from support.transmissions import DRIVEN, posed, slider_crank, with_properties
 
 
 def motor_ranges(robot: Any, motors: tuple[str, ...]) -> tuple[Any, Any]:
@@ -117,7 +115,7 @@ def test_common_box_holds_at_every_configuration() -> None:
 def test_control_range_bounds_torques() -> None:
     robot, q = posed("unitree_g1_ankle")
     motors = MappingProxyType({"motor_a": Motor("a", (-10.0, 4.0))})
-    narrow = build_robot(replace(robot.mechanism, version="2.1", motors=motors), geometry=False)
+    narrow = with_properties(robot, {}, version="2.1", motors=motors)
     at = eurdf.transmission(narrow, DRIVEN["unitree_g1_ankle"], q)
     limits = eurdf.transmissions.serial_limits(narrow, DRIVEN["unitree_g1_ankle"], q)
     corners = np.array([at.joint_torque([a, b]) for a in (-10.0, 4.0) for b in (-25.0, 25.0)])
@@ -126,14 +124,6 @@ def test_control_range_bounds_torques() -> None:
     )
     tau_m = at.motor_torque([limits.torque_axes[0, 1], 0.0])
     assert np.max(tau_m / [4.0, 25.0]) == pytest.approx(1.0) or np.min(tau_m / [10.0, 25.0]) == pytest.approx(-1.0)
-
-
-def with_limits(robot: Any, joint: str, **limits: Any) -> Any:
-    joints = tuple(
-        replace(each, properties=replace(each.properties, **limits)) if each.name == joint else each
-        for each in robot.mechanism.joints
-    )
-    return build_robot(replace(robot.mechanism, joints=joints), geometry=False)
 
 
 def test_wrong_limits_are_refused() -> None:
@@ -150,7 +140,7 @@ def test_wrong_limits_are_refused() -> None:
         ({"velocity": (0.0,)}, "'motor_a' has the velocity limit 0; state a positive one: velocity in the <limit>"),
     ):
         with pytest.raises(ValueError, match=message):
-            eurdf.transmissions.serial_limits(with_limits(robot, "motor_a", **limits), joints)
+            eurdf.transmissions.serial_limits(with_properties(robot, {"motor_a": limits}), joints)
     for control, shown in (
         ((0.0, 4.0), "0 to 4"),
         ((-4.0, -0.0), "-4 to 0"),
@@ -158,7 +148,7 @@ def test_wrong_limits_are_refused() -> None:
         ((4.0, -4.0), "4 to -4"),
     ):
         motors = MappingProxyType({"motor_a": Motor("a", control)})
-        pulling = build_robot(replace(robot.mechanism, version="2.1", motors=motors), geometry=False)
+        pulling = with_properties(robot, {}, version="2.1", motors=motors)
         with pytest.raises(
             ValueError, match=f"'motor_a' has the control range {shown}; state one from below to above zero"
         ):
@@ -198,20 +188,3 @@ def test_limits_in_a_workspace_hold_between_its_points() -> None:
     assert 0.0 <= limits.torque_margin < 1e-2
     with pytest.raises(ValueError, match="the workspace is that of another robot, or of other joints: slide"):
         eurdf.transmissions.serial_limits(robot, "pin", space)
-
-
-@pytest.mark.slow
-def test_limits_in_the_workspace_of_an_ankle_hold_at_random_poses() -> None:
-    robot, joints = eurdf.load("unitree_g1_ankle", geometry=False), DRIVEN["unitree_g1_ankle"]
-    space = eurdf.transmissions.workspace(robot, joints, grid=9)
-    limits = eurdf.transmissions.serial_limits(robot, joints, space)
-    random = np.random.default_rng(0)
-    start = random.integers(0, len(space.q), 400)
-    cell = np.array([axis[1] - axis[0] for axis in space.axes])
-    qs = space.moved(space.q[start], space.positions[start] + random.uniform(-1.0, 1.0, (400, 2)) * cell)
-    qs = qs[np.isfinite(qs).all(axis=1)]
-    assert len(qs) > 200
-    signs = np.array([[1.0, 1.0], [1.0, -1.0]])
-    for each in eurdf.transmissions.serial_limits(robot, joints, qs).each:
-        assert each.torque.contains(signs * limits.torque_box, 1e-6).all()
-        assert each.velocity.contains(signs * limits.velocity_box, 1e-6).all()

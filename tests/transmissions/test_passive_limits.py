@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
@@ -11,16 +10,15 @@ import pytest
 
 import eurdf
 from eurdf.mechanism.mechanism import Motor
-from eurdf.pinocchio.robot import build_robot
 from eurdf.transmissions.passive_limits import PassiveLimit, passive_limits
-from support.transmissions import DRIVEN, posed, slider_crank
+from support.transmissions import DRIVEN, posed, slider_crank, with_properties
 
 
 def test_limits_of_one_joint_are_those_of_the_polytopes() -> None:
     """The fastest joint is at a vertex of the velocities, and the torque at one joint is on an axis of the torques."""
     whole, q = posed("unitree_g1_ankle")
     motors = MappingProxyType({"motor_a": Motor("a", (-10.0, 4.0))})
-    robot = build_robot(replace(whole.mechanism, version="2.1", motors=motors), geometry=False)
+    robot = with_properties(whole, {}, version="2.1", motors=motors)
     found = {each.name: each for each in passive_limits(robot, q)}
     limits = eurdf.transmissions.serial_limits(robot, DRIVEN["unitree_g1_ankle"], q)
     assert isinstance(limits, eurdf.transmissions.SerialLimits)
@@ -38,15 +36,9 @@ def test_limits_of_a_slider_crank_have_a_closed_form() -> None:
     slide = next(each for each in passive_limits(robot, q) if each.name == "slide")
     assert slide == PassiveLimit("slide", "m", pytest.approx(3.0 * b), pytest.approx((-10.0 / b, 10.0 / b)))
 
-    def with_motor(**limits: tuple[float, ...]) -> eurdf.Robot:
-        joints = tuple(
-            replace(each, properties=replace(each.properties, **limits)) if each.name == "motor" else each
-            for each in robot.mechanism.joints
-        )
-        return build_robot(replace(robot.mechanism, joints=joints), geometry=False)
-
-    unlimited = next(each for each in passive_limits(with_motor(velocity=(), effort=()), q) if each.name == "slide")
+    without = with_properties(robot, {"motor": {"velocity": (), "effort": ()}})
+    unlimited = next(each for each in passive_limits(without, q) if each.name == "slide")
     assert (unlimited.velocity, unlimited.torque) == (np.inf, (-np.inf, np.inf))
-    both = build_robot(replace(robot.mechanism, actuators=("motor", "slide")), geometry=False)
+    both = with_properties(robot, {}, actuators=("motor", "slide"))
     with pytest.raises(eurdf.errors.NoTransmission, match="only 1 of 2 actuator velocities are independent"):
         passive_limits(both, q)

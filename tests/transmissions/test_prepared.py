@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -12,53 +11,12 @@ import numpy as np
 import pytest
 
 import eurdf
-from eurdf.mechanism.joint import JointProperties
 from eurdf.pinocchio.robot import build_robot
 from support.compiled import NOT_CLOSED, NOT_FINITE, OK, SINGULAR, TOO_FAR, Compiled
 from support.mechanisms import one_loop
-from support.transmissions import DRIVEN
+from support.transmissions import DRIVEN, with_properties
 
 ANKLE = ("free_pitch", "free_roll")
-
-
-def grid(lower: tuple[float, float], upper: tuple[float, float], n: int) -> list[tuple[float, float]]:
-    """Points of a grid, each next to the one before."""
-    rows = np.linspace(lower[0], upper[0], n)
-    columns = np.linspace(lower[1], upper[1], n)
-    return [(a, b) for i, a in enumerate(rows) for b in (columns if i % 2 == 0 else columns[::-1])]
-
-
-@pytest.mark.parametrize(
-    ("name", "lower", "upper"),
-    [
-        ("unitree_g1_ankle", (-0.6, -0.2), (0.4, 0.2)),
-        ("tesla_optimus_ankle", (-0.5, -0.2), (0.4, 0.2)),
-    ],
-)
-def test_positions_and_derivatives_agree_with_c_over_the_workspace(
-    name: str, lower: tuple[float, float], upper: tuple[float, float], tmp_path: Path
-) -> None:
-    robot = eurdf.load(name, geometry=False)
-    prepared = eurdf.transmissions.prepare_transmission(robot, ANKLE)
-    compiled = Compiled(prepared, tmp_path)
-    index = [robot.slots[motor].idx_q for motor in prepared.motors]
-    before = np.zeros(2)
-    for point in grid(lower, upper, 11):
-        motors, G = prepared.at_joints(point)
-        for way in np.linspace(before, point, 21 if not before.any() else 4)[1:]:
-            status, c_motors, c_G = compiled.at_joints(way)
-            assert status == OK
-        before = np.array(point)
-        assert c_motors == pytest.approx(motors, abs=1e-9)
-        assert c_G == pytest.approx(G, abs=1e-9)
-        q = eurdf.forward_kinematics(robot, dict(zip(ANKLE, point, strict=True)), prepared.q)
-        assert motors == pytest.approx(q[index], abs=1e-9)
-        joints, B = prepared.at_motors(motors)
-        assert joints == pytest.approx(point, abs=1e-9)
-        assert pytest.approx(np.eye(2), abs=1e-9) == B @ G
-        status, c_joints, c_B = compiled.at_motors(motors)
-        assert (status, c_joints) == (OK, pytest.approx(point, abs=1e-9))
-        assert c_B == pytest.approx(B, abs=1e-9)
 
 
 def loop(*types: str, closure: str, seed: int, slow: bool = True, **options: bool) -> Any:
@@ -108,6 +66,9 @@ def test_long_motions_follow_the_path() -> None:
     for pitch in np.linspace(0.0, -0.8, 81):
         found = near.at_joints([pitch, 0.02]).positions
     assert far == pytest.approx(found, abs=1e-9)
+    joints, B = near.at_motors(found)
+    assert joints == pytest.approx([-0.8, 0.02], abs=1e-9)
+    assert pytest.approx(np.eye(2), abs=1e-9) == B @ near.at_joints(joints)[1]
 
 
 def status_in_python(call: Callable[[Any], object], positions: Any) -> int:
@@ -229,22 +190,6 @@ def test_an_error_keeps_the_pose(tmp_path: Path) -> None:
     assert np.array_equal(compiled.pose, pose)
 
 
-def test_c_refuses_what_the_loops_do_not_reach(tmp_path: Path) -> None:
-    robot = eurdf.load("slider_crank", geometry=False)
-    prepared = eurdf.transmissions.prepare_transmission(robot, ["free_slider"])
-    compiled = Compiled(prepared, tmp_path)
-    statuses, slider = [], prepared.at_motors(prepared._motors.read(prepared.q)).positions
-    for step in itertools.count():
-        status, _, _ = compiled.at_joints(slider + 1e-3 * step)
-        statuses.append(status)
-        if status != OK:
-            break
-    assert statuses[-1] in (NOT_CLOSED, TOO_FAR, SINGULAR)
-    prepared.at_joints(slider + 1e-3 * (step - 1))
-    with pytest.raises(eurdf.errors.NotClosable, match="cannot be closed"):
-        prepared.at_joints(slider + 1e-3 * (step + 1))
-
-
 def test_turns_of_a_motor_are_counted(tmp_path: Path) -> None:
     robot = eurdf.load("bennett", geometry=False)
     prepared = eurdf.transmissions.prepare_transmission(robot, ["free_b"])
@@ -304,10 +249,8 @@ def test_motors_in_the_chain_are_their_own() -> None:
 
 
 def test_springs_that_no_motor_controls_are_held(tmp_path: Path) -> None:
-    mechanism = one_loop(["revolute"] * 5, "3d", 31).mechanism
-    spring = JointProperties(stiffness=(10.0,), rest=(0.0,))
-    joints = tuple(replace(joint, properties=spring) if joint.name == "j4" else joint for joint in mechanism.joints)
-    robot = build_robot(replace(mechanism, joints=joints), geometry=False)
+    robot = one_loop(["revolute"] * 5, "3d", 31)
+    robot = with_properties(robot, {"j4": {"stiffness": (10.0,), "rest": (0.0,)}})
     prepared = eurdf.transmissions.prepare_transmission(robot, "j0")
     compiled = Compiled(prepared, tmp_path)
     at = robot.slots["j4"].idx_q

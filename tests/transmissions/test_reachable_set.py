@@ -90,21 +90,6 @@ def test_slider_ends_at_the_dead_points_of_its_crank() -> None:
     assert {kind for _, kind in reached} <= {"singular", "not closed"}
 
 
-@pytest.mark.slow
-def test_singular_poses_bound_the_workspace() -> None:
-    robot = eurdf.load("five_bar", geometry=False)
-    joints = ["motor_1", "free_elbow_1"]
-    ends = [
-        point
-        for point in eurdf.transmissions.workspace(robot, joints, grid=9).boundary
-        if point.stop.kind == "singular"
-    ]
-    assert ends
-    for point in ends:
-        condition = eurdf.transmission(robot, joints, point.q).condition
-        assert condition is None or condition > 100.0
-
-
 def test_three_joints_have_samples() -> None:
     robot = eurdf.load("kangaroo_leg", geometry=False)
     joints = ("free_knee", "free_ankle_y", "free_ankle_x")

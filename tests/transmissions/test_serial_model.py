@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from pathlib import Path
 
 import jsonschema
@@ -14,7 +13,7 @@ import pytest
 
 import eurdf
 from eurdf.commands.output import output_schemas
-from eurdf.pinocchio.robot import build_robot
+from support.transmissions import with_properties
 
 ANKLE = ("free_pitch", "free_roll")
 ROTORS = {"motor_a": 0.0036, "motor_b": 0.0036}
@@ -118,23 +117,12 @@ def test_fitted_numbers_are_means(ankle: eurdf.Robot) -> None:
     assert fitted.neglected.covered == 1.0
 
 
-def test_motors_without_limits_are_noted() -> None:
-    robot = eurdf.load("four_bar", geometry=False)
-    found = eurdf.transmissions.serial_twin(robot, "free_rocker", grid=5, ranges={"free_rocker": (-0.1, 0.1)})
-    limited = np.isfinite(found.torque).all()
-    assert limited == (not found.notes)
-
-
 def test_springs_of_joints_are_kept_and_those_of_the_linkage_noted() -> None:
-    plain = eurdf.load("four_bar", geometry=False).mechanism
     springs = {
         "free_rocker": {"stiffness": (20.0,), "rest": (0.1,)},
         "motor_crank": {"stiffness": (5.0,), "rest": (0.0,)},
     }
-    joints = [
-        replace(joint, properties=replace(joint.properties, **springs.get(joint.name, {}))) for joint in plain.joints
-    ]
-    robot = build_robot(replace(plain, joints=tuple(joints)), geometry=False)
+    robot = with_properties(eurdf.load("four_bar", geometry=False), springs)
     found = eurdf.transmissions.serial_twin(robot, "free_rocker", grid=5, ranges={"free_rocker": (-0.1, 0.1)})
     (kept,) = (joint.properties for joint in found.robot.mechanism.joints if joint.name == "free_rocker")
     assert (kept.stiffness, kept.rest) == ((20.0,), (0.1,))

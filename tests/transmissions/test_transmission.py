@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import eurdf
-from eurdf.pinocchio.robot import build_robot
 from support.described import body, load
 from support.linkage import described, n_bar
 from support.plain_urdf import joint_element
 from support.plain_urdf import robot as urdf
-from support.transmissions import DRIVEN, four_bar, posed, slider_crank
+from support.transmissions import DRIVEN, posed, slider_crank, with_properties
 
 G1 = "unitree_g1_ankle", DRIVEN["unitree_g1_ankle"]
 
@@ -67,21 +65,6 @@ def test_identities_hold(name: str) -> None:
     np.testing.assert_allclose(at.rate(v_J), change, atol=1e-5 * (np.abs(at.G).max() + np.abs(change).max()))
     np.testing.assert_allclose(at.bias(v_J), change @ v_J, atol=1e-5 * (np.abs(at.G).max() + np.abs(change).max()))
     np.testing.assert_array_equal(at.hessian, np.swapaxes(at.hessian, 1, 2))
-
-
-def test_follower_of_a_four_bar_obeys_the_sine_formula() -> None:
-    ground, crank, coupler, follower = 0.4, 0.1, 0.35, 0.25
-    robot, q = four_bar(ground, crank, coupler, follower, (1.0, 0.4, 1.7))
-    for angle in (1.0, 2.2, 4.0):
-        q = eurdf.forward_kinematics(robot, {"motor": angle}, q)
-        a, elbow, c = values(robot, q, ("motor", "elbow", "output"))
-        b = a + elbow
-        ratio = crank * math.sin(a - b) / (follower * math.sin(c - b))  # of the follower's velocity to the crank's
-        at = eurdf.transmission(robot, "output", q)
-        assert at.motors == ("motor",)
-        assert at.B_J[0, 0] == pytest.approx(ratio, rel=1e-9)
-        assert at.G[0, 0] == pytest.approx(1.0 / ratio, rel=1e-9)
-        assert at.joint_torque([2.0])[0] == pytest.approx(2.0 / ratio, rel=1e-9)
 
 
 def test_slider_crank_obeys_its_closed_form() -> None:
@@ -196,12 +179,7 @@ def test_redundant_motors_share_a_torque() -> None:
 
 
 def sprung(robot: Any, joint: str, rest: float = 0.0) -> Any:
-    spring = {"stiffness": (50.0,), "rest": (rest,)}
-    joints = tuple(
-        replace(each, properties=replace(each.properties, **spring)) if each.name == joint else each
-        for each in robot.mechanism.joints
-    )
-    return build_robot(replace(robot.mechanism, joints=joints), geometry=False)
+    return with_properties(robot, {joint: {"stiffness": (50.0,), "rest": (rest,)}})
 
 
 def test_springs_hold_what_no_motor_decides() -> None:

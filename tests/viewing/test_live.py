@@ -160,13 +160,6 @@ def test_theme_that_the_user_chooses_repaints_the_robot(chromium: Any, tmp_path:
     page.context.close()
 
 
-def test_nothing_scrolls_sideways_on_a_phone(chromium: Any, tmp_path: Path) -> None:
-    page, errors, _ = opened(chromium, tmp_path, eurdf.load("kangaroo_2legs"), width=360)
-    assert page.evaluate("document.documentElement.scrollWidth") <= 360
-    assert errors == []
-    page.context.close()
-
-
 def test_hostile_names_are_inert(chromium: Any, tmp_path: Path) -> None:
     attack = "</script><img src=x onerror=alert(1)>"
     quoted = attack.replace("<", "&lt;").replace(">", "&gt;")

@@ -22,6 +22,7 @@ from support.described import load, strut
 from support.linkage import described, n_bar
 from support.mechanisms import closed_tree
 from support.places import ROOT
+from support.stl import TETRAHEDRON
 
 NODE = shutil.which("node")
 PROGRAM = ROOT / "tests" / "support/live_robot.js"
@@ -176,16 +177,13 @@ def test_command_writes_a_page_that_needs_nothing_else(tmp_path: Path, capsys: p
 
 
 def test_data_of_a_mesh_are_its_triangles(tmp_path: Path) -> None:
-    (tmp_path / "corner.stl").write_text(
-        "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
-        "facet normal 0 0 1\nouter loop\nvertex 1 0 0\nvertex 1 1 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n"
-    )
+    (tmp_path / "corner.stl").write_bytes(TETRAHEDRON)
     (tmp_path / "robot.urdf").write_text(
         '<robot name="a"><link name="a"><visual><geometry><mesh filename="corner.stl" scale="2 2 2"/></geometry>'
         '</visual><visual><geometry><box size="1 2 3"/></geometry></visual></link></robot>'
     )
     mesh, box = live_robot(eurdf.load(tmp_path / "robot.urdf"))["shapes"]
     corners = np.array(mesh["vertices"]).reshape(-1, 3)[mesh["triangles"]]
-    assert corners.shape == (6, 3)
+    assert corners.shape == (12, 3)
     assert corners.max() == 2.0
     assert box["size"] == [1.0, 2.0, 3.0]

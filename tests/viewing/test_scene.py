@@ -35,16 +35,6 @@ def test_surface_encloses_the_shape(shape: coal.ShapeBase, expected: float) -> N
     assert np.abs(surface.vertices).max(axis=0) == pytest.approx(shape.aabb_local.max_, rel=1e-9)
 
 
-def test_mesh_keeps_its_triangles() -> None:
-    mesh = coal.BVHModelOBBRSS()
-    mesh.beginModel(1, 3)
-    mesh.addTriangle(np.zeros(3), np.array((1.0, 0.0, 0.0)), np.array((0.0, 2.0, 0.0)))
-    mesh.endModel()
-    surface = surface_of(mesh)
-    corners = surface.vertices[surface.triangles[0]]
-    assert np.linalg.norm(np.cross(corners[1] - corners[0], corners[2] - corners[0])) == pytest.approx(2.0)
-
-
 def test_bodies_are_where_the_model_has_them() -> None:
     robot = eurdf.load("digit_leg")
     q = robot.configurations["assembled"]

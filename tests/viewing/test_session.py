@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-import re
-from pathlib import Path
+from dataclasses import replace
 
 import numpy as np
 import pinocchio as pin
@@ -13,9 +12,10 @@ import pytest
 import eurdf
 from eurdf.kinematics.evaluate import frames
 from eurdf.kinematics.position_limit import position_limits
+from eurdf.mechanism.joint_types import JointType
+from eurdf.pinocchio.robot import build_robot
 from eurdf.viewing.session import Session, Stop
 from support.described import STRUT, load, strut
-from support.places import ROBOTS
 from support.plain_urdf import joint_element, link_element, robot
 
 
@@ -74,15 +74,12 @@ def test_slider_stops_at_limit_of_passive_joint() -> None:
     assert session.residual < 1e-12
 
 
-def without_limits(robot: str, folder: Path) -> eurdf.Robot:
+def without_limits(name: str) -> eurdf.Robot:
     """A robot of the collection whose joints have no position limits."""
-    mechanism = ROBOTS / robot
-    text = (mechanism / "robot.urdf").read_text()
-    (folder / "robot.urdf").write_text(
-        re.sub(r'type="revolute"', 'type="continuous"', re.sub(r' (?:lower|upper)="[^"]*"', "", text))
-    )
-    (folder / "robot.yaml").write_text((mechanism / "robot.yaml").read_text())
-    return eurdf.load(folder)
+    mechanism = eurdf.load(name, geometry=False).mechanism
+    joints = [replace(joint, properties=replace(joint.properties, lower=(), upper=())) for joint in mechanism.joints]
+    free = [replace(joint, type=JointType.CONTINUOUS) if joint.type == "revolute" else joint for joint in joints]
+    return build_robot(replace(mechanism, joints=tuple(free)), geometry=False)
 
 
 def test_pose_at_a_passive_limit_is_within_the_tolerance_of_files() -> None:
@@ -120,9 +117,9 @@ def test_springs_press_passive_joints_against_their_limits() -> None:
         assert session.residual < 1e-12
 
 
-def test_slider_stops_at_dead_point(tmp_path: Path) -> None:
+def test_slider_stops_at_dead_point() -> None:
     """A five-bar linkage stretches out: the distance of the two elbows is then the sum of the two outer links."""
-    session = Session(without_limits("five_bar", tmp_path))
+    session = Session(without_limits("five_bar"))
     stop = session.move(0, math.pi)
     assert stop is not None
     assert stop.reason == "dead point"
@@ -144,20 +141,14 @@ def test_full_turn_of_a_crank_returns() -> None:
     assert session.q == pytest.approx(session.first, abs=1e-7)
 
 
-def test_dependent_actuators_follow(tmp_path: Path) -> None:
+def test_dependent_actuators_follow() -> None:
     """With both ends of a four-bar linkage actuated, neither moves with the other one held."""
-    source = ROBOTS / "four_bar"
-    (tmp_path / "robot.urdf").write_text((source / "robot.urdf").read_text())
-    robot = eurdf.load("four_bar")
-    passive = [joint.name for joint in robot.mechanism.joints if joint.name not in robot.mechanism.actuators]
-    both = f"actuators: [motor_crank, {passive[0]}]\n"
-    lines = (source / "robot.yaml").read_text().splitlines(keepends=True)
-    start = next(number for number, line in enumerate(lines) if line.startswith("actuators:"))
-    end = next(number for number in range(start + 1, len(lines)) if lines[number][:1] not in " -#\n")
-    (tmp_path / "robot.yaml").write_text("".join([*lines[:start], both, *lines[end:]]))
-    session = Session(eurdf.load(tmp_path))
+    mechanism = eurdf.load("four_bar", geometry=False).mechanism
+    passive = next(joint.name for joint in mechanism.joints if joint.name not in mechanism.actuators)
+    both = replace(mechanism, actuators=("motor_crank", passive))
+    session = Session(build_robot(both, geometry=False))
     assert session.analysis.dependent == 1
-    assert session.sliders[0].follow == (passive[0],)
+    assert session.sliders[0].follow == (passive,)
     assert session.move(0, 0.5) is None
     assert session.value(0) == pytest.approx(0.5, abs=1e-12)
     assert session.residual < 1e-12
@@ -177,15 +168,11 @@ def test_robot_that_cannot_close_is_moved_open() -> None:
     assert session.is_closed
 
 
-def test_robot_without_actuators_has_sliders_for_its_joints(tmp_path: Path) -> None:
-    file = tmp_path / "arm.urdf"
-    file.write_text(
-        '<robot name="arm"><link name="a"/><link name="b"/><link name="c"/>'
-        '<joint name="turn" type="revolute"><parent link="a"/><child link="b"/><limit lower="-1" upper="2" effort="1" '
-        'velocity="1"/></joint><joint name="slide" type="prismatic"><parent link="b"/><child link="c"/>'
-        '<limit lower="0" upper="0.5" effort="1" velocity="1"/></joint></robot>'
-    )
-    session = Session(eurdf.load(file))
+def test_robot_without_actuators_has_sliders_for_its_joints() -> None:
+    links = [link_element(name) for name in "abc"]
+    turn = joint_element("turn", "revolute", "a", "b", '<limit lower="-1" upper="2" effort="1" velocity="1"/>')
+    slide = joint_element("slide", "prismatic", "b", "c", '<limit lower="0" upper="0.5" effort="1" velocity="1"/>')
+    session = Session(load(robot(*links, turn, slide)))
     assert [(slider.label, slider.unit, slider.lower, slider.upper) for slider in session.sliders] == [
         ("turn", "rad", -1.0, 2.0),
         ("slide", "m", 0.0, 0.5),
@@ -209,17 +196,7 @@ def test_drag_brings_frame_to_target_with_loops_closed() -> None:
     assert session.residual < 1e-9
 
 
-def test_sweep_stays_closed_and_says_what_ends_it() -> None:
-    robot = eurdf.load("unitree_g1_ankle")
-    session = Session(robot)
-    configurations, ends = session.sweep(0, steps=10)
-    assert ends.count("passive limit of 'free_roll'") == 2
-    for q in configurations:
-        assert np.abs(eurdf.residual(robot, q)).max() < 1e-9
-    assert configurations[0] == pytest.approx(configurations[-1])
-
-
-def test_configuration_is_carried_to_changed_robot(tmp_path: Path) -> None:
+def test_configuration_is_carried_to_changed_robot() -> None:
     session = Session(eurdf.load("digit_leg"))
     session.move(index_of(session, "motor_knee"), 0.3)
     other = eurdf.load("digit_leg", root="floating")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import math
 import re
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -247,21 +246,3 @@ def test_hostile_names_are_inert(chromium: Any, tmp_path: Path) -> None:
         assert page.locator("a[href^=javascript]").count() == 0
         assert errors == []
         page.close()
-
-
-def test_kangaroo_moves_at_30_frames_a_second() -> None:
-    """Processor time of the thread that moves the robot and the page, the least of some runs; with a margin of 2."""
-    pytest.importorskip("viser", reason=MISSING)
-    with eurdf.view("kangaroo_2legs", port=0) as viewer:
-        shown, session = viewer._first, viewer._first.session
-        slider = session.sliders[0]
-
-        def frames() -> float:
-            begin = time.thread_time()
-            for part in np.linspace(0.3, 0.6, 20):
-                assert session.move(0, slider.lower + part * (slider.upper - slider.lower)) is None
-                shown.place()
-            return (time.thread_time() - begin) / 20.0
-
-        assert min(viewer._worker.call(frames) for _ in range(4)) < 1.0 / 30.0
-        assert session.residual < 1e-9
