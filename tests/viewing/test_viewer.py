@@ -58,12 +58,36 @@ def drag_slider(page: Any, number: int, part: float) -> None:
     page.mouse.up()
 
 
-def colors(page: Any) -> int:
-    """How many colours the picture of a page has: one or few if nothing is drawn."""
+def picture(page: Any) -> Any:
+    """What a page has drawn."""
     from PIL import Image
 
-    picture = Image.open(io.BytesIO(page.locator("canvas").first.screenshot(timeout=60_000))).convert("RGB")
-    return len(picture.getcolors(1 << 24))
+    return Image.open(io.BytesIO(page.locator("canvas").first.screenshot(timeout=60_000))).convert("RGB")
+
+
+def colors(page: Any) -> int:
+    """How many colours the picture of a page has: one or few if nothing is drawn."""
+    return len(picture(page).getcolors(1 << 24))
+
+
+def changed(before: Any, after: Any) -> float:
+    """The part of a picture whose pixels differ visibly, beside the panel."""
+    beside = (slice(None), slice(0, before.width - 420))
+    a, b = (np.asarray(each, dtype=int)[beside] for each in (before, after))
+    return float((np.abs(a - b).max(axis=2) > 30).mean())
+
+
+def still_picture(page: Any) -> Any:
+    """What a page has drawn once it draws the same twice."""
+    found = [picture(page)]
+
+    def is_still() -> bool:
+        page.wait_for_timeout(500)
+        found.append(picture(page))
+        return changed(*found[-2:]) < 1e-4
+
+    until(is_still, page)
+    return found[-1]
 
 
 def test_slider_moves_the_robot_with_loops_closed(chromium: Any) -> None:
@@ -101,6 +125,22 @@ def test_slider_moves_the_robot_with_loops_closed(chromium: Any) -> None:
         page.close()
 
 
+def test_slider_moves_what_is_drawn(chromium: Any) -> None:
+    """The bodies themselves, without dots and lines, and back again."""
+    with eurdf.view("digit_leg", port=0) as viewer:
+        page, errors = opened(chromium, viewer.url)
+        page.set_viewport_size({"width": 1200, "height": 800})
+        page.get_by_text("loops are closed").wait_for()
+        viewer._worker.call(lambda: viewer._first.figure.toggle("closures", False))
+        before = still_picture(page)
+        drag_slider(page, 0, 0.2)
+        until(lambda: changed(before, picture(page)) > 0.015, page)
+        page.get_by_role("button", name="reset").click()
+        until(lambda: changed(before, picture(page)) < 0.006, page)  # but for the shadow, which viser draws once
+        assert errors == []
+        page.close()
+
+
 def test_page_says_when_the_server_has_ended(chromium: Any) -> None:
     with eurdf.view("four_bar", port=0) as viewer:
         page, errors = opened(chromium, viewer.url)
@@ -114,6 +154,60 @@ def test_page_says_when_the_server_has_ended(chromium: Any) -> None:
         ended.wait_for(state="hidden", timeout=30_000)
     assert errors == []
     page.close()
+
+
+def test_dragged_frame_moves_the_robot_with_loops_closed(chromium: Any) -> None:
+    with eurdf.view("digit_leg", port=0) as viewer:
+        page, errors = opened(chromium, viewer.url)
+        page.set_viewport_size({"width": 1200, "height": 800})
+        page.get_by_text("loops are closed").wait_for()
+        page.locator("input[value='(none)']").first.click()
+        page.get_by_role("option", name="foot", exact=True).click()
+        until(lambda: viewer._panel._move._gizmo._handle is not None, page)
+        page.wait_for_timeout(2000)  # until it is drawn
+        first = viewer.q
+        page.mouse.move(623, 563)  # the arrow up, as the camera sees it at the start
+        page.wait_for_timeout(500)
+        page.mouse.down()
+        page.mouse.move(623, 530, steps=6)
+        page.wait_for_timeout(500)
+        page.mouse.up()
+        until(lambda: np.abs(viewer.q - first).max() > 0.05, page)
+        assert np.abs(eurdf.residual(viewer.robot, viewer.q)).max() < 1e-9
+        assert errors == []
+        page.close()
+
+
+def test_motion_plays_and_pauses(chromium: Any) -> None:
+    with eurdf.view("four_bar", port=0) as viewer:
+        page, errors = opened(chromium, viewer.url)
+        page.get_by_role("tab", name="Play").click()
+        page.get_by_role("button", name="gravity").click()
+        page.get_by_text(re.compile(r"gravity: \d+\.\d\d s")).wait_for()
+        page.get_by_role("button", name="pause").click()
+        page.get_by_role("button", name="continue").wait_for()
+        q = viewer.q
+        page.wait_for_timeout(200)
+        assert (viewer.q == q).all()
+        page.get_by_role("button", name="continue").click()
+        until(lambda: not np.array_equal(viewer.q, q), page)
+        assert np.abs(eurdf.residual(viewer.robot, viewer.q)).max() < 1e-9
+        assert errors == []
+        page.close()
+
+
+def test_saved_page_shows_the_robot_offline(chromium: Any, tmp_path: Path) -> None:
+    with eurdf.view("four_bar", port=0) as viewer:
+        file = viewer.save(tmp_path / "scene.html")
+    context = chromium.new_context(offline=True, viewport={"width": 600, "height": 400})
+    page = context.new_page()
+    requests: list[str] = []
+    page.on("request", lambda request: requests.append(request.url))
+    page.goto(file.as_uri())
+    page.locator("canvas").first.wait_for()
+    until(lambda: colors(page) > 200, page)
+    assert [url for url in requests if not url.startswith(("file:", "data:", "blob:"))] == []
+    context.close()
 
 
 def test_hostile_names_are_inert(chromium: Any, tmp_path: Path) -> None:
