@@ -14,7 +14,6 @@ from hypothesis import strategies as st
 import eurdf
 from eurdf.closures.hinge import HingeClosure
 from eurdf.kinematics import forward_solver
-from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.equation_of_motion import EquationOfMotion
 from eurdf.kinematics.independence import INDEPENDENT, Independence
 from support.linkage import Y, Z, loop, weighted
@@ -208,22 +207,3 @@ def test_threads_get_same_result() -> None:
     with ThreadPoolExecutor(4) as pool:
         together = list(pool.map(lambda at: eurdf.forward_dynamics(robot, *at).a, states))
     np.testing.assert_allclose(together, alone, rtol=1e-9, atol=1e-9)
-
-
-def test_workspaces_are_kept_for_next_call() -> None:
-    robot = eurdf.load("digit_leg", geometry=False)
-    made = []
-
-    def make(robot: Any) -> object:
-        made.append(robot)
-        return object()
-
-    with borrowed(robot, make) as one, borrowed(robot, make) as other:
-        assert one is not other
-    with borrowed(robot, make) as again:
-        assert again in (one, other)
-    with pytest.raises(ZeroDivisionError), borrowed(robot, make) as broken:
-        raise ZeroDivisionError
-    with borrowed(robot, make) as first, borrowed(robot, make) as second:
-        assert broken not in (first, second)
-    assert len(made) == 3

@@ -18,7 +18,6 @@ from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.errors import NumericalOverflow
 from eurdf.kinematics.assembly import close
 from eurdf.kinematics.blocks import Progress, blocks, checked_configurations, checked_rows, shape_of, starts
-from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.evaluate import Evaluator, evaluator, frames
 from eurdf.kinematics.forward import driving_many, goals, in_equilibrium, moved_many
 from eurdf.kinematics.frame_jacobian import checked_reference
@@ -32,6 +31,7 @@ from eurdf.kinematics.sensitivity import JacobianTask, actuated_jacobians
 from eurdf.kinematics.tangent_space import metric
 from eurdf.kinematics.tolerances import RESTARTS, SOLVED
 from eurdf.pinocchio.arguments import checked_count, checked_tolerance
+from eurdf.pinocchio.memory import working_memory
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -113,7 +113,7 @@ def forward_kinematics(
         goal = goals(driving, q, values)
     found, residual, code, rests = work.map(moved_many, driving, (q, goal) if closed is None else (q, goal, closed))
     if len(robot.tree.springs):
-        with borrowed(robot, Problem, tuple(actuation.idx_v.tolist())) as driven:
+        with working_memory(robot, Problem, tuple(actuation.idx_v.tolist())) as driven:
             alone = driving._replace(driven=driven)
             for each in np.flatnonzero((code == 0) & ~rests).tolist():
                 found[each] = in_equilibrium(robot, found[each], alone)
@@ -148,7 +148,7 @@ def residual(
         NumericalOverflow: A configuration is so large that its residual is not finite; the message names it.
     """
     rows = checked_rows("q", q, robot.tree.nq)
-    constraints = derived(robot, _constraints)
+    constraints = robot.cached(_constraints)
     work = blocks(constraints.numbers_of_residual, block, threads, executor, progress)
     (r,) = work.map(_residual, constraints, (rows,))
     _require_finite(r)
@@ -182,7 +182,7 @@ def residual_and_jacobian(
         NumericalOverflow: As in `residual`, also of the derivative.
     """
     rows = checked_rows("q", q, robot.tree.nq)
-    constraints = derived(robot, _constraints)
+    constraints = robot.cached(_constraints)
     work = blocks(constraints.numbers, block, threads, executor, progress)
     r, K = work.map(_residual_and_jacobian, constraints, (rows,))
     _require_finite(r, K)

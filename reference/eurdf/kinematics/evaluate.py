@@ -16,7 +16,6 @@ from eurdf.array import Indices, Matrix
 from eurdf.closures.coupling import Couplings
 from eurdf.closures.kind import ClosureKind, RelativePoses
 from eurdf.closures.se3 import velocity_of_origin
-from eurdf.kinematics.derived import derived
 from eurdf.kinematics.pairs_many import ManyPairs
 from eurdf.kinematics.tree_many import TreeMany
 from eurdf.mechanism.constraint import Constraint, Coupling
@@ -109,7 +108,7 @@ class Evaluator:
         self._key: bytes | None = None  # of the configuration of the last state of one element
         self._last = State(np.empty((1, 0)), None, [])
         if not few:
-            self._pairs = ManyPairs(derived(tree, TreeMany), self._sites, velocities)
+            self._pairs = ManyPairs(tree.cached(TreeMany), self._sites, velocities)
             self._sites, self._tree = [], None  # what is Pinocchio's cannot be sent to another process
 
     @cached_property
@@ -220,7 +219,7 @@ def _few_pairs(tree: Tree, sites: Sequence[Pair], velocities: Indices) -> FewPai
     try:
         return FewPairs(tree.model, tree.parents, sites, velocities)
     except NotImplementedError:
-        return ManyPairs(derived(tree, TreeMany), sites, velocities)
+        return ManyPairs(tree.cached(TreeMany), sites, velocities)
 
 
 class Frames:
@@ -265,7 +264,7 @@ def frames_at(tree: Tree, sites: Sequence[Any], *, few: bool) -> Frames:
     pairs, velocities = [(tree.world, site) for site in sites], np.arange(tree.nv)
     if few:
         return Frames(_few_pairs(tree, pairs, velocities))
-    return Frames(ManyPairs(derived(tree, TreeMany), pairs, velocities))
+    return Frames(ManyPairs(tree.cached(TreeMany), pairs, velocities))
 
 
 class TreeFew:
@@ -306,9 +305,9 @@ def _each(function: Callable[..., Matrix], shape: int | tuple[int, ...], *arrays
 
 def few_tree(robot: Robot) -> TreeFew:
     """The tree for few configurations."""
-    return derived(robot.tree, TreeFew)
+    return robot.tree.cached(TreeFew)
 
 
 def many_tree(robot: Robot) -> TreeMany:
     """The tree for many configurations."""
-    return derived(robot.tree, TreeMany)
+    return robot.tree.cached(TreeMany)

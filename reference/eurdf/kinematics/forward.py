@@ -11,7 +11,6 @@ import numpy as np
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.errors import NotClosable, NumericalOverflow, TooFar
 from eurdf.kinematics.assembly import assembled, close, closed_start, is_closed, start
-from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.named import ByJoint, Named, unknown_joint
 from eurdf.kinematics.path import follow_given
 from eurdf.kinematics.problem import Problem, for_many
@@ -20,6 +19,7 @@ from eurdf.kinematics.springs import Resting, joints_at_rest, spring_equilibrium
 from eurdf.kinematics.tolerances import RESTARTS, SHORTEST_STEP, SOLVED
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array, checked_tolerance
+from eurdf.pinocchio.memory import working_memory
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -169,10 +169,10 @@ def _with_driving(robot: Robot, given: _Given, tolerance: float, use: Callable[[
     """What a function makes of a robot with given joints, for one element."""
     velocities = tuple(given.velocities.tolist())
     resting = joints_at_rest(robot, given.velocities) if len(robot.tree.springs.idx_v) else None
-    with borrowed(robot, Problem) as free, borrowed(robot, Problem, velocities) as driven:
+    with working_memory(robot, Problem) as free, working_memory(robot, Problem, velocities) as driven:
         if resting is None:
             return use(Driving(free, driven, given.coordinates, None, None, tolerance))
-        with borrowed(robot, Problem, (*velocities, *resting.velocities.tolist())) as at_rest:
+        with working_memory(robot, Problem, (*velocities, *resting.velocities.tolist())) as at_rest:
             return use(Driving(free, driven, given.coordinates, resting, at_rest, tolerance))
 
 

@@ -13,7 +13,6 @@ from pinocchio import SE3
 from eurdf.array import Vector
 from eurdf.kinematics.assembly import assembled, measured, start
 from eurdf.kinematics.blocks import checked_rows, shape_of
-from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.frame_jacobian import frames_of
 from eurdf.kinematics.inverse_search import InverseKinematicsReason, InverseTask, Target, search
 from eurdf.kinematics.named import Named
@@ -25,6 +24,7 @@ from eurdf.kinematics.tolerances import (
     SOLVED,
 )
 from eurdf.pinocchio.arguments import checked_array, checked_count, checked_tolerance
+from eurdf.pinocchio.memory import working_memory
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -150,7 +150,7 @@ def inverse_kinematics(
         else Target(np.array(target)[None])
         for is_pose, target in zip(poses, checked.values(), strict=True)
     ]
-    with borrowed(robot, Problem) as problem, borrowed(robot, frames_of, *checked) as frames:
+    with working_memory(robot, Problem) as problem, working_memory(robot, frames_of, *checked) as frames:
         task = InverseTask(problem, frames, poses, chosen, tolerance, restarts)
         found = search(task, goals, q[None])
         at_limits = found.at_limits[0]

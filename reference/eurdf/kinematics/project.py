@@ -13,7 +13,6 @@ import numpy as np
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.errors import NotClosable
 from eurdf.kinematics.assembly import assembled, close, start
-from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.named import Named, velocity_of
 from eurdf.kinematics.problem import Problem
@@ -22,6 +21,7 @@ from eurdf.kinematics.residual import acceleration_drift, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpace, TangentSpaces, metric, nearest
 from eurdf.kinematics.tolerances import RESTARTS, SOLVED
 from eurdf.pinocchio.arguments import checked_tolerance
+from eurdf.pinocchio.memory import working_memory
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -61,7 +61,7 @@ def project_configuration(
     """
     W, tolerance = metric(weights, robot.tree.nv), checked_tolerance(tolerance)
     q = start(robot, q, "q")
-    with borrowed(robot, Problem) as problem:
+    with working_memory(robot, Problem) as problem:
         found, closed = nearest_closed(ProjectionTask(problem, W, tolerance), q[None])
         if not closed[0]:
             finite("the residual", problem.residual(q[None]))
@@ -182,7 +182,7 @@ def project_velocity(robot: Robot, q: Named, v: Named, *, weights: Vector | Matr
     W = metric(weights, robot.tree.nv)
     v = velocity_of(robot, v)
     _, K = residual_and_jacobian(robot, start(robot, q, "q"))
-    projected = nearest(derived(robot, TangentSpaces).at(K).basis, W, v)
+    projected = nearest(robot.cached(TangentSpaces).at(K).basis, W, v)
     finite("the velocity", projected)
     return projected
 
@@ -214,7 +214,7 @@ def project_acceleration(
     W = metric(weights, robot.tree.nv)
     v, a, q = velocity_of(robot, v), velocity_of(robot, a, "a"), start(robot, q, "q")
     _, K = residual_and_jacobian(robot, q)
-    space = derived(robot, TangentSpaces).at(K)
+    space = robot.cached(TangentSpaces).at(K)
     forced = -space.inverse @ acceleration_drift(robot, q, v)
     projected = forced + nearest(space.basis, W, a - forced)
     finite("the acceleration", projected)

@@ -11,7 +11,6 @@ from pinocchio import LOCAL
 from eurdf.array import Indices, Mask, Matrix, Vector, numbers
 from eurdf.errors import DependentActuators
 from eurdf.kinematics.assembly import start
-from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.frame_jacobian import checked_reference, frame_jacobian, frames_of, in_reference
 from eurdf.kinematics.named import Named
@@ -20,6 +19,7 @@ from eurdf.kinematics.rank import numerical_rank, numerical_ranks
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces, metric, orthonormal
 from eurdf.pinocchio.arguments import checked_array
+from eurdf.pinocchio.memory import working_memory
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -55,7 +55,7 @@ def dq_dq_actuated(robot: Robot, q: Named, *, weights: Vector | Matrix | None = 
     q = start(robot, q, "q")
     W = None if weights is None else metric(weights, robot.tree.nv)
     velocities = robot.actuation.idx_v
-    with borrowed(robot, Problem) as free, borrowed(robot, Problem, tuple(velocities.tolist())) as driven:
+    with working_memory(robot, Problem) as free, working_memory(robot, Problem, tuple(velocities.tolist())) as driven:
         (D,), (dependent,) = _derivatives(free, driven, W, q[None])
         if dependent:
             _refuse_dependent(robot, free, q)
@@ -91,8 +91,8 @@ def actuated_jacobian(
     """
     q, W = start(robot, q, "q"), None if weights is None else metric(weights, robot.tree.nv)
     velocities = tuple(robot.actuation.idx_v.tolist())
-    with borrowed(robot, Problem) as free, borrowed(robot, Problem, velocities) as driven:
-        with borrowed(robot, frames_of, frame) as frames:
+    with working_memory(robot, Problem) as free, working_memory(robot, Problem, velocities) as driven:
+        with working_memory(robot, frames_of, frame) as frames:
             (J,), (dependent,) = actuated_jacobians(
                 JacobianTask(free, driven, frames, checked_reference(reference), W), q[None]
             )
@@ -225,7 +225,7 @@ def differential_inverse_kinematics(
     if not 0.0 < singular < 1.0:
         raise ValueError(f"singular is {singular!r}; give a number between 0 and 1")
     q = start(robot, q, "q")
-    spaces = derived(robot, TangentSpaces)
+    spaces = robot.cached(TangentSpaces)
     C = _actuated_motions(robot, q, spaces)
     J = frame_jacobian(robot, q, frame, reference)
     scale = np.array((1.0 / spaces.length,) * 3 + (1.0,) * 3)

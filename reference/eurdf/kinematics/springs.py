@@ -12,7 +12,6 @@ import numpy as np
 
 from eurdf.array import Indices, Matrix, Vector
 from eurdf.kinematics.assembly import close
-from eurdf.kinematics.derived import derived
 from eurdf.kinematics.named import Named, configuration_of
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import numerical_rank
@@ -91,7 +90,7 @@ def joints_at_rest(robot: Robot, given: Indices) -> Resting | None:
         act on one coordinate.
     """
     held = set(given.tolist())
-    free = [each for each in derived(robot, _sprung) or () if each[2][0] not in held]
+    free = [each for each in robot.cached(_sprung) or () if each[2][0] not in held]
     if not free:
         return None
     names, coordinates, velocities, values = zip(*free, strict=True)

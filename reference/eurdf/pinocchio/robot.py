@@ -18,6 +18,7 @@ from eurdf.pinocchio.actuation import Actuation, build_actuation
 from eurdf.pinocchio.configuration import Slot, configuration_vector, joint_coordinates, slots
 from eurdf.pinocchio.constraint import build_constraint_models
 from eurdf.pinocchio.geometry import MeshCache, Resolve, build_geometry, meshes_of
+from eurdf.pinocchio.memory import Cached
 from eurdf.pinocchio.meshes import Mesh
 from eurdf.pinocchio.model import build_model
 from eurdf.pinocchio.tree import Tree, build_tree
@@ -31,7 +32,7 @@ class Geometry(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Robot:
+class Robot(Cached):
     """A robot with closed kinematic chains, in Pinocchio's terms.
 
     It unpacks as ``model, constraint_models, actuation, visual_model, collision_model = robot``, which raises

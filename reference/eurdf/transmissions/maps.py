@@ -18,7 +18,6 @@ import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.errors import NotClosable
-from eurdf.kinematics.derived import derived
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import numerical_ranks
 from eurdf.kinematics.residual import all_openings, drift_of_pairs, residual_and_jacobian
@@ -103,7 +102,7 @@ def maps_at(robot: Robot, task: Task, q: Vector) -> tuple[Maps, Matrix]:
     r, K = residual_and_jacobian(robot, q)
     if not (np.abs(r) <= CLOSED).all():
         raise NotClosable("q does not close the loops; call eurdf.assemble first", all_openings(robot, q), q)
-    spaces = derived(robot, TangentSpaces)
+    spaces = robot.cached(TangentSpaces)
     found, motions = _maps(task, (spaces.at(K).free / spaces.scale[:, None])[None])
     return found, motions[0]
 
@@ -275,7 +274,7 @@ def second_derivative(robot: Robot, q: Vector, Z: Matrix, joints: Indices, motor
     """
     N = Z @ np.linalg.pinv(Z[joints])
     _, K = residual_and_jacobian(robot, q)
-    space = derived(robot, TangentSpaces).at(K)
+    space = robot.cached(TangentSpaces).at(K)
     still = np.concatenate((joints, held))
     back = space.free @ np.linalg.pinv(space.free[still], rcond=_REDUNDANT)
 

@@ -14,7 +14,6 @@ import pinocchio as pin
 
 from eurdf.array import Matrix, Vector
 from eurdf.closures.se3 import quaternion_of
-from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.evaluate import Frames, frames_at
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.residual import all_openings
@@ -22,6 +21,7 @@ from eurdf.mechanism.body import Anchor, Inertia
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.pose import direction
 from eurdf.pinocchio.frames import body_frame_ids, placement_of
+from eurdf.pinocchio.memory import working_memory
 from eurdf.viewing.surface import Surface, sphere, surface_of
 
 if TYPE_CHECKING:
@@ -184,7 +184,7 @@ class Scene:
 
     def at(self, q: Vector) -> Placed:
         """Where everything is at a configuration (nq,)."""
-        with borrowed(self.robot, _body_frames) as memory:
+        with working_memory(self.robot, _body_frames) as memory:
             (rotations,), (origins,) = memory.poses(memory.at(q[None]))
             poses = np.concatenate((origins, quaternion_of(rotations)), axis=1)
             return Placed(poses, all_openings(self.robot, q))
