@@ -25,7 +25,7 @@ from eurdf.kinematics.equation_of_motion import EquationOfMotion, by_joint, per_
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.forward_solver import ForwardSolver
 from eurdf.kinematics.inverse_solver import InverseSolver
-from eurdf.kinematics.named import Named, velocity_of
+from eurdf.kinematics.named import Named, motor_values_of, velocity_of
 from eurdf.kinematics.tolerances import FORCES_SOLVED, MASSLESS
 from eurdf.pinocchio.arguments import checked_array, checked_tolerance
 from eurdf.pinocchio.memory import working_memory
@@ -133,7 +133,7 @@ def inverse_dynamics(
     tau: Named | None = None,
     external: External | None = None,
     dissipation: bool = False,
-    weights: Vector | None = None,
+    weights: Named | None = None,
     tolerance: float = 1e-6,
     data: Any = None,
 ) -> InverseDynamics:
@@ -326,12 +326,9 @@ def _refuse_uncontrolled(
         raise UnderactuatedMotion(by_joint(tree, force), float(np.abs(deviation / motion.unit).max()))
 
 
-def _norm(robot: Robot, weights: Vector | None) -> Vector:
+def _norm(robot: Robot, weights: Named | None) -> Vector:
     """1/√w (nu,)."""
-    nu = robot.actuation.selection.shape[1]
-    if weights is None:
-        return np.ones(nu)
-    given = checked_array("weights", weights, (nu,))
+    given = motor_values_of(robot, {} if weights is None else weights, "weights", others=1.0)
     if not (given > 0.0).all():
         raise ValueError(f"weights[{int(np.argmin(given))}] is {given.min()}; expected positive numbers")
     return np.asarray(1.0 / np.sqrt(given))

@@ -35,7 +35,7 @@ _DIFFERENCE = 1e-6
 
 @overflow_refused("the configuration")
 def project_configuration(
-    robot: Robot, q: Named, *, weights: Vector | Matrix | None = None, tolerance: float = SOLVED
+    robot: Robot, q: Named, *, weights: Named | Matrix | None = None, tolerance: float = SOLVED
 ) -> Vector:
     """The closed configuration nearest to q.
 
@@ -59,7 +59,7 @@ def project_configuration(
         NotClosable: No closed configuration was found; the error lists the closures that stay open.
         ValueError: ``q`` is not a configuration, or ``weights`` is not a metric.
     """
-    W, tolerance = metric(weights, robot.tree.nv), checked_tolerance(tolerance)
+    W, tolerance = metric(robot, weights), checked_tolerance(tolerance)
     q = start(robot, q, "q")
     with working_memory(robot, Problem) as problem:
         found, closed = nearest_closed(ProjectionTask(problem, W, tolerance), q[None])
@@ -161,7 +161,7 @@ def _second_derivatives(
 
 
 @overflow_refused("the velocity")
-def project_velocity(robot: Robot, q: Named, v: Named, *, weights: Vector | Matrix | None = None) -> Vector:
+def project_velocity(robot: Robot, q: Named, v: Named, *, weights: Named | Matrix | None = None) -> Vector:
     """The velocity nearest to v that keeps the loops closed.
 
     The orthogonal projection onto ker K(q): v' = Z (Zᵀ W Z)⁻¹ Zᵀ W v with K Z = 0, which minimises (v' - v)ᵀ W (v' - v)
@@ -179,7 +179,7 @@ def project_velocity(robot: Robot, q: Named, v: Named, *, weights: Vector | Matr
     Raises:
         ValueError: ``q`` or ``v`` has another shape or is not finite, or ``weights`` is not a metric.
     """
-    W = metric(weights, robot.tree.nv)
+    W = metric(robot, weights)
     v = velocity_of(robot, v)
     _, K = residual_and_jacobian(robot, start(robot, q, "q"))
     projected = nearest(robot.cached(TangentSpaces).at(K).basis, W, v)
@@ -189,7 +189,7 @@ def project_velocity(robot: Robot, q: Named, v: Named, *, weights: Vector | Matr
 
 @overflow_refused("the acceleration")
 def project_acceleration(
-    robot: Robot, q: Named, v: Named, a: Named, *, weights: Vector | Matrix | None = None
+    robot: Robot, q: Named, v: Named, a: Named, *, weights: Named | Matrix | None = None
 ) -> Vector:
     """The acceleration nearest to a that keeps the loops closed.
 
@@ -211,7 +211,7 @@ def project_acceleration(
     Raises:
         ValueError: ``q``, ``v`` or ``a`` has another shape or is not finite, or ``weights`` is not a metric.
     """
-    W = metric(weights, robot.tree.nv)
+    W = metric(robot, weights)
     v, a, q = velocity_of(robot, v), velocity_of(robot, a, "a"), start(robot, q, "q")
     _, K = residual_and_jacobian(robot, q)
     space = robot.cached(TangentSpaces).at(K)

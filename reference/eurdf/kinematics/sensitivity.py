@@ -29,7 +29,7 @@ _PART = 1e-6
 
 
 @overflow_refused("the derivative")
-def dq_dq_actuated(robot: Robot, q: Named, *, weights: Vector | Matrix | None = None) -> Matrix:
+def dq_dq_actuated(robot: Robot, q: Named, *, weights: Named | Matrix | None = None) -> Matrix:
     """Derivative of the closed configuration with respect to the actuated coordinates: v = D u.
 
     D solves K D = 0, Sᵀ D = 1. Of all solutions, each column of D is the one with the least norm in the metric W, so
@@ -53,7 +53,7 @@ def dq_dq_actuated(robot: Robot, q: Named, *, weights: Vector | Matrix | None = 
         ValueError: ``q`` is not a configuration, or ``weights`` is not a metric.
     """
     q = start(robot, q, "q")
-    W = None if weights is None else metric(weights, robot.tree.nv)
+    W = None if weights is None else metric(robot, weights)
     velocities = robot.actuation.idx_v
     with working_memory(robot, Problem) as free, working_memory(robot, Problem, tuple(velocities.tolist())) as driven:
         (D,), (dependent,) = _derivatives(free, driven, W, q[None])
@@ -65,7 +65,7 @@ def dq_dq_actuated(robot: Robot, q: Named, *, weights: Vector | Matrix | None = 
 
 @overflow_refused("the Jacobian")
 def actuated_jacobian(
-    robot: Robot, frame: str, q: Named, *, reference: Any = LOCAL, weights: Vector | Matrix | None = None
+    robot: Robot, frame: str, q: Named, *, reference: Any = LOCAL, weights: Named | Matrix | None = None
 ) -> Matrix:
     """Jacobian of a frame with respect to the actuated velocities: its twist is J D u.
 
@@ -89,7 +89,7 @@ def actuated_jacobian(
         DependentActuators: As in `dq_dq_actuated`.
         ValueError: The frame is unknown or ambiguous, ``q`` is not a configuration, or ``weights`` is not a metric.
     """
-    q, W = start(robot, q, "q"), None if weights is None else metric(weights, robot.tree.nv)
+    q, W = start(robot, q, "q"), None if weights is None else metric(robot, weights)
     velocities = tuple(robot.actuation.idx_v.tolist())
     with working_memory(robot, Problem) as free, working_memory(robot, Problem, velocities) as driven:
         with working_memory(robot, frames_of, frame) as frames:

@@ -164,11 +164,13 @@ class Robot(Cached):
         """
         return configuration_vector(self.mechanism, self.model, positions, self.slots)
 
-    def joint_positions(self, q: Vector, *, mimic: bool = False) -> dict[str, tuple[float, ...]]:
+    def joint_positions(
+        self, q: Vector | Mapping[str, float | Sequence[float]], *, mimic: bool = False
+    ) -> dict[str, tuple[float, ...]]:
         """The positions of the joints at a configuration, as a file states them: the inverse of `configuration`.
 
         Args:
-            q: Configuration, of shape (nq,).
+            q: Configuration (nq,), or positions by name as `configuration` takes them.
             mimic: Whether to return also those of joints that mimic another, which follow from that one's.
 
         Returns:
@@ -181,6 +183,7 @@ class Robot(Cached):
         Raises:
             ValueError: q does not have the shape (nq,), or is not finite.
         """
+        q = self.configuration(q) if isinstance(q, Mapping) else q
         every = joint_coordinates(self.mechanism, self.model, q)
         own = (name for name in every if mimic or name in self.slots or name == ROOT_JOINT)
         return {name: every[name] for name in own}

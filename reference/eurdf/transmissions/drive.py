@@ -26,7 +26,6 @@ from eurdf.kinematics.tolerances import (
     MOST_CORRECTION,
     MOVES,
 )
-from eurdf.pinocchio.arguments import checked_array
 from eurdf.pinocchio.memory import working_memory
 from eurdf.transmissions.selection import Selection, listed
 from eurdf.transmissions.transmission import Transmission, at_one
@@ -116,7 +115,6 @@ class Drive:
             NoTransmission: The given joints do not determine the others there.
             ValueError: ``positions`` does not fit.
         """
-        positions = checked_array("positions", positions, (len(self.given),))
         there, D = self._followed(q, positions)
         if D is None:
             D, _ = self._decomposed(there)
