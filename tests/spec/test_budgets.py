@@ -63,6 +63,17 @@ def test_a_number_is_stated_once() -> None:
     assert not {constant: sorted(modules) for constant, modules in found.items() if len(modules) > 1}
 
 
+def test_a_class_has_a_name_of_its_own() -> None:
+    found: dict[str, set[str]] = defaultdict(set)
+    for module, text in SOURCES.items():
+        for node in ast.walk(ast.parse(text)):
+            if isinstance(node, ast.ClassDef):
+                found[node.name.strip("_")].add(module)
+    named_twice = {name: sorted(modules) for name, modules in found.items() if len(modules) > 1}
+    # The results of `eurdf.batch` have the names of its functions.
+    assert named_twice.keys() <= {"InverseKinematics"}, named_twice
+
+
 def test_a_module_has_one_subject() -> None:
     count = {name: len(text.splitlines()) for name, text in SOURCES.items() if not name.endswith("__init__.py")}
     short = {name: of for name, of in count.items() if of <= 45}

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from eurdf.pinocchio.tree import Tree
 
 
-class _Group(NamedTuple):
+class _SameKind(NamedTuple):
     """The closures of one kind.
 
     Attributes:
@@ -88,7 +88,7 @@ class Evaluator:
             first.append(self.m)
             self.m += constraint.rows
         self._sites: list[Pair] = []
-        self._groups: list[_Group] = []
+        self._groups: list[_SameKind] = []
         self._couplings: tuple[Couplings, slice | Indices, slice | Indices] | None = None
         for kind, found in members.items():
             own: list[Any] = [constraints[index] for index in found]
@@ -101,7 +101,7 @@ class Evaluator:
                 raise NotImplementedError(f"constraint '{own[0].name}' has the type '{kind.type}', which has no kind")
             pairs = slice(len(self._sites), len(self._sites) + len(own))
             self._sites += [(tree.site(each.a), tree.site(each.b)) for each in own]
-            self._groups.append(_Group(kind, kind.prepare(own), indices, pairs, chosen, len(rows)))
+            self._groups.append(_SameKind(kind, kind.prepare(own), indices, pairs, chosen, len(rows)))
         # The rows of the residual are those of one kind, in order.
         self._is_plain = self._couplings is None and len(self._groups) == 1
         self._tree: Tree | None = tree

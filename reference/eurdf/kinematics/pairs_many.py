@@ -20,7 +20,7 @@ from eurdf.kinematics.tree_many import IDENTITY, Node, TreeMany
 from eurdf.pinocchio.ancestry import between
 
 
-class _Chain:
+class _Subtree:
     """Some nodes of a tree, level by level; a parent that is not among them is at rest at the origin.
 
     Row 0 of what it computes is of the origin.
@@ -248,7 +248,7 @@ class ManyPairs:
         signs = [between(tree.parents, a.joint, b.joint) for a, b in pairs]
         joints = sorted(set().union(*signs))
         joint_of = {number: joint for joint in joints for number in tree.own[joint]}
-        self._chain = chain = _Chain(tree, joint_of)
+        self._chain = chain = _Subtree(tree, joint_of)
         self._rows = np.array(
             [chain.row.get(tree.node_of(end.joint), 0) for pair in zip(*pairs, strict=True) for end in pair],
             dtype=np.intp,

@@ -124,7 +124,7 @@ def simulate(
         raise NotClosable("the simulation cannot start from an open configuration", assembly.open, assembly.q)
     callers = np.geterr()
     with working_memory(robot, ForwardSolver) as solver, np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        motion = _Motion(robot, solver, control, callers, AppliedForce(robot, external, dissipation), step)
+        motion = _Integration(robot, solver, control, callers, AppliedForce(robot, external, dissipation), step)
         initial = velocity_of(robot, {} if v is None else v)
         qs[0], vs[0] = motion.closed(0.0, assembly.q, initial, 0)
         kinetic[0], potential[0] = motion.energies(qs[0], vs[0])
@@ -137,7 +137,7 @@ def simulate(
     return simulation
 
 
-class _Motion:
+class _Integration:
     """The motion of a robot, step by step."""
 
     def __init__(

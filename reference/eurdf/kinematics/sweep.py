@@ -11,7 +11,7 @@ import numpy as np
 from eurdf.array import Mask, Matrix, Vector
 from eurdf.errors import NotClosable
 from eurdf.kinematics.assembly import assemble
-from eurdf.kinematics.branch import Branch, Point
+from eurdf.kinematics.branch import Branch, BranchPoint
 from eurdf.kinematics.named import Named
 from eurdf.kinematics.path import Elements, follow
 from eurdf.kinematics.position_limit import PositionLimits, chosen_limits
@@ -131,7 +131,7 @@ def sweep(
 
 
 @dataclass(frozen=True, slots=True)
-class _Drive:
+class _MovedActuator:
     """The actuator that is moved.
 
     Attributes:
@@ -147,7 +147,7 @@ class _Drive:
     ends: tuple[End, End]
 
 
-def _drive(robot: Robot, actuator: str, q: Vector, limits: PositionLimits | None) -> _Drive:
+def _drive(robot: Robot, actuator: str, q: Vector, limits: PositionLimits | None) -> _MovedActuator:
     if actuator not in robot.actuation.joints:
         raise ValueError(f"'{actuator}' is not an actuated joint of this robot")
     velocities = robot.tree.velocities_of(actuator)
@@ -161,7 +161,7 @@ def _drive(robot: Robot, actuator: str, q: Vector, limits: PositionLimits | None
     farthest = characteristic_length(robot) if kind.slides else math.pi
     without: End = "characteristic length" if kind.slides else "half turn"
     lower, upper = (-math.inf, math.inf) if limits is None else (limits.lower[velocity], limits.upper[velocity])
-    return _Drive(
+    return _MovedActuator(
         velocity,
         at,
         (
@@ -184,7 +184,7 @@ class _Trail:
         joint: The passive joint that ended it, else None.
     """
 
-    points: list[Point]
+    points: list[BranchPoint]
     configurations: list[Vector]
     moved: float
     end: End | None
@@ -195,7 +195,7 @@ class _Trail:
         """The largest of the smallest singular values of K_p on it."""
         return max(point.smallest for point in self.points)
 
-    def path(self, drive: _Drive, end: End, largest: float) -> MotionPath:
+    def path(self, drive: _MovedActuator, end: End, largest: float) -> MotionPath:
         """The public form of the path.
 
         Args:
@@ -215,7 +215,7 @@ class _Trail:
         )
 
 
-def _follow(branch: Branch, start: Point, reach: float, steps: int, largest: float) -> _Trail:
+def _follow(branch: Branch, start: BranchPoint, reach: float, steps: int, largest: float) -> _Trail:
     """Move the actuator by at most ``reach`` (rad or m); ``largest`` is that of the points met before."""
     points, configurations = [start], [start.q]
     end: End | None = None

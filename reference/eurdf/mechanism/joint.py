@@ -17,7 +17,7 @@ LIMIT_TOLERANCE = 1e-9
 _NO_RANGE = (-math.inf, math.inf)
 
 
-class Motion(NamedTuple):
+class ElementaryMotion(NamedTuple):
     """What a coordinate of a joint does, or the four of a quaternion.
 
     Attributes:
@@ -31,7 +31,7 @@ class Motion(NamedTuple):
     advance: float
 
 
-_BALL = Motion(None, turns=True, advance=0.0)
+_BALL = ElementaryMotion(None, turns=True, advance=0.0)
 
 
 class Mimic(NamedTuple):
@@ -149,7 +149,7 @@ class Joint:
         return Joint(self.name, JointType.FIXED, self.parent, self.child, *at)
 
     @property
-    def motions(self) -> tuple[Motion, ...]:
+    def motions(self) -> tuple[ElementaryMotion, ...]:
         """EU-JNT-015 to -018, EU-JNT-025: the steps of its type, with its axes and its pitch."""
         found = []
         for kind, at in self.type.steps:
@@ -157,7 +157,9 @@ class Joint:
                 found.append(_BALL)
                 continue
             lead = self.pitch / (2.0 * math.pi) if kind == "screw" else float(kind == "slide")
-            found.append(Motion(direction(self.axes[at]) if isinstance(at, int) else at, kind != "slide", lead))
+            found.append(
+                ElementaryMotion(direction(self.axes[at]) if isinstance(at, int) else at, kind != "slide", lead)
+            )
         return tuple(found)
 
     def transform(self, coordinates: Sequence[float]) -> Pose:

@@ -31,7 +31,7 @@ from eurdf.kinematics.tolerances import (
 )
 from eurdf.mechanism.constraint import Closure, Constraint, Coupling
 from eurdf.mechanism.joint import Joint, Mimic
-from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
+from eurdf.mechanism.pose import IDENTITY, ORIGIN, Pose, Vector3, cross, direction
 from eurdf.pinocchio.mimic import following
 from eurdf.transmissions.drive import MOST_SUBSTEPS, SINGULAR, Drive
 from eurdf.writing.output_folder import write_files
@@ -43,7 +43,6 @@ if TYPE_CHECKING:
 _KINDS = {type_: module.upper() for type_, module in MODULES.items()} | {Coupling.type: "COUPLING"}
 
 _X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
-_HERE = (0.0, 0.0, 0.0)
 
 # Given velocities are independent if none of them opens the loops by more, dimensionless.
 _DETERMINED = 1e-6
@@ -198,7 +197,7 @@ def _screws(
     found = []
     for k, (axis, turns, advance) in enumerate(joint.motions):
         numbers = parent, int(axis is None), int(turns), coordinate + k, velocity + k
-        along = [advance * each for each in axis] if axis and advance else _HERE
+        along = [advance * each for each in axis] if axis and advance else ORIGIN
         frame = f"{_rotation(pose)}, {_vector(pose.xyz)}, {_vector(axis or _Z)}, {_vector(along)}"
         found.append(f"{{{', '.join(map(str, numbers))}, {_number(factor)}, {_number(offset)}, {frame}}}")
         parent, pose = number + k, IDENTITY
@@ -328,12 +327,8 @@ def _constraint(constraint: Constraint, tables: _Tables, first: int, last: int, 
 def _across(a: Vector3) -> tuple[Vector3, Vector3]:
     """Two unit vectors across a unit vector and each other."""
     least = min(range(3), key=lambda k: abs(a[k]))
-    first = direction(_cross(a, (_X, _Y, _Z)[least]))
-    return first, _cross(a, first)
-
-
-def _cross(u: Vector3, v: Vector3) -> Vector3:
-    return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
+    first = direction(cross(a, (_X, _Y, _Z)[least]))
+    return first, cross(a, first)
 
 
 def _drive(number: int, drive: Drive, tables: _Tables, place: Mapping[int, int], rows: Mapping[int, slice]) -> str:

@@ -166,7 +166,7 @@ def serial_limits(
 
 
 @dataclass(frozen=True, eq=False)
-class _Task:
+class _LimitsTask:
     """What is the same at all configurations: names, the ranges of the motors, and the ratios of the boxes."""
 
     joints: tuple[str, ...]
@@ -197,14 +197,16 @@ def _task(
     motors: Selection,
     torque_ratio: Named | None,
     velocity_ratio: Named | None,
-) -> _Task:
+) -> _LimitsTask:
     given = {"torque_ratio": torque_ratio, "velocity_ratio": velocity_ratio}
     ratios = [_checked_ratio(name, ratio, at.joints) for name, ratio in given.items()]
     _complete(at, "q") if isinstance(at, Transmission) else _all_complete(at)
-    return _Task(at.joints, at.motors, *finite_ranges(robot, motors.names, motors.velocities), *ratios)
+    return _LimitsTask(at.joints, at.motors, *finite_ranges(robot, motors.names, motors.velocities), *ratios)
 
 
-def _common(task: _Task, at: Transmissions, margins: tuple[float | None, float | None] = (None, None)) -> CommonLimits:
+def _common(
+    task: _LimitsTask, at: Transmissions, margins: tuple[float | None, float | None] = (None, None)
+) -> CommonLimits:
     """The limits at several configurations; boxes are made smaller by the margins."""
     found = [task.limits(G) for G in _all_complete(at)]
     torque, torque_bounded = _common_box([each.torque for each in found], task.torque_ratio)

@@ -33,7 +33,7 @@ _REDUNDANT = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Task:
+class MapsTask:
     """What is the same at all configurations.
 
     Attributes:
@@ -75,7 +75,7 @@ class Maps(NamedTuple):
     blocked: Mask
 
 
-def maps(task: Task, q: Matrix) -> Maps:
+def maps(task: MapsTask, q: Matrix) -> Maps:
     """The maps at closed configurations (b, nq)."""
     problem, b, nm, nJ = task.problem, len(q), len(task.motors), len(task.joints)
     closed = (np.abs(problem.residual(q)) <= CLOSED).all(axis=1)
@@ -93,7 +93,7 @@ def maps(task: Task, q: Matrix) -> Maps:
     return found
 
 
-def maps_at(robot: Robot, task: Task, q: Vector) -> tuple[Maps, Matrix]:
+def maps_at(robot: Robot, task: MapsTask, q: Vector) -> tuple[Maps, Matrix]:
     """The maps at one configuration (nq,), and its motions (nv, m), orthonormal and dimensionless.
 
     Raises:
@@ -107,7 +107,7 @@ def maps_at(robot: Robot, task: Task, q: Vector) -> tuple[Maps, Matrix]:
     return found, motions[0]
 
 
-def _maps(task: Task, Z: Matrix) -> tuple[Maps, Matrix]:
+def _maps(task: MapsTask, Z: Matrix) -> tuple[Maps, Matrix]:
     """The maps of orthonormal motions (c, nv, m), and these without what springs hold; with springs, c is 1."""
     c, scale = len(Z), task.problem.spaces.scale
     held, blocked = np.zeros((c, len(task.springs)), dtype=bool), np.zeros(c, dtype=bool)
@@ -138,7 +138,7 @@ def pseudoinverse(A: Matrix) -> tuple[Matrix, Indices]:
     return np.swapaxes(left * inverse[:, None, :] @ right, 1, 2), ranks
 
 
-def _with_springs_held(task: Task, Z: Matrix) -> tuple[Matrix, Mask, bool]:
+def _with_springs_held(task: MapsTask, Z: Matrix) -> tuple[Matrix, Mask, bool]:
     """The motions (nv, m) that keep the springs, which springs hold, and whether they block actuators."""
     driven = Z[task.driven]
     own = Z @ _null_space(driven)

@@ -15,7 +15,7 @@ from eurdf.kinematics.problem import Problem, for_many
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.kinematics.tolerances import MOVES, SOLVED
 from eurdf.pinocchio.memory import working_memory
-from eurdf.transmissions.maps import Task, maps_at, pseudoinverse
+from eurdf.transmissions.maps import MapsTask, maps_at, pseudoinverse
 from eurdf.transmissions.selection import Selection, listed, selection
 
 if TYPE_CHECKING:
@@ -187,7 +187,7 @@ def unlimited_motors(robot: Robot, motors: Selection) -> tuple[str, ...]:
 def _moved(robot: Robot, velocities: Indices) -> Mask:
     """Which actuated velocities (nu,) move these velocities at some configurations; all if the loops do not close."""
     actuated, scale = robot.actuation.idx_v, robot.cached(TangentSpaces).scale
-    task = Task(for_many(robot), actuated, velocities, actuated, springs_of(robot))
+    task = MapsTask(for_many(robot), actuated, velocities, actuated, springs_of(robot))
     random = np.random.default_rng(0)
     found = np.zeros(len(actuated), dtype=bool)
     with working_memory(robot, Problem) as problem:

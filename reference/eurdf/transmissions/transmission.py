@@ -17,7 +17,7 @@ from eurdf.kinematics.finite import overflow_refused
 from eurdf.kinematics.named import Named, vector_of
 from eurdf.kinematics.problem import for_many
 from eurdf.loading import of_any_robot
-from eurdf.transmissions.maps import Maps, Task, maps, maps_at, pseudoinverse, reasons, second_derivative
+from eurdf.transmissions.maps import Maps, MapsTask, maps, maps_at, pseudoinverse, reasons, second_derivative
 from eurdf.transmissions.motors import sides, springs_of
 from eurdf.transmissions.selection import Selection
 
@@ -312,9 +312,9 @@ def at_many(robot: Robot, joints: Selection, q: Matrix, motors: Selection) -> Tr
     return Transmissions(robot, q, joints.names, motors.names, at.G, at.B_J, *ranks, at.condition, *why, motors, joints)
 
 
-def _task(robot: Robot, motors: Selection, joints: Selection) -> Task:
+def _task(robot: Robot, motors: Selection, joints: Selection) -> MapsTask:
     driven = np.union1d(robot.actuation.idx_v, motors.velocities)
-    return Task(for_many(robot), motors.velocities, joints.velocities, driven, springs_of(robot))
+    return MapsTask(for_many(robot), motors.velocities, joints.velocities, driven, springs_of(robot))
 
 
 def _codes(at: Maps, own: Indices, count: int) -> tuple[Reason | None, ...]:

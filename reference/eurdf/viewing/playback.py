@@ -191,7 +191,7 @@ def gravity_frames(session: Session, show: Show, *, dissipation: bool, held: boo
     """
     budget = StepBudget()
     q: Vector = np.full(session.robot.tree.nq, np.nan)
-    fall = _Fall(session.robot, held)
+    fall = _GravityMotion(session.robot, held)
     thread = ThreadPoolExecutor(1, "eurdf viewer gravity")
     try:
         while True:
@@ -244,7 +244,7 @@ class StepBudget:
         self.steps = int(min(max(room, 1.0), 2.0 * self.steps, _STEPS))
 
 
-class _Fall:
+class _GravityMotion:
     """A motion under gravity, computed part by part.
 
     Where the motion is fast, as near a singularity, the time step gets shorter, so that the loops stay closed.

@@ -23,7 +23,7 @@ _MOST_CLOSURES = 12
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class ChosenTypes:
     """The types that were chosen.
 
     Attributes:
@@ -63,7 +63,7 @@ class _Candidate:
         return sum(map(len, self.dependent)) + self.locked
 
 
-def choose_types(mechanism: Mechanism, undecided: Iterable[str], called: Sequence[str]) -> Choice:
+def choose_types(mechanism: Mechanism, undecided: Iterable[str], called: Sequence[str]) -> ChosenTypes:
     """Choose between 3d and 6d for the closures whose names state neither.
 
     A closure is 6d, as where version 1 does not state its type, unless the loops then cannot close, or are locked, or
@@ -86,7 +86,7 @@ def choose_types(mechanism: Mechanism, undecided: Iterable[str], called: Sequenc
             chosen, note = _choose(part, names, words)
             types.update(chosen.types)
             notes.append(note)
-    return Choice(types, tuple(notes))
+    return ChosenTypes(types, tuple(notes))
 
 
 def _groups(mechanism: Mechanism) -> list[list[str]]:

@@ -12,7 +12,7 @@ from eurdf.diagnostics import FileError
 from eurdf.diagnostics.lines import BREAK
 from eurdf.format.closure_model import AXES, CLOSURE, FrameReference, NamedFrame
 from eurdf.format.conventions import VERSION2_0, VERSION2_1, is_own_key
-from eurdf.format.joint_model import JOINT, Joint, Overridden, Spherical
+from eurdf.format.joint_model import JOINT, JointEntry, Overridden, Spherical
 from eurdf.format.model import VERSION1, Description
 from eurdf.format.schema import FILES
 from eurdf.format.urdf.data import Urdf
@@ -74,7 +74,7 @@ def migrated(
     Raises:
         NotMigratable: Version 2 cannot say the same.
     """
-    migration = _Migration(description, urdf, merged, urdf_path, schema)
+    migration = _MigratedFile(description, urdf, merged, urdf_path, schema)
     return migration.text(), migration.notes
 
 
@@ -108,7 +108,7 @@ def own_keys(data: Iterable[str]) -> dict[str, str]:
 
 
 @dataclass(slots=True)
-class _Migration:
+class _MigratedFile:
     """One file at work; the fields are the arguments of `migrated`."""
 
     description: Description
@@ -231,7 +231,7 @@ class _Migration:
                 f"one joint with two angles, for two revolute joints of version 1: universal {_joints(split)}"
             )
 
-    def joint(self, entry: Joint) -> Value:
+    def joint(self, entry: JointEntry) -> Value:
         axes = tuple(AXES[letter] for letter in entry.split.lower())
         mimic = False if entry.name in self.mimicking else None
         written: Value = JOINT.write(type(entry)(type=entry.type, axes=axes, mimic=mimic))

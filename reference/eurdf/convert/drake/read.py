@@ -16,7 +16,7 @@ from eurdf.closures.point import PointClosure
 from eurdf.convert.import_format import LOCKED, ImportFormat, ImportInput, RobotRead, loss_kinds, without_locks
 from eurdf.convert.losses import approximate, dropped
 from eurdf.convert.names import UniqueNames
-from eurdf.convert.urdf.read import URDF_LOSSES, UrdfTree, read_tree
+from eurdf.convert.urdf.read import URDF_LOSSES, UrdfDialect, read_tree
 from eurdf.convert.xml_elements import Elements, local, named
 from eurdf.mechanism.body import Anchor, Frame
 from eurdf.mechanism.constraint import Closure, Coupling
@@ -55,7 +55,7 @@ _LOSSES = {
 
 
 @dataclass(slots=True)
-class _Joints:
+class _DrakeJoints:
     """The joints of Drake, while their elements become those of URDF.
 
     Attributes:
@@ -86,7 +86,7 @@ def read(given: ImportInput) -> RobotRead:
     Raises:
         CannotImport: It has an error.
     """
-    elements, joints = Elements(given.path), _Joints()
+    elements, joints = Elements(given.path), _DrakeJoints()
     tree = read_tree(
         given,
         _KNOWN,
@@ -101,7 +101,7 @@ def read(given: ImportInput) -> RobotRead:
     return RobotRead(mechanism, (given.path,))
 
 
-def _make_plain(root: etree._Element, elements: Elements, joints: _Joints) -> None:
+def _make_plain(root: etree._Element, elements: Elements, joints: _DrakeJoints) -> None:
     """Make the joints of Drake those of URDF, and state the limits that URDF asks for."""
     for joint in [child for child in root if isinstance(child.tag, str) and local(child) == "joint"]:
         name, kind = joint.get("name", ""), joint.get("type", "")
@@ -139,7 +139,7 @@ def _make_plain(root: etree._Element, elements: Elements, joints: _Joints) -> No
                     limit.set(attribute, value)
 
 
-def _as_in_drake(joint: Joint, joints: _Joints) -> Joint:
+def _as_in_drake(joint: Joint, joints: _DrakeJoints) -> Joint:
     """A joint with the type that it has in Drake."""
     stated = joints.kinds.get(joint.name)
     if stated is None:
@@ -171,7 +171,7 @@ def _on_the_world(mechanism: Mechanism) -> Mechanism:
     return mechanism
 
 
-def _frames(tree: UrdfTree) -> tuple[Frame, ...]:
+def _frames(tree: UrdfDialect) -> tuple[Frame, ...]:
     names = tree.frame_names()
     return tuple(
         Frame(
@@ -183,7 +183,7 @@ def _frames(tree: UrdfTree) -> tuple[Frame, ...]:
     )
 
 
-def _closures(tree: UrdfTree, names: UniqueNames) -> tuple[Closure, ...]:
+def _closures(tree: UrdfDialect, names: UniqueNames) -> tuple[Closure, ...]:
     """The ball constraints. A collision filter group names those of its two bodies that are before it."""
     found: list[Closure] = []
     group: list[tuple[Anchor, Anchor]] = []
@@ -219,7 +219,7 @@ def _closures(tree: UrdfTree, names: UniqueNames) -> tuple[Closure, ...]:
     return tuple(found)
 
 
-def _couplings(tree: UrdfTree, names: UniqueNames) -> tuple[Coupling, ...]:
+def _couplings(tree: UrdfDialect, names: UniqueNames) -> tuple[Coupling, ...]:
     joints = {joint.name for joint in tree.mechanism.joints}
     found = []
     for element in tree.children("tendon_constraint"):

@@ -57,7 +57,7 @@ def loop_left_out(concept: str) -> LossKind:
 
 
 @dataclass(frozen=True, slots=True)
-class UrdfTree:
+class UrdfDialect:
     """What a dialect shares with URDF.
 
     Attributes:
@@ -99,7 +99,7 @@ def read_tree(
     known: tuple[str, ...],
     plain: Callable[[etree._Element], None] | None = None,
     change: Callable[[Joint], Joint] | None = None,
-) -> UrdfTree:
+) -> UrdfDialect:
     """Read the links and joints of a file.
 
     Args:
@@ -146,7 +146,7 @@ def read_tree(
         if isinstance(element.tag, str) and local(element) not in (*_URDF, *known):
             losses.add("import-element", local(element))
     elements = Elements(path)
-    return UrdfTree(root, elements, _actuated(mechanism, root, elements, losses), losses)
+    return UrdfDialect(root, elements, _actuated(mechanism, root, elements, losses), losses)
 
 
 def _with_copy(shape: Shape, given: ImportInput) -> Shape:

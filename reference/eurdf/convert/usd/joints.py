@@ -9,11 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from eurdf.convert.parts import UPRIGHT
 from eurdf.convert.steps import AXES
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.pose import Pose, Quaternion, direction, turn_from_x
+from eurdf.mechanism.pose import IDENTITY_QUATERNION, Pose, Quaternion, direction, turn_from_x
 
 #: Axis tokens of directions that need no turn of the frame.
 _TOKENS = dict(zip(AXES, "XYZ", strict=True))
@@ -61,13 +60,13 @@ class Freedom:
 def axis_and_frame(joint: Joint) -> tuple[str, Quaternion]:
     """The axis token of a joint with one axis, and the orientation of the frames of the USD joint in those of it."""
     if not joint.axes:
-        return "", UPRIGHT
+        return "", IDENTITY_QUATERNION
     first, *others = map(direction, joint.axes)
     if others:
         columns = np.array((first, others[0]))
         return "", _columns(np.stack((*columns, np.cross(*columns)), axis=1))
     if joint.type.is_axial and first in _TOKENS:
-        return _TOKENS[first], UPRIGHT
+        return _TOKENS[first], IDENTITY_QUATERNION
     return "X" if joint.type.is_axial else "", turn_from_x(first)
 
 

@@ -66,7 +66,7 @@ class Fall:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Motion:
+class FallMotion:
     """What the causes of a simulation's errors are looked for in.
 
     Attributes:
@@ -101,7 +101,7 @@ class _Run:
 
 
 def simulate(
-    model: ReadModel, motion: Motion, seconds: float, progress: Callable[[float, float], None] | None
+    model: ReadModel, motion: FallMotion, seconds: float, progress: Callable[[float, float], None] | None
 ) -> tuple[Fall, Finding | None]:
     """Simulate a model, and say what is wrong with the motion, and why.
 
@@ -173,7 +173,7 @@ def amount(opening: Opening) -> str:
 # -- why: only what the run shows -------------------------------------------------------------------------------------
 
 
-def _causes(model: ReadModel, motion: Motion, worst: Sequence[Instant]) -> Iterator[str]:
+def _causes(model: ReadModel, motion: FallMotion, worst: Sequence[Instant]) -> Iterator[str]:
     yield from _fast(model, worst)
     contact = max((each.contact for each in worst if each.contact), key=lambda contact: contact[2], default=None)
     if contact is not None and contact[2] > _OVERLAP:
@@ -197,7 +197,7 @@ def _fast(model: ReadModel, worst: Sequence[Instant]) -> Iterator[str]:
         )
 
 
-def _singular(motion: Motion, worst: Sequence[Instant]) -> Iterator[str]:
+def _singular(motion: FallMotion, worst: Sequence[Instant]) -> Iterator[str]:
     """Whether the passive joints pass a pose at which the actuated ones do not hold them."""
     robot = motion.robot
     columns = {
@@ -233,7 +233,7 @@ def _singular(motion: Motion, worst: Sequence[Instant]) -> Iterator[str]:
         yield without + "limit the joints so that the loops do not get there, or control the actuated joints"
 
 
-def _massless(motion: Motion, worst: Sequence[Instant]) -> Iterator[str]:
+def _massless(motion: FallMotion, worst: Sequence[Instant]) -> Iterator[str]:
     """Whether joints pass a pose at which they move no mass, as three hinges in gimbal lock."""
     robot = motion.robot
     before = float(np.linalg.eigvalsh(mass_matrix(robot, motion.start))[0])

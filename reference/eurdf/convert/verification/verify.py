@@ -14,7 +14,7 @@ from eurdf.convert.common_losses import BEYOND_LIMITS
 from eurdf.convert.coordinates import Coordinates, Matrix, Vector
 from eurdf.convert.inertia import physical
 from eurdf.convert.losses import Effect, Loss
-from eurdf.convert.verification.fall import Fall, Motion, joint_of_velocity, listed, simulate, size
+from eurdf.convert.verification.fall import Fall, FallMotion, joint_of_velocity, listed, simulate, size
 from eurdf.convert.verification.read_model import CannotRead, Exported, Finding, Range, ReadModel, without_armature
 from eurdf.diagnostics.extras import install_command
 from eurdf.errors import MissingExtra
@@ -140,7 +140,7 @@ def _compare(
     if model.step and opened:
         unverified += ("the fall is not simulated, since constraints are open at the start",)
     elif model.step and seconds:
-        fall, moved = simulate(model, Motion(robot, exported.coordinates, start), seconds, progress)
+        fall, moved = simulate(model, FallMotion(robot, exported.coordinates, start), seconds, progress)
         findings += [moved] if moved else []
     return Verification(model.reader, "", mass, error, openings, beyond, fall, tuple(findings), as_listed, unverified)
 
