@@ -51,7 +51,7 @@ def test_a_kind_of_closure_is_named_in_few_files() -> None:
 
 
 def test_a_joint_type_is_named_in_few_files() -> None:
-    assert len(naming(r"JointType\.")) <= 19, naming(r"JointType\.")  # to become 15
+    assert len(naming(r"JointType\.")) <= 15, naming(r"JointType\.")
     assert sum(text.count("match joint.type") for text in SOURCES.values()) <= 1
 
 

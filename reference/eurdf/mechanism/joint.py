@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from functools import cache
 from typing import NamedTuple
 
@@ -141,6 +141,24 @@ class Joint:
             self.pitch,
             properties,
             self.mimic,
+        )
+
+    @staticmethod
+    def floating(name: str, child: str) -> Joint:
+        """A joint by which a body moves freely in the world."""
+        return Joint(name, JointType.FLOATING, "", child)
+
+    def universal(self, second: Joint, name: str) -> Joint:
+        """The universal joint that turns as this joint, then as a second one that is fixed to its child."""
+        both, names = (self.properties, second.properties), [each.name for each in fields(JointProperties)]
+        return replace(
+            second,
+            name=name,
+            type=JointType.UNIVERSAL,
+            parent=self.parent,
+            placement=self.placement,
+            axes=self.axes + second.axes,
+            properties=JointProperties(*(sum((getattr(each, name) for each in both), ()) for name in names)),
         )
 
     def fixed(self, placement: Pose | None = None) -> Joint:

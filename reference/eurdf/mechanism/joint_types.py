@@ -10,7 +10,7 @@ import sys
 from enum import Enum
 from typing import Any, Literal, NamedTuple
 
-from eurdf.mechanism.pose import Vector3
+from eurdf.mechanism.pose import Vector3, X, Y, Z
 
 
 class Step(NamedTuple):
@@ -34,7 +34,6 @@ class _Row(NamedTuple):
     replaces: frozenset[str] = frozenset()
 
 
-_X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 _TURN, _SLIDE, _BALL = Step("turn"), Step("slide"), Step("ball")
 
 #: The types of URDF that turn about one axis, and those that slide along one.
@@ -77,14 +76,14 @@ class JointType(str, Enum):
     PLANAR = _Row(
         "planar",
         ("x", "y", "angle"),
-        (Step("slide", _X), Step("slide", _Y), Step("turn", _Z)),
+        (Step("slide", X), Step("slide", Y), Step("turn", Z)),
         moving_frame=True,
         limited=False,
     )
     FLOATING = _Row(
         "floating",
         ("x", "y", "z", "qx", "qy", "qz", "qw"),
-        (Step("slide", _X), Step("slide", _Y), Step("slide", _Z), _BALL),
+        (Step("slide", X), Step("slide", Y), Step("slide", Z), _BALL),
         moving_frame=True,
         limited=False,
     )
@@ -119,6 +118,11 @@ class JointType(str, Enum):
     def is_ranged(self) -> bool:
         """Whether URDF states a range of it."""
         return self.is_axial and self.limited
+
+    @property
+    def is_ball(self) -> bool:
+        """Whether it is the rotations of a ball, and nothing else."""
+        return self.steps == (_BALL,)
 
     @property
     def slides(self) -> bool:

@@ -9,6 +9,8 @@ Vector3 = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 
 ORIGIN: Vector3 = (0.0, 0.0, 0.0)
+#: Unit vectors along the axes.
+X, Y, Z = AXES = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 IDENTITY_QUATERNION: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
 

@@ -31,7 +31,7 @@ from eurdf.kinematics.tolerances import (
 )
 from eurdf.mechanism.constraint import Closure, Constraint, Coupling
 from eurdf.mechanism.joint import Joint, Mimic
-from eurdf.mechanism.pose import IDENTITY, ORIGIN, Pose, Vector3, cross, direction
+from eurdf.mechanism.pose import IDENTITY, ORIGIN, Pose, Vector3, X, Y, Z, cross, direction
 from eurdf.pinocchio.mimic import following
 from eurdf.transmissions.drive import MOST_SUBSTEPS, SINGULAR, Drive
 from eurdf.writing.output_folder import write_files
@@ -42,7 +42,6 @@ if TYPE_CHECKING:
 #: What the kernel calls each kind of constraint.
 _KINDS = {type_: module.upper() for type_, module in MODULES.items()} | {Coupling.type: "COUPLING"}
 
-_X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
 # Given velocities are independent if none of them opens the loops by more, dimensionless.
 _DETERMINED = 1e-6
@@ -198,7 +197,7 @@ def _screws(
     for k, (axis, turns, advance) in enumerate(joint.motions):
         numbers = parent, int(axis is None), int(turns), coordinate + k, velocity + k
         along = [advance * each for each in axis] if axis and advance else ORIGIN
-        frame = f"{_rotation(pose)}, {_vector(pose.xyz)}, {_vector(axis or _Z)}, {_vector(along)}"
+        frame = f"{_rotation(pose)}, {_vector(pose.xyz)}, {_vector(axis or Z)}, {_vector(along)}"
         found.append(f"{{{', '.join(map(str, numbers))}, {_number(factor)}, {_number(offset)}, {frame}}}")
         parent, pose = number + k, IDENTITY
     return found
@@ -314,7 +313,7 @@ def _source(tables: _Tables, name: str, drives: Sequence[Drive], steps: int, sub
 def _constraint(constraint: Constraint, tables: _Tables, first: int, last: int, scale: Vector) -> str:
     ends = tables.anchors(constraint) or [(0, IDENTITY), (0, IDENTITY)]
     own = constraint.own if isinstance(constraint, Closure) else {}
-    a, b = (direction(axis) for axis in own.get("axes", (_Z, _Z)))
+    a, b = (direction(axis) for axis in own.get("axes", (Z, Z)))
     length = constraint.offset if isinstance(constraint, Coupling) else own.get("length", 0.0)
     frames = ", ".join(f"{_rotation(pose)}, {_vector(pose.xyz)}" for _, pose in ends)
     return (
@@ -327,7 +326,7 @@ def _constraint(constraint: Constraint, tables: _Tables, first: int, last: int, 
 def _across(a: Vector3) -> tuple[Vector3, Vector3]:
     """Two unit vectors across a unit vector and each other."""
     least = min(range(3), key=lambda k: abs(a[k]))
-    first = direction(cross(a, (_X, _Y, _Z)[least]))
+    first = direction(cross(a, (X, Y, Z)[least]))
     return first, cross(a, first)
 
 
@@ -390,5 +389,5 @@ def _vector(values: Iterable[float]) -> str:
 
 
 def _rotation(pose: Pose) -> str:
-    columns = [pose.rotate(axis) for axis in (_X, _Y, _Z)]
+    columns = [pose.rotate(axis) for axis in (X, Y, Z)]
     return _vector(columns[column][row] for row in range(3) for column in range(3))

@@ -19,7 +19,7 @@ from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.residual import all_openings
 from eurdf.mechanism.body import Anchor, Inertia
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.pose import direction
+from eurdf.mechanism.pose import X, Y, Z, direction
 from eurdf.pinocchio.frames import body_frame_ids, placement_of
 from eurdf.pinocchio.memory import working_memory
 from eurdf.viewing.surface import Surface, sphere, surface_of
@@ -35,7 +35,6 @@ COLLISION: Color = (0.95, 0.6, 0.1, 0.45)
 INERTIA: Color = (0.25, 0.45, 0.9, 0.5)
 
 # Directions of the axes of a joint, where it has none of its own.
-_X, _Y, _Z = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -281,7 +280,7 @@ def _axes(joint: Joint, body: int, actuated: bool) -> list[Axis]:
     """The axes of a joint, fixed to its child: three for a ball, those of the plane and its normal for a planar one."""
     if joint.type.nv in (0, 6):
         return []
-    written = joint.axes or (_X, _Y, _Z)
+    written = joint.axes or (X, Y, Z)
     in_child = placement_of(joint.offset).inverse()
     return [
         Axis(joint.name, body, in_child.translation, in_child.rotation @ np.array(direction(axis)), actuated)

@@ -13,9 +13,10 @@ from dataclasses import dataclass, field, replace
 from lxml import etree
 
 from eurdf.closures.point import PointClosure
-from eurdf.convert.import_format import LOCKED, ImportFormat, ImportInput, RobotRead, loss_kinds, without_locks
+from eurdf.convert.import_format import LOCKED, ImportFormat, ImportInput, RobotRead, loss_kinds
 from eurdf.convert.losses import approximate, dropped
 from eurdf.convert.names import UniqueNames
+from eurdf.convert.steps import without_locks
 from eurdf.convert.urdf.read import URDF_LOSSES, UrdfDialect, read_tree
 from eurdf.convert.xml_elements import Elements, local, named
 from eurdf.mechanism.body import Anchor, Frame
@@ -23,11 +24,10 @@ from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.pose import IDENTITY, Pose
+from eurdf.mechanism.pose import IDENTITY, Pose, X, Y
 from eurdf.writing.urdf_elements import UNLIMITED
 
 _WORLD = "world"
-_X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
 #: Elements of Drake that are read here, and those that have no effect on the robot alone.
 _KNOWN = (
@@ -155,7 +155,7 @@ def _as_in_drake(joint: Joint, joints: _DrakeJoints) -> Joint:
         properties = replace(properties, damping=joints.damping.get(joint.name, properties.damping))
     else:
         properties = replace(properties, damping=own.damping * nv, friction=own.friction * nv, effort=own.effort * nv)
-    axes = {"universal": (_X, _Y), "screw": joint.axes}.get(stated, ())
+    axes = {"universal": (X, Y), "screw": joint.axes}.get(stated, ())
     return replace(joint, type=kind, axes=axes, pitch=joints.pitches.get(joint.name, 0.0), properties=properties)
 
 

@@ -8,9 +8,10 @@ from dataclasses import dataclass, replace
 
 from lxml import etree
 
-from eurdf.convert.import_format import ImportInput, continuous_if_unlimited
+from eurdf.convert.import_format import ImportInput
 from eurdf.convert.losses import Losses, LossKind, dropped
 from eurdf.convert.names import UniqueNames
+from eurdf.convert.steps import continuous_if_unlimited
 from eurdf.convert.xml_elements import Elements, inside, local, read_root
 from eurdf.diagnostics import Diagnostics, FileError
 from eurdf.errors import CannotImport

@@ -11,11 +11,11 @@ from eurdf.convert.losses import Losses
 from eurdf.convert.meshes import MeshFiles
 from eurdf.convert.names import UniqueNames
 from eurdf.convert.parts import Part
-from eurdf.convert.steps import ExportedJoint, Z, in_series
+from eurdf.convert.steps import ExportedJoint, in_series
 from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.pose import IDENTITY, Pose
+from eurdf.mechanism.pose import IDENTITY, Pose, Z
 from eurdf.writing.urdf_elements import add_fixed_joint, add_inertial, add_joint, add_mimic, add_shape
 from eurdf.writing.xml_text import representable
 

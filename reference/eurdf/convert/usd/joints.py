@@ -9,10 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from eurdf.convert.steps import AXES
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.pose import IDENTITY_QUATERNION, Pose, Quaternion, direction, turn_from_x
+from eurdf.mechanism.pose import AXES, IDENTITY_QUATERNION, Pose, Quaternion, direction, turn_from_x
 
 #: Axis tokens of directions that need no turn of the frame.
 _TOKENS = dict(zip(AXES, "XYZ", strict=True))
