@@ -38,7 +38,7 @@ SPREADS = (0.1, 0.3, 1.0, 2.0, 3.0)
 
 
 #: Why an assembly did not converge: joints at their limits keep the loops open; the loops stay open though no limit
-#: prevents closing; the search reached its limit of work, so that it is not decided whether the loops can close;
+#: prevents closing; the search reached its limit of work, so that it is unknown whether the loops can close;
 #: or the loops close, but rounded numbers in the files make redundant rows contradict each other.
 AssemblyReason = Literal["joint limits", "not closed", "not decided", "rounding"]
 

@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     pass
 
 #: Why inverse kinematics did not converge: closures stay open; joints at their limits keep the frames off target; the
-#: configuration is singular, at the edge of the workspace; no motion of the mechanism brings the frames nearer; or the
+#: configuration is singular, at the edge of the workspace; the target is out of reach; or the
 #: maximum number of steps was reached.
 InverseKinematicsReason = Literal["closures open", "joint limits", "singular", "out of reach", "steps"]
 

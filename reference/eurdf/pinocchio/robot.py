@@ -226,7 +226,7 @@ def build_robot(
     """Build the robot of a mechanism.
 
     Args:
-        mechanism: A sound mechanism.
+        mechanism: A valid mechanism.
         geometry: Whether to build the visual and collision geometry.
         resolve: Path of the file that a URI of the URDF means; needed for geometry with meshes.
         meshes: The meshes by path, where they were read already.

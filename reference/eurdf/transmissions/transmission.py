@@ -222,8 +222,8 @@ def transmission(
     answer without the other: at a dead point of the joints there is no G, and still v_J = B_J v_m and τ_m = B_Jᵀ τ_J.
 
     Joints with springs can move while the motors are still. Springs that such a motion would deflect are held where
-    they are in q; `forward_kinematics` leaves them at rest. Springs beside the motors, such as one on an ankle that
-    motors drive, hold nothing; add their torque (`eurdf.springs.spring_force`) to τ_J.
+    they are in q; `forward_kinematics` leaves them at rest. Springs in parallel with motors, such as one on an ankle
+    that motors drive, are not held; add their torque (`eurdf.springs.spring_force`) to τ_J.
 
     Args:
         robot: The robot.
