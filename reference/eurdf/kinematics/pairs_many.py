@@ -17,7 +17,7 @@ from eurdf.array import Indices, Matrix, Vector
 from eurdf.closures.kind import RelativeMotions, RelativePoses
 from eurdf.closures.se3 import cross, rotation_of, skew, turned
 from eurdf.kinematics.tree_many import IDENTITY, Node, TreeMany
-from eurdf.pinocchio.ancestry import between
+from eurdf.pinocchio.ancestry import between, nodes_between
 
 
 class _Subtree:
@@ -245,9 +245,8 @@ class ManyPairs:
             velocities: Indices (n,) in v of the columns of the Jacobian.
         """
         self.count, self.n = len(pairs), len(velocities)
-        signs = [between(tree.parents, a.joint, b.joint) for a, b in pairs]
-        joints = sorted(set().union(*signs))
-        joint_of = {number: joint for joint in joints for number in tree.own[joint]}
+        self._parents, self._ends = tree.parents, [(a.joint, b.joint) for a, b in pairs]
+        joint_of = {number: joint for joint in nodes_between(tree.parents, self._ends) for number in tree.own[joint]}
         self._chain = chain = _Subtree(tree, joint_of)
         self._rows = np.array(
             [chain.row.get(tree.node_of(end.joint), 0) for pair in zip(*pairs, strict=True) for end in pair],
@@ -255,31 +254,41 @@ class ManyPairs:
         )
         placements = [end.placement.homogeneous.T for pair in zip(*pairs, strict=True) for end in pair]
         self._placements = np.array(placements).reshape(-1, 1, 4, 4)
-        # Of each pair its columns among those of the chain, their signs, and where they are among the velocities.
+        # Of each joint its columns among those of the chain, and where they are among the velocities.
         wanted = {velocity: index for index, velocity in enumerate(velocities.tolist())}
-        by_joint: dict[int, list[tuple[int, int]]] = {}
+        self._by_joint: dict[int, list[tuple[int, int]]] = {}
         for column, (number, velocity) in enumerate(zip(chain.column_nodes, chain.velocities.tolist(), strict=True)):
             if velocity in wanted:
-                by_joint.setdefault(joint_of[number], []).append((column, wanted[velocity]))
+                self._by_joint.setdefault(joint_of[number], []).append((column, wanted[velocity]))
+        self._scatters: dict[tuple[int, int, int], list[tuple[Indices, Indices]]] = {}
+
+    @cached_property
+    def _entries(self) -> tuple[Indices, Matrix, Indices]:
+        """Of each pair its columns among those of the chain, their signs, and where they are among the velocities.
+
+        They take much memory where many pairs have long paths, and the poses do without them.
+        """
         entries = [
-            [(column, sign, place) for joint, sign in sorted(own.items()) for column, place in by_joint.get(joint, ())]
-            for own in signs
+            [
+                (column, sign, place)
+                for joint, sign in sorted(between(self._parents, a, b).items())
+                for column, place in self._by_joint.get(joint, ())
+            ]
+            for a, b in self._ends
         ]
         width = max(map(len, entries), default=0)
-        self._columns = np.zeros((self.count, width), dtype=np.intp)
-        self._signs = np.zeros((self.count, width, 1, 1))
-        self._places = np.full((self.count, width), -1)
+        columns, places = np.zeros((self.count, width), dtype=np.intp), np.full((self.count, width), -1)
+        signs = np.zeros((self.count, width, 1, 1))
         for pair, own in enumerate(entries):
             for index, (column, sign, place) in enumerate(own):
-                self._columns[pair, index], self._signs[pair, index], self._places[pair, index] = column, sign, place
-        self._scatters: dict[tuple[int, int, int], list[tuple[Indices, Indices]]] = {}
+                columns[pair, index], signs[pair, index], places[pair, index] = column, sign, place
+        return columns, signs, places
 
     @property
     def numbers(self) -> int:
         """Numbers that one element takes, roughly."""
-        return (
-            40 * self._chain.count + 12 * len(self._chain.velocities) + self.count * (90 + 6 * self._columns.shape[1])
-        )
+        width = int(self._entries[0].shape[1])
+        return 40 * self._chain.count + 12 * len(self._chain.velocities) + self.count * (90 + 6 * width)
 
     def at(self, q: Matrix) -> ManyPoses:
         """The poses at q (B, nq)."""
@@ -289,8 +298,9 @@ class ManyPairs:
     def jacobian(self, at: ManyPoses, which: slice, rows: Matrix) -> Matrix:
         """The derivative (B, k r, n) by the velocities of rows (B, k, r, 6) over the twists of some pairs."""
         if at.twists is None:
-            twists = self._chain.twists(at.nodes)[self._columns]
-            twists *= self._signs
+            columns, signs, _ = self._entries
+            twists = self._chain.twists(at.nodes)[columns]
+            twists *= signs
             at.twists = np.ascontiguousarray(twists.transpose(3, 0, 2, 1))
         B, k, r = rows.shape[:3]
         back, origin = at.a
@@ -318,7 +328,7 @@ class ManyPairs:
         """
         key = which.start, which.stop, r
         if key not in self._scatters:
-            places = self._places[which]
+            places = self._entries[2][which]
             k, width = places.shape
             rounds: list[tuple[list[int], list[int]]] = []
             seen: dict[int, int] = {}

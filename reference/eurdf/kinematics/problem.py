@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -34,7 +35,6 @@ class Group:
         row_scale: Factors (m,) that make their rows dimensionless.
         weights: Weights (m, 2) of the squares of the rows in their sum: 1, and those that make it dimensionless.
         unit: Unit (n,) of each of their own velocities.
-        factors: Factors (m, n) that make K dimensionless.
         spread: Ratio of the largest unit of all these velocities to the smallest.
         work: Multiplications for the smaller of A Aᵀ and Aᵀ A, and for the evaluation of A.
         own: Indices in v of the velocities that close them.
@@ -47,11 +47,16 @@ class Group:
     row_scale: Vector
     weights: Matrix
     unit: Vector
-    factors: Matrix
     spread: float
     work: float
     own: slice | Indices
     held: Vector | None = None
+
+    @cached_property
+    def factors(self) -> Matrix:
+        """Factors (m, n) that make K dimensionless."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            return self.row_scale[:, None] * self.unit
 
     def residual(self, q: Matrix) -> Matrix:
         """Rows (B, m) at q (B, nq), m and rad."""
@@ -127,7 +132,6 @@ class Problem:
         rows, units = self.spaces.row_scale[loops.rows], self.spaces.scale[velocities]
         m, n = len(loops.rows), len(loops.velocities)
         with np.errstate(over="ignore", invalid="ignore"):
-            factors = rows[:, None] * units[:n]
             weights = np.stack((np.ones(m), rows * rows), axis=1)
         return Group(
             loops,
@@ -136,7 +140,6 @@ class Problem:
             rows,
             weights,
             units[:n],
-            factors,
             float(units.max() / units.min()) if len(units) else 1.0,
             float(m) * n * min(m, n) + _WORK_OF_A_CLOSURE * len(loops.closures),
             as_slice(loops.velocities),

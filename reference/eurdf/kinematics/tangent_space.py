@@ -97,7 +97,6 @@ class TangentSpaces:
         length: Characteristic length, m.
         scale: Unit (nv,) of each velocity: the characteristic length for one of a loop that only translates, else 1.
         row_scale: Factors (nc,) that make the rows of K dimensionless.
-        dimensionless: Factors (nc, nv) that make K dimensionless.
         outside: Indices of the velocities outside of all loops.
     """
 
@@ -105,8 +104,6 @@ class TangentSpaces:
         self.length = characteristic_length(robot)
         self.scale = velocity_scale(robot, self.length)
         self.row_scale = row_scale(robot, self.length)
-        with np.errstate(over="ignore", invalid="ignore"):  # lengths such as 1e200 m
-            self.dimensionless = self.row_scale[:, None] * self.scale
         outside = np.ones(robot.tree.nv, dtype=bool)
         alike: dict[tuple[int, int], list[LoopGroup]] = {}  # by the numbers of their rows and velocities
         for group in independent_groups(robot):
@@ -118,6 +115,12 @@ class TangentSpaces:
             (groups, np.array([group.rows for group in groups]), np.array([group.velocities for group in groups]))
             for groups in alike.values()
         ]
+
+    @cached_property
+    def dimensionless(self) -> Matrix:
+        """Factors (nc, nv) that make K dimensionless."""
+        with np.errstate(over="ignore", invalid="ignore"):  # lengths such as 1e200 m
+            return self.row_scale[:, None] * self.scale
 
     def least(self, K: Matrix, b: Vector) -> Vector:
         """K⁺ b (nv,), as `at` has it, but without a decomposition where the rows of K (nc, nv) are independent."""

@@ -66,3 +66,14 @@ def between(parents: Sequence[int], a: int, b: int) -> dict[int, float]:
         else:
             signs[b], b = 1.0, parents[b]
     return signs
+
+
+def nodes_between(parents: Sequence[int], pairs: Sequence[tuple[int, int]]) -> list[int]:
+    """The nodes between the two of any of some pairs, in order."""
+    below = [0] * len(parents)  # of each node, a bit for each pair with one of its two in the node's subtree
+    for bit, (a, b) in enumerate(pairs):
+        below[a] ^= 1 << bit
+        below[b] ^= 1 << bit
+    for node in range(len(parents) - 1, 0, -1):
+        below[parents[node]] ^= below[node]
+    return [node for node in range(1, len(parents)) if below[node]]

@@ -198,13 +198,17 @@ def _bundled(model: pin.Model, paths: Iterable[set[int]]) -> Iterator[tuple[list
         new = path - largest[1]
         largest[1].update(new)
         cluster_of.update(dict.fromkeys(new, largest))
+        if len(largest[1]) > _LARGEST:
+            raise NotImplementedError("these loops share too many joints")
     open_: tuple[list[int], set[int]] = ([], set())
     size = 0
     for which, joints in clusters:
         if not which:  # it is part of another
             continue
         own = sum(model.nvs[joint] for joint in joints)
-        if own > _LARGEST or not all(model.nvs[joint] for joint in joints):
+        if own > _LARGEST:
+            raise NotImplementedError("these loops share too many joints")
+        if not all(model.nvs[joint] for joint in joints):
             raise NotImplementedError("mimic joints have columns of their own in Pinocchio's Jacobians")
         if size and own and size + own > _BUNDLED:
             yield open_
