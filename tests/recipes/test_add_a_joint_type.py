@@ -29,7 +29,7 @@ TYPE = (
     (
         "mechanism/joint_types.py",
         "    HELICAL = _Row(",
-        '    TABLE = _Row("table", ("x", "y"), (Step("slide", _X), Step("slide", _Y)), replaces=SLIDING)\n',
+        '    TABLE = _Row("table", ("x", "y"), (Step("slide", X), Step("slide", Y)), replaces=SLIDING)\n',
     ),
     (
         "format/joint_model.py",
