@@ -13,10 +13,10 @@ import pinocchio as pin
 
 import eurdf
 from eurdf.array import Vector
-from eurdf.viewing.picture import Drawn, Image, View, drawn, seen, with_palette
+from eurdf.viewing.picture import Drawn, Image, axes_of, drawn, seen, with_palette
 
 _ROBOT, _DRAGGED = "digit_leg", "foot"
-_VIEWS = (View((0.0, -1.0, 0.0)), View((1.0, -0.8, 0.35)))
+_VIEWS = ((0.0, -1.0, 0.0), (1.0, -0.8, 0.35))
 _PIXELS = 340, 460  # width and height of each view
 _HEIGHT = 1.08  # m, of what a view shows
 _CENTER = (-0.1, 0.08, -0.53)  # of the views, in the world, m: it leaves out most of the torso
@@ -69,9 +69,9 @@ def _frame(shown: Drawn, held: Vector) -> Image:
     scale = _PIXELS[1] / _HEIGHT
     images = []
     for view in _VIEWS:
-        center = view.axes @ np.array(_CENTER)
+        center = axes_of(view) @ np.array(_CENTER)
         image = Pillow.fromarray(seen(shown, view, center, _PIXELS, scale))
-        right, up = scale * (view.axes @ held - center)[:2]
+        right, up = scale * (axes_of(view) @ held - center)[:2]
         x, y = _PIXELS[0] / 2.0 + right, _PIXELS[1] / 2.0 - up
         ImageDraw.Draw(image).polygon([(x + dx, y + dy) for dx, dy in _POINTER], fill="white", outline="black", width=2)
         images.append(np.asarray(image))

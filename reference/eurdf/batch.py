@@ -13,6 +13,7 @@ from eurdf.kinematics.batch import ForwardKinematics as ForwardKinematics
 from eurdf.kinematics.batch import ForwardKinematicsReason as ForwardKinematicsReason
 from eurdf.kinematics.batch import InverseKinematics as InverseKinematics
 from eurdf.kinematics.batch import Projection as Projection
+from eurdf.kinematics.batch import Solutions as Solutions
 from eurdf.loading import of_any_robot as _of_any_robot
 
 actuated_jacobian = _of_any_robot(batch.actuated_jacobian)

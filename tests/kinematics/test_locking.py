@@ -19,8 +19,7 @@ import eurdf
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.point import PointClosure
 from eurdf.errors import CannotLock, LockedOpen
-from eurdf.kinematics.locked_mechanism import lock_joints
-from eurdf.kinematics.locking import LockedRobot, lock
+from eurdf.kinematics.locking import LockedRobot, lock, lock_joints
 from eurdf.kinematics.residual import residual, residual_and_jacobian
 from eurdf.mechanism.body import Anchor, Frame, Shape
 from eurdf.mechanism.joint import Joint, JointProperties, Mimic

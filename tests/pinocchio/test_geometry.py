@@ -174,9 +174,7 @@ def test_tree_geometry_matches_pinocchio(
 
 def test_capsule_is_along_z() -> None:
     mechanism = Mechanism("m", "", "fixed", (Body("base", collisions=(Shape("capsule", (0.1, 0.6)),)),), ())
-    [capsule] = build_geometry(
-        mechanism, build_model(mechanism), pin.GeometryType.COLLISION, Finder(Path())
-    ).geometryObjects
+    [capsule] = build_geometry(mechanism, build_model(mechanism), Finder(Path())).collision.geometryObjects
     assert (capsule.name, capsule.meshPath) == ("base_0", "CAPSULE")
     capsule.geometry.computeLocalAABB()
     box = capsule.geometry.aabb_local

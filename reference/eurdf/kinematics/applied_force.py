@@ -24,22 +24,12 @@ class AppliedForce:
     """What acts on a robot at one state after the other, besides gravity and its closures."""
 
     def __init__(self, robot: Robot, external: External | None, dissipation: bool) -> None:
-        """Take the forces that do not change.
-
-        Args:
-            robot: The robot.
-            external: For frames of the model, by name, the force and moment (6,) that act at the frame's origin, in
-                world axes, N and N·m.
-            dissipation: Whether damping and dry friction of the joints act.
+        """Take the forces that do not change, as in `forward_dynamics`.
 
         Raises:
             ValueError: A frame is unknown, or a force is not six finite numbers.
         """
-        self._robot = robot
-        self._idx_v = robot.actuation.idx_v
-        self._tree = robot.tree
-        self._dissipation = dissipation
-        self._has_springs = len(robot.tree.springs) > 0
+        self._robot, self._tree, self._dissipation = robot, robot.tree, dissipation
         self._external: tuple[Frames, Matrix] | None = None
         if external is not None and not isinstance(external, Mapping):
             raise ValueError(f"external must map names of frames to forces (6,), not {type(external).__name__}")
@@ -51,26 +41,15 @@ class AppliedForce:
             self._external = frames(robot, list(external), few=True), np.array(forces)
 
     def at(self, q: Vector, v: Vector, u: Named | None = None, tau: Named | None = None) -> Vector:
-        """Generalized force (nv,) of all but the springs.
-
-        Args:
-            q: Configuration (nq,).
-            v: Velocity (nv,).
-            u: Motor torques (nu,); zero by default.
-            tau: Additional generalized forces (nv,); zero by default.
+        """Generalized force (nv,) of all but the springs at q (nq,) and v (nv,).
 
         Raises:
-            ValueError: ``u`` or ``tau`` has another shape or is not finite.
+            ValueError: The motor torques ``u`` (nu,), or the additional forces ``tau`` (nv,), have another shape or are
+                not finite.
         """
-        idx_v = self._idx_v
-        if tau is None:
-            force: Vector = np.zeros(self._tree.nv)
-            if u is not None:
-                force[idx_v] = motor_values_of(self._robot, u)
-        else:
-            force = np.array(velocity_of(self._robot, tau, "tau"))
-            if u is not None:
-                force[idx_v] += motor_values_of(self._robot, u)
+        force = np.zeros(self._tree.nv) if tau is None else np.array(velocity_of(self._robot, tau, "tau"))
+        if u is not None:
+            force[self._robot.actuation.idx_v] += motor_values_of(self._robot, u)
         if self._external is not None:
             force += self._at_frames(*self._external, q)
         if self._dissipation:
@@ -79,8 +58,7 @@ class AppliedForce:
 
     def total(self, q: Vector, v: Vector, u: Named | None = None, tau: Named | None = None) -> Vector:
         """The same with that of the springs."""
-        force = self.at(q, v, u, tau)
-        return self.with_springs(q, force) if self._has_springs else force
+        return self.with_springs(q, self.at(q, v, u, tau))
 
     def with_springs(self, q: Vector, force: Vector) -> Vector:
         """A generalized force (nv,) plus that of the springs at q (nq,)."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar, get_args
 
 import numpy as np
 from pinocchio import LOCAL
@@ -43,17 +43,23 @@ if TYPE_CHECKING:
 #: path from the start.
 ForwardKinematicsReason = Literal["start open", "not closed", "blocked"]
 
-_FORWARD_REASONS: tuple[ForwardKinematicsReason | None, ...] = (None, "start open", "not closed", "blocked")
+#: Why a projection did not converge: no closed configuration was found near the given one.
+ProjectionReason = Literal["not closed"]
+
+# By the code of an element.
+_FORWARD_REASONS: tuple[ForwardKinematicsReason | None, ...] = (None, *get_args(ForwardKinematicsReason))
+_INVERSE_REASONS: tuple[InverseKinematicsReason | None, ...] = (None, *get_args(InverseKinematicsReason))
+
+_Reason = TypeVar("_Reason")
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class ForwardKinematics:
-    """The result of `forward_kinematics`; B elements.
+class Solutions(Generic[_Reason]):
+    """What a solver found for B elements.
 
     Attributes:
-        q: Configurations (B, nq). Where an element did not converge, the least open one found at the given coordinates,
-            or near the start.
-        converged: Whether every loop is closed and the given joints are at the given coordinates (B,).
+        q: Configurations (B, nq).
+        converged: Whether the element is a solution (B,).
         residual: Euclidean norms (B,) of the residual at q, m and rad.
         reason: For each element why it did not converge; None if it did.
     """
@@ -61,10 +67,41 @@ class ForwardKinematics:
     q: Matrix
     converged: Mask
     residual: Vector
-    reason: tuple[ForwardKinematicsReason | None, ...]
+    reason: tuple[_Reason | None, ...]
 
     def __repr__(self) -> str:
-        return f"<ForwardKinematics: {int(self.converged.sum())} of {len(self.q)} converged>"
+        return f"<{type(self).__name__}: {int(self.converged.sum())} of {len(self.q)} converged>"
+
+
+class ForwardKinematics(Solutions[ForwardKinematicsReason]):
+    """The result of `forward_kinematics`: every loop is closed and the given joints are at the given coordinates.
+
+    Where an element did not converge, q is the least open one found at the given coordinates, or near the start.
+    """
+
+    __slots__ = ()
+
+
+class Projection(Solutions[ProjectionReason]):
+    """The result of `project_configuration`: the nearest closed configurations, or the least open ones found."""
+
+    __slots__ = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class InverseKinematics(Solutions[InverseKinematicsReason]):
+    """The result of `inverse_kinematics`: every frame is at its target, and every loop closed, within the tolerances.
+
+    The reasons are those of `eurdf.results.InverseKinematics`.
+
+    Attributes:
+        q: The configurations (B, nq) nearest to the targets: closed and within the limits, if such were found.
+        position_error: Distances (B, F) of the origins of the frames from those of the targets, m, in their order.
+        angle_error: Angles (B, F) between their axes and those of the targets, rad; 0 for targets that are positions.
+    """
+
+    position_error: Matrix
+    angle_error: Matrix
 
 
 def forward_kinematics(
@@ -211,39 +248,6 @@ def _require_finite(*results: Matrix) -> None:
         raise NumericalOverflow(f"the residual at q[{int(wrong.argmax())}]")
 
 
-_INVERSE_REASONS: tuple[InverseKinematicsReason | None, ...] = (
-    None,
-    "closures open",
-    "joint limits",
-    "singular",
-    "out of reach",
-    "steps",
-)
-
-#: Why a projection did not converge: no closed configuration was found near the given one.
-ProjectionReason = Literal["not closed"]
-
-
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Projection:
-    """The result of `project_configuration`; B elements.
-
-    Attributes:
-        q: The nearest closed configurations (B, nq); where none was found, the least open one.
-        converged: Whether the loops are closed (B,).
-        residual: Euclidean norms (B,) of the residual at q, m and rad.
-        reason: For each element why it did not converge; None if it did.
-    """
-
-    q: Matrix
-    converged: Mask
-    residual: Vector
-    reason: tuple[ProjectionReason | None, ...]
-
-    def __repr__(self) -> str:
-        return f"<Projection: {int(self.converged.sum())} of {len(self.q)} converged>"
-
-
 def project_configuration(
     robot: Robot,
     q: NamedRows,
@@ -358,30 +362,6 @@ def actuated_jacobian(
     return ActuatedJacobian(jacobian, finite & ~dependent, tuple(reason))
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
-class InverseKinematics:
-    """The result of `inverse_kinematics`; B elements, F frames.
-
-    Attributes:
-        q: The configurations (B, nq) nearest to the targets: closed and within the limits, if such were found.
-        converged: Whether every frame is at its target, and every loop closed, within the tolerances (B,).
-        position_error: Distances (B, F) of the origins of the frames from those of the targets, m, in their order.
-        angle_error: Angles (B, F) between their axes and those of the targets, rad; 0 for targets that are positions.
-        residual: Euclidean norms (B,) of the residual at q, m and rad.
-        reason: For each element why it did not converge, as `eurdf.results.InverseKinematics` has it; None if it did.
-    """
-
-    q: Matrix
-    converged: Mask
-    position_error: Matrix
-    angle_error: Matrix
-    residual: Vector
-    reason: tuple[InverseKinematicsReason | None, ...]
-
-    def __repr__(self) -> str:
-        return f"<InverseKinematics: {int(self.converged.sum())} of {len(self.q)} converged>"
-
-
 def inverse_kinematics(
     robot: Robot,
     targets: Mapping[str, Any],
@@ -434,7 +414,7 @@ def inverse_kinematics(
     found = blocks(numbers, block, threads, executor, progress).map(_searched, task, (q, *arrays))
     at, position, angle, residual, code = found
     reason = tuple(_INVERSE_REASONS[each] for each in code.tolist())
-    return InverseKinematics(at, code == 0, position, angle, residual, reason)
+    return InverseKinematics(at, code == 0, residual, reason, position, angle)
 
 
 def _searched(task: InverseTask, q: Matrix, *arrays: Matrix) -> tuple[Matrix, Matrix, Matrix, Vector, Indices]:

@@ -181,7 +181,8 @@ def inverse_dynamics(
         applied = AppliedForce(robot, external, dissipation).total(q, v, None, tau)
         found = inverse_solver.solve(solver, q, v, a, applied, tolerance, dynamics)
         if found is not None:
-            return InverseDynamics(found.u, tuple([found.lambdas[rows] for rows in solver.rows]))
+            u, lambdas = found
+            return InverseDynamics(u, tuple([lambdas[rows] for rows in solver.rows]))
         motion, S = EquationOfMotion(robot, q, v, dynamics), robot.actuation.selection
         motion.refuse_open(a, tolerance)
         force = motion.bias - applied

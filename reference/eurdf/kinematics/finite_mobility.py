@@ -45,16 +45,14 @@ _FAR, _FAR_STEPS = 0.2, 4
 
 
 class FiniteMobility(NamedTuple):
-    """How far the free velocities of a group of loops continue.
+    """How far the free velocities of a group of loops continue, as `LoopAnalysis` has it.
 
     Attributes:
         infinitesimal: nv - rank K at q.
-        finite: Dimension of the closed configurations around q, that of their largest branch; None if undecided.
+        finite: Dimension of the largest branch of closed configurations around q; None if undecided.
         evidence: What decides it; None if undecided.
-        branches: Dimension of each branch found that passes through q; if more than two velocities are free, each
-            dimension once. Empty where q is isolated, or undecided.
-        rigid_order: Where q is isolated, the order p at which it is rigid: a motion of size h opens the loops by about
-            hᵖ. Else None.
+        branches: Dimension of each branch; empty where q is isolated, or undecided.
+        rigid_order: Order of rigidity where q is isolated, else None.
     """
 
     infinitesimal: int

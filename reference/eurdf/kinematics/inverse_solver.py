@@ -12,7 +12,7 @@ the motions that no motor controls. Whether it is possible, forward dynamics dec
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -29,13 +29,6 @@ if TYPE_CHECKING:
 
 # Bounds of the deviations up to this fraction of the tolerance are below it beyond doubt.
 _CERTAIN = 0.5
-
-
-class Torques(NamedTuple):
-    """Motor torques u (nu,), N·m and N, and the forces λ (nc,) of all constraints."""
-
-    u: Vector
-    lambdas: Vector
 
 
 class InverseSolver:
@@ -61,17 +54,11 @@ class InverseSolver:
         force: Vector,
         tolerance: float,
         dynamics: TreeDynamics,
-    ) -> Torques | None:
-        """Solve M a + h = S u + τ + Kᵀ λ; None if the rank of K_o or the possibility of the motion is in doubt.
+    ) -> tuple[Vector, Vector] | None:
+        """Solve M a + h = S u + τ + Kᵀ λ for u (nu,) and λ (nc,); None if the rank of K_o, or the motion, is in doubt.
 
-        Args:
-            solver: Solves forward dynamics.
-            q: Normalized configuration (nq,).
-            v: Velocity (nv,).
-            a: Acceleration (nv,).
-            force: τ (nv,).
-            tolerance: Accepted difference of v and a from the nearest possible ones, as in `inverse_dynamics`.
-            dynamics: Those of the tree.
+        The arguments are those of `inverse_dynamics`, with q (nq,) normalized and τ (nv,) in ``force``; ``solver``
+        solves forward dynamics.
         """
         if not self._is_possible:
             return None
@@ -108,7 +95,7 @@ class InverseSolver:
             return None
         if self._uncontrolled and not self._uncontrolled_part(q, v, forward.a, change, taken, dynamics) <= accepted:
             return None
-        return Torques(u, lambdas)
+        return u, lambdas
 
     def _uncontrolled_part(
         self, q: Vector, v: Vector, a: Vector, change: Vector, before: Vector, dynamics: TreeDynamics
@@ -116,14 +103,7 @@ class InverseSolver:
         """A bound of the part of a change of the acceleration along motions that no motor controls.
 
         That part is a projection in the metric of the mass matrix, so that its energy is at most that of the change.
-
-        Args:
-            q: Configuration (nq,).
-            v: Velocity (nv,).
-            a: Acceleration (nv,) after the change.
-            change: Change (nv,).
-            before: M a + h (nv,) before the change.
-            dynamics: Those of the tree.
+        a (nv,) is the acceleration after the change, and ``before`` is M a + h (nv,) before it.
         """
         energy = change.dot(dynamics.inverse_dynamics(q, v, a) - before)
         lightest = (dynamics.inverse_mass_diagonal(q) / self._scale**2).max()

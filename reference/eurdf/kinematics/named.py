@@ -75,11 +75,7 @@ def velocity_of(robot: Robot, given: Named, argument: str = "v", others: float =
     """
     if not isinstance(given, Mapping):
         return checked_array(argument, given, (robot.tree.nv,))
-    names = [""] * robot.tree.nv
-    if robot.mechanism.root == "floating":
-        names[:6] = [ROOT_JOINT] * 6
-    for name, slot in robot.slots.items():
-        names[slot.idx_v : slot.idx_v + slot.nv] = [name] * slot.nv
+    names = robot.tree.velocity_names
     for name in given:
         if name not in names:
             raise ValueError(f"{argument}: {unknown_joint(robot, name)}")

@@ -81,6 +81,11 @@ class PositionLimits:
         at = q[..., self.coordinates[velocities]]
         return np.minimum(self.lower[velocities] - at, 0.0), np.maximum(self.upper[velocities] - at, 0.0)
 
+    def excess(self, q: Matrix) -> Matrix:
+        """How far q (…, nq) is beyond the lower, then beyond the upper limits (…, 2 nv); negative within them."""
+        at = q[..., self.coordinates]
+        return np.concatenate((self.lower - at, at - self.upper), axis=-1)
+
     def pressed(self, q: Vector, v: Vector) -> tuple[JointAtLimit, ...]:
         """The joints that are within 1e-9 of a limit at q, and that v (nv,) would move beyond it."""
         at, least = q[self.coordinates], 1e-6 * float(np.abs(v).max(initial=0.0))

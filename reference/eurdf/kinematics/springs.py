@@ -79,15 +79,9 @@ class Resting(NamedTuple):
 
 
 def joints_at_rest(robot: Robot, given: Indices) -> Resting | None:
-    """The joints with springs, but for given ones, at the coordinates where no spring stores energy.
+    """The joints with springs, but for given ones (indices in v), at the coordinates where no spring stores energy.
 
-    Args:
-        robot: The robot.
-        given: Indices in v of the joints that are given.
-
-    Returns:
-        The joints. None if there are none, if a joint has springs on some of its coordinates only, or if two springs
-        act on one coordinate.
+    None if there are none, if a joint has springs on some of its coordinates only, or if two springs act on one.
     """
     held = set(given.tolist())
     free = [each for each in robot.cached(_sprung) or () if each[2][0] not in held]

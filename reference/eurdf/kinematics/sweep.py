@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
@@ -130,8 +130,7 @@ def sweep(
     return Sweep(actuator, drive.bounds, lower, upper, periodic)
 
 
-@dataclass(frozen=True, slots=True)
-class _MovedActuator:
+class _MovedActuator(NamedTuple):
     """The actuator that is moved.
 
     Attributes:
@@ -160,16 +159,12 @@ def _drive(robot: Robot, actuator: str, q: Vector, limits: PositionLimits | None
     at = float(q[robot.tree.coordinate(actuator).idx_q]) if kind.limited else 0.0
     farthest = characteristic_length(robot) if kind.slides else math.pi
     without: End = "characteristic length" if kind.slides else "half turn"
-    lower, upper = (-math.inf, math.inf) if limits is None else (limits.lower[velocity], limits.upper[velocity])
-    return _MovedActuator(
-        velocity,
-        at,
-        (
-            float(lower) if math.isfinite(lower) else at - farthest,
-            float(upper) if math.isfinite(upper) else at + farthest,
-        ),
-        ("limit" if math.isfinite(lower) else without, "limit" if math.isfinite(upper) else without),
-    )
+    lower, upper, ends = at - farthest, at + farthest, [without, without]
+    if limits is not None and math.isfinite(limits.lower[velocity]):
+        lower, ends[0] = float(limits.lower[velocity]), "limit"
+    if limits is not None and math.isfinite(limits.upper[velocity]):
+        upper, ends[1] = float(limits.upper[velocity]), "limit"
+    return _MovedActuator(velocity, at, (lower, upper), (ends[0], ends[1]))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -196,13 +191,7 @@ class _Trail:
         return max(point.smallest for point in self.points)
 
     def path(self, drive: _MovedActuator, end: End, largest: float) -> MotionPath:
-        """The public form of the path.
-
-        Args:
-            drive: The actuator.
-            end: What ends the path at the bound of the actuator.
-            largest: The largest value of the smallest singular value of K_p on both paths.
-        """
+        """The public form of the path; ``end`` is what ends it at its bound, ``largest`` is that of both paths."""
         smallest = min(point.smallest for point in self.points)
         return MotionPath(
             end=self.end or end,

@@ -9,7 +9,7 @@ from functools import cache
 from typing import NamedTuple
 
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.pose import IDENTITY, ORIGIN, Pose, Quaternion, Vector3, direction
+from eurdf.mechanism.pose import IDENTITY, ORIGIN, Pose, Vector3, direction
 
 #: A coordinate may be beyond its limit by this much, rad or m (EU-CFG-004).
 LIMIT_TOLERANCE = 1e-9
@@ -186,24 +186,19 @@ class Joint:
         Its child body is at ``placement * transform(c) * offset`` in its parent.
 
         Args:
-            coordinates: As files have them: rad, m, quaternions x, y, z, w, brought to unit
-                length.
+            coordinates: As files have them: rad, m, quaternions x, y, z, w of any length but 0.
 
         Raises:
             ValueError: There are too few or too many coordinates, or a quaternion has length 0.
         """
-        names, c = self.type.coordinates, tuple(float(value) for value in coordinates)
-        if len(c) != len(names):
-            raise ValueError(
-                f"joint '{self.name}' is given {len(c)} coordinates; it has {len(names)}: "
-                + (", ".join(names) or "none")
-            )
+        c = self.normalized(coordinates)
         if c == self.type.neutral:
             return IDENTITY
         shift, turns = ORIGIN, []
         for (axis, turns_about, advance), value in zip(self.motions, c, strict=False):  # slides come before turns
             if axis is None:
-                turns.append(Pose(ORIGIN, self._unit_quaternion(c[-4:])))
+                x, y, z, w = c[-4:]
+                turns.append(Pose(ORIGIN, (x, y, z, w)))
                 continue
             if advance:
                 length = advance * value
@@ -216,12 +211,20 @@ class Joint:
             turned = turned * turn
         return Pose(shift, turned.quaternion)
 
-    def _unit_quaternion(self, quaternion: Sequence[float]) -> Quaternion:
-        norm = math.hypot(*quaternion)
+    def normalized(self, coordinates: Sequence[float]) -> tuple[float, ...]:
+        """The coordinates as numbers, with the quaternion at unit length; the errors are those of `transform`."""
+        names, c, first = self.type.coordinates, tuple(map(float, coordinates)), self.type.quaternion
+        if len(c) != len(names):
+            raise ValueError(
+                f"joint '{self.name}' is given {len(c)} coordinates; it has {len(names)}: "
+                + (", ".join(names) or "none")
+            )
+        if first is None:
+            return c
+        norm = math.hypot(*c[first:])
         if norm == 0.0:
             raise ValueError(f"the quaternion of joint '{self.name}' has length 0")
-        x, y, z, w = (value / norm for value in quaternion)
-        return x, y, z, w
+        return (*c[:first], *(value / norm for value in c[first:]))
 
     @property
     def ranges(self) -> tuple[tuple[float, float], ...]:

@@ -59,8 +59,6 @@ class Actuation:
 
 def build_actuation(mechanism: Mechanism, model: pin.Model, at: Mapping[str, Slot]) -> Actuation:
     """The actuation of a mechanism, whose `build_model` and `slots` are given."""
-    if not mechanism.actuators:
-        return Actuation((), np.empty(0, np.intp), np.empty(0, np.intp), model.nv, (), np.empty((0, 2)))
     actuated = [at[name] for name in mechanism.actuators]
     idx_q = np.array([slot.idx_q + k for slot in actuated for k in range(slot.nq)], np.intp)
     idx_v = np.array([slot.idx_v + k for slot in actuated for k in range(slot.nv)], np.intp)
@@ -68,6 +66,5 @@ def build_actuation(mechanism: Mechanism, model: pin.Model, at: Mapping[str, Slo
     control = [
         motor.control or _UNLIMITED for motor, slot in zip(motors, actuated, strict=True) for _ in range(slot.nv)
     ]
-    return Actuation(
-        mechanism.actuators, idx_q, idx_v, model.nv, tuple(motor.name for motor in motors), np.array(control)
-    )
+    names = tuple(motor.name for motor in motors)
+    return Actuation(mechanism.actuators, idx_q, idx_v, model.nv, names, np.array(control).reshape(-1, 2))

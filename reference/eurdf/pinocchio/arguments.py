@@ -69,7 +69,7 @@ def checked_count(name: str, given: Any, least: int) -> int:
     return count
 
 
-def checked_tolerance(given: Any, name: str = "tolerance") -> float:
+def checked_tolerance(given: Any) -> float:
     """The given tolerance.
 
     Raises:
@@ -77,9 +77,9 @@ def checked_tolerance(given: Any, name: str = "tolerance") -> float:
     """
     if type(given) is float and 0.0 <= given < math.inf:
         return given  # sooner than by the steps below
-    value = float(checked_array(name, given, ()))
+    value = float(checked_array("tolerance", given, ()))
     if value < 0.0:
-        raise ValueError(f"{name} is {value}; expected a number of at least 0")
+        raise ValueError(f"tolerance is {value}; expected a number of at least 0")
     return value
 
 

@@ -12,7 +12,6 @@ import pinocchio as pin
 from eurdf.array import Vector
 from eurdf.diagnostics.wording import meant
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, root_joint
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.pinocchio.joint_model import is_circular
@@ -38,11 +37,7 @@ class Slot(NamedTuple):
 
 
 def slots(mechanism: Mechanism) -> dict[str, Slot]:
-    """The slots of all joints except fixed joints and mimic joints, in the order of the mechanism's joints.
-
-    Args:
-        mechanism: The mechanism; the indices are those in the model that `build_model` makes of it.
-    """
+    """The slots of all joints except fixed and mimic ones, in file order, in the model that `build_model` makes."""
     led = following(mechanism)
     mimics, unwrapped = led.mimics, led.unwrapped
     idx_q, idx_v = (7, 6) if mechanism.root == "floating" else (0, 0)
@@ -64,22 +59,10 @@ def configuration_vector(
     coordinates: Mapping[str, float | Sequence[float]],
     at: Mapping[str, Slot] | None = None,
 ) -> Vector:
-    """The configuration q in which joints have the given coordinates, and all others their neutral (EU-CFG-005).
+    """The configuration (nq,) in which joints have the given coordinates, and all others their neutral (EU-CFG-005).
 
-    Args:
-        mechanism: The mechanism.
-        model: The result of `build_model`.
-        coordinates: For each joint its coordinates as files have them, for a floating root those of a floating joint
-            under ``root_joint``. Other joints are neutral. Quaternions are normalized. Coordinates of mimic joints are
-            ignored.
-        at: The `slots` of the mechanism, if the caller has them.
-
-    Returns:
-        q, of shape (nq,).
-
-    Raises:
-        ValueError: A name is not a joint with coordinates, or a joint is given too few or too many of them, or a
-            quaternion of length 0.
+    As `Robot.configuration`; quaternions are normalized. The model is that of `build_model`, and ``at`` are the `slots`
+    of the mechanism, if the caller has them.
     """
     q: Vector = pin.neutral(model)
     at = slots(mechanism) if at is None else at
@@ -87,14 +70,14 @@ def configuration_vector(
     for name, given in coordinates.items():
         values = np.atleast_1d(np.asarray(given, dtype=np.float64)).tolist()
         if name == ROOT_JOINT and mechanism.root == "floating":
-            q[:7] = _checked(name, values, root_joint("").type)
+            q[:7] = root_joint("").normalized(values)
             continue
         slot = at.get(name)
         if slot is None:
             if name in mimics:
                 continue
             raise ValueError(f"'{name}' is not a joint with coordinates{meant(name, at)}")
-        values = _checked(name, values, slot.joint.type)
+        values = [*slot.joint.normalized(values)]
         if slot.nq > len(values):  # the last of them is an angle, which Pinocchio has as (cos, sin)
             values[-1:] = math.cos(values[-1]), math.sin(values[-1])
         q[slot.idx_q : slot.idx_q + slot.nq] = values
@@ -102,21 +85,9 @@ def configuration_vector(
 
 
 def joint_coordinates(mechanism: Mechanism, model: pin.Model, q: Vector) -> dict[str, tuple[float, ...]]:
-    """The coordinates, as files have them, of every joint that is not fixed, by its name.
+    """The coordinates of every joint that is not fixed, by name, with those of mimic joints: `Robot.joint_positions`.
 
-    It is the inverse of `configuration_vector`.
-
-    Args:
-        mechanism: The mechanism.
-        model: The result of `build_model`.
-        q: Configuration, of shape (nq,).
-
-    Returns:
-        In the order of the mechanism's joints, ``root_joint`` first where the root floats. An angle that Pinocchio has
-        as (cos, sin) is from -pi to pi. The coordinate of a joint that mimics another follows from that one's.
-
-    Raises:
-        ValueError: q does not have the shape (nq,), or is not finite.
+    They are in the order of the mechanism's joints, ``root_joint`` first where the root floats.
     """
     numbers = checked_array("q", q, (model.nq,)).tolist()
     own: dict[str, tuple[float, ...]] = {}
@@ -134,18 +105,3 @@ def joint_coordinates(mechanism: Mechanism, model: pin.Model, q: Vector) -> dict
             mimic = mimics[joint.name]
             found[joint.name] = (mimic.multiplier * own[mimic.joint][0] + mimic.offset,)
     return found
-
-
-def _checked(name: str, values: list[float], kind: JointType) -> list[float]:
-    if len(values) != len(kind.coordinates):
-        raise ValueError(
-            f"joint '{name}' is given {len(values)} coordinates; it has {len(kind.coordinates)}: "
-            + ", ".join(kind.coordinates)
-        )
-    start = kind.quaternion
-    if start is not None:
-        norm = math.hypot(*values[start : start + 4])
-        if norm == 0.0:
-            raise ValueError(f"the quaternion of joint '{name}' has length 0")
-        values[start : start + 4] = [value / norm for value in values[start : start + 4]]
-    return values

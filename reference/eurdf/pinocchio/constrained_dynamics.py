@@ -102,11 +102,9 @@ class ConstrainedDynamics:
             for constraint_model, (kp, kd) in zip(models, gains, strict=True):
                 parameters = constraint_model.m_baumgarte_parameters
                 parameters.Kp, parameters.Kd = kp, kd
-        if not is_own:
+        if not is_own or self._prepared is not data:
             pin.initConstraintDynamics(model, data, models, datas)
-        elif self._prepared is not data:
-            pin.initConstraintDynamics(model, data, models, datas)
-            self._prepared = data
+            self._prepared = data if is_own else None
         a = np.array(pin.constraintDynamics(model, data, q, v, force, models, datas, self._settings))
         J = pin.getConstraintsJacobian(model, data, models, datas)
         if model.nv == 1:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
+from typing import NamedTuple
 
 import coal
 import numpy as np
@@ -16,8 +17,8 @@ from eurdf.pinocchio.frames import body_frame_ids, placement_of
 from eurdf.pinocchio.meshes import Mesh, read_meshes
 
 Resolve = Callable[[str], str | None]
-#: Cache of the geometry of meshes, by path and scale.
-MeshCache = dict[tuple[str, tuple[float, ...]], coal.BVHModelBase]
+# The geometry of meshes, by path and scale, which objects share.
+_MeshCache = dict[tuple[str, tuple[float, ...]], coal.BVHModelBase]
 
 _GRAY = np.array((0.9, 0.9, 0.9, 1.0))
 _BLACK = np.array((0.0, 0.0, 0.0, 1.0))
@@ -40,15 +41,17 @@ class UnreadableMesh(EurdfError, ValueError):  # noqa: N818 - named like Invalid
         super().__init__(f"mesh '{uri}' cannot be read from {path}: {reason}")
 
 
+class Geometry(NamedTuple):
+    """The visual and collision shapes of a robot."""
+
+    visual: pin.GeometryModel
+    collision: pin.GeometryModel
+
+
 def build_geometry(
-    mechanism: Mechanism,
-    model: pin.Model,
-    kind: pin.GeometryType,
-    resolve: Resolve,
-    meshes: Mapping[str, Mesh] | None = None,
-    cache: MeshCache | None = None,
-) -> pin.GeometryModel:
-    """Build the visual or the collision geometry of a mechanism.
+    mechanism: Mechanism, model: pin.Model, resolve: Resolve, meshes: Mapping[str, Mesh] | None = None
+) -> Geometry:
+    """Build the geometry of a mechanism.
 
     Object ``link_k`` is the k-th visual, or collision, of link ``link``, fixed to the joint that moves it. No collision
     pair is active, as from Pinocchio's URDF parser.
@@ -56,48 +59,44 @@ def build_geometry(
     Args:
         mechanism: The mechanism.
         model: The result of `build_model`.
-        kind: ``pin.VISUAL`` or ``pin.COLLISION``.
         resolve: Path of the file that a URI of the URDF means. It must find every mesh; a texture that it does not find
             is left out.
         meshes: The meshes by path, as `meshes_of` reads them; it does so by default.
-        cache: Cache of the geometry of meshes, which objects share; what is built here is added.
 
     Raises:
         UnreadableMesh: A mesh file cannot be read as a mesh.
         FileNotFoundError: `resolve` does not find a mesh.
     """
-    geometry_model = pin.GeometryModel()
+    found = Geometry(pin.GeometryModel(), pin.GeometryModel())
     meshes = meshes_of(mechanism, resolve) if meshes is None else meshes
-    cache = {} if cache is None else cache
+    cache: _MeshCache = {}
     body_frames = body_frame_ids(mechanism)
     for body in mechanism.bodies:
-        shapes = body.visuals if kind == pin.GeometryType.VISUAL else body.collisions
-        if not shapes:
-            continue
-        frame_id = body_frames[body.name]
-        frame = model.frames[frame_id]
-        for index, shape in enumerate(shapes):
-            geometry, path, scale = _geometry(shape, resolve, meshes, cache)
-            colored = shape.color is not None or shape.texture != ""
-            geometry_model.addGeometryObject(
-                pin.GeometryObject(
-                    f"{body.name}_{index}",
-                    frame.parentJoint,
-                    frame_id,
-                    frame.placement * placement_of(shape.pose),
-                    geometry,
-                    path,
-                    scale,
-                    colored,
-                    _color(shape) if colored else _GRAY,
-                    (resolve(shape.texture) or "") if shape.texture else "",
+        for geometry_model, shapes in zip(found, (body.visuals, body.collisions), strict=True):
+            for index, shape in enumerate(shapes):
+                frame_id = body_frames[body.name]
+                frame = model.frames[frame_id]
+                geometry, path, scale = _geometry(shape, resolve, meshes, cache)
+                colored = shape.color is not None or shape.texture != ""
+                geometry_model.addGeometryObject(
+                    pin.GeometryObject(
+                        f"{body.name}_{index}",
+                        frame.parentJoint,
+                        frame_id,
+                        frame.placement * placement_of(shape.pose),
+                        geometry,
+                        path,
+                        scale,
+                        colored,
+                        _color(shape) if colored else _GRAY,
+                        (resolve(shape.texture) or "") if shape.texture else "",
+                    )
                 )
-            )
-    return geometry_model
+    return found
 
 
 def _geometry(
-    shape: Shape, resolve: Resolve, meshes: Mapping[str, Mesh], cache: MeshCache
+    shape: Shape, resolve: Resolve, meshes: Mapping[str, Mesh], cache: _MeshCache
 ) -> tuple[coal.CollisionGeometry, str, Vector]:
     """The geometry; the path of its mesh, or in its place the name Pinocchio gives to the kind; the scale."""
     size = shape.size
@@ -118,30 +117,13 @@ def _geometry(
 
 
 def meshes_of(mechanism: Mechanism, resolve: Resolve) -> dict[str, Mesh]:
-    """Read all mesh files of a mechanism.
-
-    Args:
-        mechanism: The mechanism.
-        resolve: Path of the file that a URI of the URDF means.
-
-    Returns:
-        The meshes by path.
-
-    Raises:
-        UnreadableMesh: A mesh file cannot be read as a mesh.
-        FileNotFoundError: `resolve` does not find a mesh.
-    """
-    shapes = [(shape.filename, shape.size) for shape in _shapes(mechanism) if shape.kind == "mesh"]
+    """Read all mesh files of a mechanism: the meshes by path; arguments and errors are those of `build_geometry`."""
+    every = (shape for body in mechanism.bodies for shape in (*body.visuals, *body.collisions))
+    shapes = [(shape.filename, shape.size) for shape in every if shape.kind == "mesh"]
     read, reasons = read_meshes(shapes, {uri: _path(uri, resolve) for uri, _ in shapes})
     for uri, reason in reasons.items():
         raise UnreadableMesh(uri, _path(uri, resolve), reason)
     return read
-
-
-def _shapes(mechanism: Mechanism) -> Iterator[Shape]:
-    for body in mechanism.bodies:
-        yield from body.visuals
-        yield from body.collisions
 
 
 def _path(uri: str, resolve: Resolve) -> str:

@@ -15,15 +15,15 @@ from eurdf.mechanism.joint import Joint
 _UNIT = 1.01
 _INF = math.inf
 
-#: The properties that have a number for each velocity, and what it is if the joint states none.
+#: The properties that have a number for each velocity, what it is if the joint states none, and the model's vector.
 _OF_VELOCITIES = (
-    ("velocity", _INF),
-    ("effort", _INF),
-    ("friction", 0.0),
-    ("damping", 0.0),
-    ("armature", 0.0),
-    ("rotor_inertia", 0.0),
-    ("gear_ratio", 1.0),
+    ("velocity", _INF, "upperVelocityLimit"),
+    ("effort", _INF, "upperEffortLimit"),
+    ("friction", 0.0, "upperDryFrictionLimit"),
+    ("damping", 0.0, "damping"),
+    ("armature", 0.0, "armature"),
+    ("rotor_inertia", 0.0, "rotorInertia"),
+    ("gear_ratio", 1.0, "rotorGearRatio"),
 )
 
 
@@ -40,30 +40,20 @@ def set_limits(model: pin.Model, joints: Sequence[tuple[Joint, int]], root_nq: i
         root_nv: Number of its velocities.
     """
     lower, upper = _first(root_nq, model.lowerPositionLimit, model.upperPositionLimit)
-    of_root = (
-        model.upperVelocityLimit,
-        model.upperEffortLimit,
-        model.upperDryFrictionLimit,
-        model.damping,
-        model.armature,
-        model.rotorInertia,
-        model.rotorGearRatio,
-    )
-    found = _first(root_nv, *of_root)
+    found = _first(root_nv, *(getattr(model, vector) for _, _, vector in _OF_VELOCITIES))
     for joint, nq in joints:
         lowest, highest = _position_bounds(joint, nq)
         lower += lowest
         upper += highest
         nv, properties = joint.type.nv, joint.properties
-        for numbers, (name, default) in zip(found, _OF_VELOCITIES, strict=True):
+        for numbers, (name, default, _) in zip(found, _OF_VELOCITIES, strict=True):
             numbers += getattr(properties, name) or (default,) * nv
-    velocity, effort, friction, *others = map(np.array, found)
     model.lowerPositionLimit, model.upperPositionLimit = np.array(lower), np.array(upper)
+    for numbers, (_, _, vector) in zip(found, _OF_VELOCITIES, strict=True):
+        setattr(model, vector, np.array(numbers))
     # Pinocchio 4.1 gives the lower velocity limit the sign of the upper one. Whichever it gave its defaults is kept.
-    model.lowerVelocityLimit, model.upperVelocityLimit = np.copysign(velocity, model.lowerVelocityLimit), velocity
-    model.lowerEffortLimit, model.upperEffortLimit = -effort, effort
-    model.lowerDryFrictionLimit, model.upperDryFrictionLimit = -friction, friction
-    model.damping, model.armature, model.rotorInertia, model.rotorGearRatio = others
+    model.lowerVelocityLimit = np.copysign(model.upperVelocityLimit, model.lowerVelocityLimit)
+    model.lowerEffortLimit, model.lowerDryFrictionLimit = -model.upperEffortLimit, -model.upperDryFrictionLimit
 
 
 def _first(count: int, *vectors: Vector) -> list[list[float]]:

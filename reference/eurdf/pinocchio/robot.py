@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 
 import pinocchio as pin
 
@@ -17,18 +17,11 @@ from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.pinocchio.actuation import Actuation, build_actuation
 from eurdf.pinocchio.configuration import Slot, configuration_vector, joint_coordinates, slots
 from eurdf.pinocchio.constraint import build_constraint_models
-from eurdf.pinocchio.geometry import MeshCache, Resolve, build_geometry, meshes_of
+from eurdf.pinocchio.geometry import Geometry, Resolve, build_geometry
 from eurdf.pinocchio.memory import Cached
 from eurdf.pinocchio.meshes import Mesh
 from eurdf.pinocchio.model import build_model
 from eurdf.pinocchio.tree import Tree, build_tree
-
-
-class Geometry(NamedTuple):
-    """The visual and collision shapes of a robot."""
-
-    visual: pin.GeometryModel
-    collision: pin.GeometryModel
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -238,15 +231,7 @@ def build_robot(
         FileNotFoundError: `resolve` does not find a mesh.
     """
     model = build_model(mechanism)
-    shapes = None
-    if geometry:
-        find = _nothing if resolve is None else resolve
-        meshes = meshes_of(mechanism, find) if meshes is None else meshes
-        cache: MeshCache = {}
-        shapes = Geometry(
-            build_geometry(mechanism, model, pin.GeometryType.VISUAL, find, meshes, cache),
-            build_geometry(mechanism, model, pin.GeometryType.COLLISION, find, meshes, cache),
-        )
+    shapes = build_geometry(mechanism, model, resolve or _nothing, meshes) if geometry else None
     return Robot(mechanism, model, shapes, no_geometry, diagnose)
 
 

@@ -59,12 +59,7 @@ NO_SPRINGS = Springs(np.empty(0, np.intp), np.empty(0, np.intp), np.empty(0), np
 
 
 def build_springs(mechanism: Mechanism, at: Mapping[str, Slot]) -> Springs:
-    """EU-JNT-031: the springs of a mechanism; a stiffness of 0 is no spring.
-
-    Args:
-        mechanism: The mechanism.
-        at: The `slots` of the mechanism.
-    """
+    """EU-JNT-031: the springs of a mechanism, whose `slots` are given; a stiffness of 0 is no spring."""
     sprung = [joint for joint in mechanism.joints if any(joint.properties.stiffness)]
     if not sprung:
         return NO_SPRINGS

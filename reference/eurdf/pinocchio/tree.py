@@ -67,14 +67,7 @@ class Tree(Cached):
         at: Mapping[str, Slot],
         springs: Springs = NO_SPRINGS,
     ) -> None:
-        """Take a model.
-
-        Args:
-            model: The model.
-            sites: For each body, by name, where its frame is.
-            at: For each joint that has coordinates of its own, where they are.
-            springs: The springs of its joints.
-        """
+        """Take a model, where the frame of each body is, and where each joint has its own coordinates."""
         self.model = model
         self.springs = springs
         self._sites = sites

@@ -42,7 +42,6 @@ if TYPE_CHECKING:
 #: What the kernel calls each kind of constraint.
 _KINDS = {type_: module.upper() for type_, module in MODULES.items()} | {Coupling.type: "COUPLING"}
 
-
 # Given velocities are independent if none of them opens the loops by more, dimensionless.
 _DETERMINED = 1e-6
 # Of the damping of a descent, relative to the squares of the derivative: its root is above SINGULAR.
@@ -242,7 +241,7 @@ def _file(name: str) -> str:
 def _source(tables: _Tables, name: str, drives: Sequence[Drive], steps: int, substeps: int) -> str:
     robot = tables.robot
     scale = row_scale(robot, robot.cached(TangentSpaces).length)
-    rows = {index: loop.rows for index, loop in enumerate(find_loops(robot))}
+    rows = [loop.rows for loop in find_loops(robot)]
     path: list[str] = []
     constraints: list[str] = []
     for index in tables.constraints:
@@ -330,7 +329,7 @@ def _across(a: Vector3) -> tuple[Vector3, Vector3]:
     return first, cross(a, first)
 
 
-def _drive(number: int, drive: Drive, tables: _Tables, place: Mapping[int, int], rows: Mapping[int, slice]) -> str:
+def _drive(number: int, drive: Drive, tables: _Tables, place: Mapping[int, int], rows: Sequence[slice]) -> str:
     own = [tables.velocity[v] for v in drive.own.tolist()]
     asked = [tables.velocity[v] for v in drive.asked.velocities.tolist()]
     position = {velocity: index for index, velocity in enumerate(own)}
@@ -362,7 +361,7 @@ def _calls(name: str, drive: Drive, number: int) -> str:
     )
 
 
-def _rows_of(rows: Mapping[int, slice], drive: Drive) -> int:
+def _rows_of(rows: Sequence[slice], drive: Drive) -> int:
     return sum(rows[index].stop - rows[index].start for index in drive.closures)
 
 

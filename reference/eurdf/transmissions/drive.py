@@ -223,11 +223,7 @@ class Drive:
         return TooFar(reason, all_openings(self._robot, there), there)
 
     def _decomposed(self, q: Vector) -> tuple[Matrix, int]:
-        """The derivative (k, n), dimensionless, and the rank of K_x at a pose.
-
-        Raises:
-            NoTransmission: The given joints do not determine the others, or depend on each other.
-        """
+        """The derivative (k, n), dimensionless, and the rank of K_x at a pose; the error is that of `__init__`."""
         if self._evaluator is None:
             return np.zeros((0, len(self.given))), 0
         A, count = self._evaluator.jacobian(self._evaluator.at(q[None]))[0] * self._factors, len(self.own)

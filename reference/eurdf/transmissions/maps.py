@@ -183,15 +183,11 @@ def reasons(robot: Robot, motors: Selection, joints: Selection, Q: Matrix, ranks
     rank, rank_motors, rank_joints = ranks
     if rank == rank_motors == rank_joints:
         return Reasons()
-    A, B = Q[motors.velocities], Q[joints.velocities]
-    (A_inverse, _), (B_inverse, _) = pseudoinverse(A[None]), pseudoinverse(B[None])
     forward = inverse = None
     undetermined: tuple[str, ...] = ()
     missing: tuple[str, ...] = ()
     if rank > rank_motors:
-        without = B - B @ A_inverse[0] @ A
-        moved = np.linalg.norm(without, axis=1) > MOVES
-        undetermined = tuple(name for name, moves in zip(joints.names, moved.tolist(), strict=True) if moves)
+        undetermined = _moving(Q, joints, motors)
         if rank_motors < min(len(motors), rank_joints):
             inverse = (
                 f"the motors are at a dead point: only {rank_motors} of {len(motors)} motor velocities are "
@@ -202,9 +198,7 @@ def reasons(robot: Robot, motors: Selection, joints: Selection, Q: Matrix, ranks
                 f"{listed(undetermined)} can move while the motors are still; leave out such joints, or add motors"
             )
     if rank > rank_joints:
-        without = A - A @ B_inverse[0] @ B
-        moved = np.linalg.norm(without, axis=1) > MOVES
-        moving = listed([name for name, moves in zip(motors.names, moved.tolist(), strict=True) if moves])
+        moving = listed(_moving(Q, motors, joints))
         if rank > len(joints):
             missing = _missing(robot, motors, joints, Q)
             add = f"; add {listed(missing)} to the joints, or give the motors" if missing else "; give the motors"
@@ -215,6 +209,14 @@ def reasons(robot: Robot, motors: Selection, joints: Selection, Q: Matrix, ranks
                 f"and {moving} can move while the joints are still"
             )
     return Reasons(forward, inverse, undetermined, missing)
+
+
+def _moving(Q: Matrix, chosen: Selection, still: Selection) -> tuple[str, ...]:
+    """Names of the velocities that can move while others are still."""
+    own, others = Q[chosen.velocities], Q[still.velocities]
+    without = own - own @ pseudoinverse(others[None])[0][0] @ others
+    moved = np.linalg.norm(without, axis=1) > MOVES
+    return tuple(name for name, moves in zip(chosen.names, moved.tolist(), strict=True) if moves)
 
 
 def _missing(robot: Robot, motors: Selection, joints: Selection, Q: Matrix) -> tuple[str, ...]:

@@ -43,10 +43,7 @@ def motors_of(robot: Robot, joints: Selection) -> Selection:
     """The actuated joints that move the given joints, in the order of the actuation.
 
     An actuated joint that is among the joints is its own motor. Others are moved by the actuators of their loops,
-    except those that do not move them anywhere near the `assembled` configuration.
-
-    Raises:
-        ValueError: No actuator moves the joints.
+    except those that do not move them anywhere near the `assembled` configuration. The error is that of `sides`.
     """
     return robot.cached(_motors_of, joints.joints)
 

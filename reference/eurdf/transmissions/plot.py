@@ -18,7 +18,6 @@ from eurdf.transmissions.limits import CommonLimits, serial_limits
 from eurdf.transmissions.motors import unlimited_motors
 from eurdf.transmissions.reach import Stop
 from eurdf.transmissions.reachable_set import Workspace
-from eurdf.transmissions.transmission import at_many
 from eurdf.writing.atomic_file import write_atomically
 
 #: Kinds of file that a figure can be.
@@ -160,8 +159,7 @@ def _curves(figure: Any, found: Workspace, armature: Mapping[str, float] | None)
 
 def _drawable(found: Workspace, q: Matrix) -> Any:
     """Which configurations (B,) are not nearly singular."""
-    condition = at_many(found.robot, found.selections[0], q, found.selections[1]).condition
-    return np.nan_to_num(condition, nan=np.inf) < _WORST_CONDITION
+    return np.nan_to_num(found.transmissions_at(q).condition, nan=np.inf) < _WORST_CONDITION
 
 
 def _fields(found: Workspace, q: Matrix, armature: Mapping[str, float] | None) -> list[list[_Field]]:
@@ -169,7 +167,7 @@ def _fields(found: Workspace, q: Matrix, armature: Mapping[str, float] | None) -
     robot, (joints, motors) = found.robot, found.selections
     limits = condition = None
     if unlimited_motors(robot, motors):
-        condition = at_many(robot, joints, q, motors).condition
+        condition = found.transmissions_at(q).condition
     else:
         limits = cast(CommonLimits, serial_limits(robot, joints.joints, q, motors=motors.joints))
     inertia = reflected_inertia(robot, joints.joints, q, motors=motors.joints, armature=armature).equivalent_armature

@@ -57,11 +57,10 @@ class PolynomialMap:
     def G(self, positions: NamedRows) -> Matrix:  # noqa: N802 - the field's own symbol
         """Derivative (..., nm, nJ) of the motor positions."""
         x = self._scaled(positions)
-        columns = []
+        columns, basis = [], design(x.reshape(-1, x.shape[-1]), self.degree)
         for axis in range(x.shape[-1]):
             own = chebyshev.chebder(np.moveaxis(self.coefficients, 1 + axis, 0))
             own = np.concatenate((own, np.zeros((1, *own.shape[1:])))) if self.degree else 0.0 * own
-            basis = design(x.reshape(-1, x.shape[-1]), self.degree)
             flat = np.moveaxis(own, 0, 1 + axis).reshape(len(self.motors), -1)
             half = 0.5 * (self.upper[axis] - self.lower[axis])
             columns.append((basis @ flat.T).reshape(*x.shape[:-1], -1) / half)

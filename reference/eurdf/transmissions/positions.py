@@ -159,8 +159,7 @@ def _decided(robot: Robot, candidates: Iterable[str], q: Vector) -> tuple[str, .
 def beyond_limits(robot: Robot, q: Vector) -> tuple[str, ...]:
     """Names of the joints with a coordinate beyond a position limit at q (nq,)."""
     limits = position_limits(robot)
-    own = q[limits.coordinates]
-    outside = (own < limits.lower - LIMIT_TOLERANCE) | (own > limits.upper + LIMIT_TOLERANCE)
+    outside = (limits.excess(q).reshape(2, -1) > LIMIT_TOLERANCE).any(axis=0)
     return tuple(dict.fromkeys(limits.joints[index] for index in np.flatnonzero(outside).tolist()))
 
 

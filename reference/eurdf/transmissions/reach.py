@@ -140,9 +140,7 @@ class Reach:
 
     def _beyond(self, q: Matrix) -> tuple[Mask, Indices]:
         """Whether configurations are beyond position limits, and the index of the stop that they are most beyond."""
-        limits = self._limits
-        own = q[:, limits.coordinates]
-        over = np.concatenate((limits.lower - own, own - limits.upper), axis=1)
+        over = self._limits.excess(q)
         return over.max(axis=1, initial=-np.inf) > LIMIT_TOLERANCE, over.argmax(axis=1)
 
     def _signs(self, q: Matrix) -> Vector:

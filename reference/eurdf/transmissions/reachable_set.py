@@ -45,6 +45,7 @@ class Workspace:
         positions: Positions (N, nJ) there.
         q: Configurations (N, nq) there.
         first: The pose (nq,) that was given, closed.
+        selections: The joints and the motors.
     """
 
     robot: Robot
@@ -55,8 +56,7 @@ class Workspace:
     positions: Matrix
     q: Matrix
     first: Vector
-    _joints: Selection
-    _motors: Selection
+    selections: tuple[Selection, Selection]
     _search: GridSearch
 
     @property
@@ -82,12 +82,7 @@ class Workspace:
     @property
     def units(self) -> tuple[Literal["m", "rad"], ...]:
         """Unit of the position of each joint."""
-        return self._joints.units
-
-    @property
-    def selections(self) -> tuple[Selection, Selection]:
-        """The joints and the motors."""
-        return self._joints, self._motors
+        return self.selections[0].units
 
     @cached_property
     def transmissions(self) -> Transmissions:
@@ -100,7 +95,8 @@ class Workspace:
         Raises:
             ValueError: ``q`` has another shape, or is not finite.
         """
-        return at_many(self.robot, self._joints, checked_configurations(self.robot, "q", q), self._motors)
+        joints, motors = self.selections
+        return at_many(self.robot, joints, checked_configurations(self.robot, "q", q), motors)
 
     def moved(self, q: Matrix, positions: Matrix) -> Matrix:
         """Configurations (B, nq) after straight motions to positions (B, nJ) of the joints; NaN where they stop before.
@@ -196,18 +192,22 @@ def workspace(
         np.stack([axis[own] for axis, own in zip(axes, index.T, strict=True)], axis=1),
         search.q[tuple(index.T)],
         first,
-        chosen,
-        by,
+        (chosen, by),
         search,
     )
+
+
+def points_along(joints: int, points: int, most: int) -> int:
+    """Number of points of a grid along each joint: about so many points in all, and at most so many along one."""
+    along: int = round(points ** (1.0 / joints))
+    return min(most, along)
 
 
 def _axes(
     robot: Robot, joints: Selection, start: Vector, grid: int | None, ranges: Mapping[str, Sequence[float]]
 ) -> tuple[Vector, ...]:
     """For each joint the positions on the grid."""
-    if grid is None:
-        grid = min(_MOST_ALONG, round(_POINTS ** (1.0 / len(joints))))
+    grid = points_along(len(joints), _POINTS, _MOST_ALONG) if grid is None else grid
     if grid < 3:
         raise ValueError(f"grid is {grid}; a grid has at least 3 points along each joint")
     unknown = next((name for name in ranges if name not in joints.names), None)

@@ -12,7 +12,7 @@ from eurdf.array import Matrix
 from eurdf.convert.coordinates import rotation_matrix
 from eurdf.convert.inertia import about_centre
 from eurdf.mechanism.body import Body, Inertia
-from eurdf.mechanism.joint import Joint, JointProperties
+from eurdf.mechanism.joint import JointProperties
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import IDENTITY, Pose
 
@@ -103,7 +103,10 @@ def _lumped(
         if joint.child not in bodies:
             continue
         carrier, pose = carriers.get(joint.parent, (joint.parent, IDENTITY))
-        carriers[joint.child] = carrier, pose * joint.placement * _moved(joint, coordinates) * joint.offset
+        carriers[joint.child] = (
+            carrier,
+            pose * joint.placement * joint.transform(coordinates.get(joint.name, ())) * joint.offset,
+        )
         inertia = inertias[joint.child]
         if inertia is not None:
             parts.setdefault(carrier, []).append((carriers[joint.child][1], inertia))
@@ -116,10 +119,6 @@ def _lumped(
             continue
         own = [] if body.inertia is None else [(IDENTITY, body.inertia)]
         yield replace(body, inertia=composite([*own, *more]))
-
-
-def _moved(joint: Joint, coordinates: Mapping[str, Sequence[float]]) -> Pose:
-    return IDENTITY if joint.type.is_fixed else joint.transform(coordinates[joint.name])
 
 
 def composite(parts: Sequence[tuple[Pose, Inertia]]) -> Inertia:

@@ -6,7 +6,6 @@ import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, cast
 
@@ -29,7 +28,7 @@ from eurdf.transmissions.inertia import reflected_inertia
 from eurdf.transmissions.limits import CommonLimits, serial_limits
 from eurdf.transmissions.motors import linkage_bodies, sides, unlimited_motors
 from eurdf.transmissions.polynomial_map import PolynomialMap, fitted_map
-from eurdf.transmissions.reachable_set import Workspace, workspace
+from eurdf.transmissions.reachable_set import Workspace, points_along, workspace
 from eurdf.transmissions.selection import Selection, listed
 from eurdf.transmissions.serial_mechanism import serial_mechanism, springs_left_out, with_properties
 from eurdf.transmissions.transmission import Transmission, at_one
@@ -207,7 +206,7 @@ def serial_twin(
         raise ValueError(f"degree is {degree}; it must be from 1 to 30")
     serial, by = sides(robot, joints, motors)
     pose = closed_pose(robot, q)
-    grid = max(5, min(_MOST_ALONG, round(_POINTS ** (1.0 / len(serial))))) if grid is None else grid
+    grid = max(5, points_along(len(serial), _POINTS, _MOST_ALONG)) if grid is None else grid
     bodies = linkage_bodies(robot, serial, by)
     _refuse_other_motors(robot, bodies, serial, by)
     found = workspace(robot, serial.joints, pose, motors=by.joints, grid=grid, ranges=ranges)
@@ -241,9 +240,8 @@ def serial_twin(
         "armature": added,
     }
     mechanism = with_properties(plain.mechanism, _properties(robot, serial, numbers))
-    twin = build_robot(
-        mechanism, geometry=robot.geometry is not None, resolve=partial(_found_mesh, files_of_meshes(robot))
-    )
+    meshes = {uri: os.fspath(path) for uri, path in files_of_meshes(robot).items()}
+    twin = build_robot(mechanism, geometry=robot.geometry is not None, resolve=meshes.get)
     error = np.linalg.norm(lumped + np.diag(added) - terms.total, 2, axis=(1, 2))
     neglected = Neglected(
         sum(body.inertia.mass for body in robot.mechanism.bodies if body.name in bodies and body.inertia is not None),
@@ -298,11 +296,6 @@ def _without_linkage(robot: Robot, q: Vector, bodies: Sequence[str], joints: Sel
         if joint.name in joints.joints
     }
     return build_robot(with_properties(mechanism, bare), geometry=False)
-
-
-def _found_mesh(files: Mapping[str, Path], uri: str) -> str | None:
-    path = files.get(uri)
-    return None if path is None else os.fspath(path)
 
 
 def _of_twin(robot: Robot, twin: Robot, q: Vector) -> Vector:

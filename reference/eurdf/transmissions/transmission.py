@@ -187,8 +187,7 @@ class Transmissions:
     condition: Vector
     reason: tuple[Reason | None, ...]
     inverse_reason: tuple[Reason | None, ...]
-    _motors: Selection
-    _joints: Selection
+    _selections: tuple[Selection, Selection]
 
     @property
     def exists(self) -> Mask:
@@ -199,7 +198,8 @@ class Transmissions:
         return len(self.q)
 
     def __getitem__(self, index: int) -> Transmission:
-        return at_one(self.robot, self._joints, self.q[index], self._motors)
+        joints, motors = self._selections
+        return at_one(self.robot, joints, self.q[index], motors)
 
     def __repr__(self) -> str:
         return f"<Transmissions: G exists at {int(self.exists.sum())} of {len(self.q)} configurations>"
@@ -309,7 +309,9 @@ def at_many(robot: Robot, joints: Selection, q: Matrix, motors: Selection) -> Tr
     at = Maps(*work.map(maps, task, (q,)))
     why = _codes(at, at.rank_joints, len(joints)), _codes(at, at.rank_motors, len(motors))
     ranks = at.rank_motors, at.rank_joints
-    return Transmissions(robot, q, joints.names, motors.names, at.G, at.B_J, *ranks, at.condition, *why, motors, joints)
+    return Transmissions(
+        robot, q, joints.names, motors.names, at.G, at.B_J, *ranks, at.condition, *why, (joints, motors)
+    )
 
 
 def _task(robot: Robot, motors: Selection, joints: Selection) -> MapsTask:

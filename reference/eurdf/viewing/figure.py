@@ -28,7 +28,7 @@ LAYERS = {
 
 _LAYER_OF = {"visual": "visual shapes", "collision": "collision shapes", "inertia": "inertia ellipsoids"}
 
-# Red, green, blue, 0 to 255.
+_Color = tuple[int, int, int]  # red, green, blue, 0 to 255
 _SKELETON = (90, 90, 90)
 _CLOSURE, _OPEN = (140, 60, 200), (230, 30, 30)
 _PASSIVE, _ACTUATED, _DEPENDENT = (60, 130, 230), (20, 160, 60), (240, 140, 0)
@@ -43,14 +43,9 @@ class Figure:
     """
 
     def __init__(self, server: viser.ViserServer, scene: Scene, placed: PlacedRobot, root: str, origin: Vector) -> None:
-        """Add the nodes where they are: pages show what is sent bit by bit.
+        """Add the nodes where they are, since pages show what is sent bit by bit: below a node of their own.
 
-        Args:
-            server: The server of the page.
-            scene: What there is to draw.
-            placed: Where it is.
-            root: Name of the node above all of its nodes.
-            origin: Where the world of the robot has its origin (3,), m.
+        Its name is ``root``, and the world of the robot has its origin (3,), m, there.
         """
         self.scene = scene
         self._api = server.scene
@@ -92,17 +87,17 @@ class Figure:
             f"{root}/link_frames", placed.wxyzs, placed.origins, axes_length=length, axes_radius=0.03 * length
         )
         self._add("link frames", self._axes)
-        self._add_lines(f"{root}/skeleton", "skeleton", len(scene.parents) - 1, _SKELETON, 3.0, scene.skeleton)
+        self._add_lines(f"{root}/skeleton", "skeleton", [_SKELETON] * (len(scene.parents) - 1), 3.0, scene.skeleton)
         colors = [_ACTUATED if axis.actuated else _PASSIVE for axis in scene.axes]
-        self._add_lines(f"{root}/axes", "joint axes", len(scene.axes), colors, 3.0, scene.axis_lines)
+        self._add_lines(f"{root}/axes", "joint axes", colors, 3.0, scene.axis_lines)
         self._are_open = np.zeros(len(scene.links), dtype=bool)
-        count = 3 * len(scene.links)
-        self._add_lines(f"{root}/closures", "closures", count, [_CLOSURE] * count, 2.0, self._closure_lines)
+        colors = [_CLOSURE] * (3 * len(scene.links))
+        self._add_lines(f"{root}/closures", "closures", colors, 2.0, self._closure_lines)
         self._dots: Any = None
         if scene.links:
             self._dots = self._api.add_point_cloud(
                 f"{root}/closure_frames",
-                self._closure_dots(),
+                self._closure_lines(placed)[1::3].reshape(-1, 3),
                 colors=_CLOSURE,
                 point_size=0.012 * scene.size,
                 point_shape="circle",
@@ -156,14 +151,14 @@ class Figure:
         self._nodes[layer].append(node)
 
     def _add_lines(
-        self, name: str, layer: str, count: int, colors: Any, pixels: float, at: Callable[[PlacedRobot], Matrix]
+        self, name: str, layer: str, colors: list[_Color], pixels: float, at: Callable[[PlacedRobot], Matrix]
     ) -> None:
-        if not count:
+        if not colors:
             return
         node = self._api.add_line_segments(
             name,
             at(self._placed),
-            colors=_line_colors(colors) if isinstance(colors, list) else colors,
+            colors=_line_colors(colors),
             thickness=pixels,
             thickness_units="screen",
         )
@@ -178,9 +173,6 @@ class Figure:
             node.position[:], node.wxyz[:] = np.nan, np.nan
             node.position, node.wxyz = origins[number], wxyzs[number]
 
-    def _closure_dots(self) -> Matrix:
-        return self.scene.closure_lines(self._placed)[:, 1].reshape(-1, 3)
-
     def _closure_lines(self, placed: PlacedRobot) -> Matrix:
         return self.scene.closure_lines(placed).reshape(-1, 2, 3)
 
@@ -191,7 +183,7 @@ class Figure:
             if self.shown[layer]:
                 node.points = at(placed)
         if self._dots is not None and self.shown["closures"]:
-            self._dots.points = self._closure_dots()
+            self._dots.points = self._closure_lines(placed)[1::3].reshape(-1, 3)
             self._color_closures(placed)
         if self.shown["link frames"]:
             self._axes.batched_positions, self._axes.batched_wxyzs = placed.origins, placed.wxyzs
@@ -223,5 +215,5 @@ class Figure:
                 label.visible = visible
 
 
-def _line_colors(colors: list[tuple[int, int, int]]) -> Any:
+def _line_colors(colors: list[_Color]) -> Any:
     return np.repeat(np.array(colors, dtype=np.uint8)[:, None], 2, axis=1)

@@ -16,7 +16,7 @@ from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
 from eurdf.mechanism.constraint import Closure, Constraint, Coupling
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, root_joint
-from eurdf.mechanism.pose import IDENTITY, Pose, direction
+from eurdf.mechanism.pose import Pose, direction
 from eurdf.viewing.scene import Scene
 from eurdf.viewing.session import Session
 from eurdf.viewing.surface import Surface
@@ -37,12 +37,7 @@ _GRAY = (0.9, 0.9, 0.9, 1.0)  # of a shape without a colour
 
 
 def live_page(robot: Robot, q: Vector | None = None) -> str:
-    """A page that moves a robot without a server and without a network: one file with all that it needs.
-
-    Args:
-        robot: The robot, with its visual geometry.
-        q: Where to start (nq,); see `live_robot`.
-    """
+    """A page that moves a robot without a server and a network: one file; for the arguments see `live_robot`."""
     name = html.escape(robot.mechanism.name)
     style = "".join(file.read_text(encoding="utf-8") for file in (STYLE, _PAGE_STYLE))
     scripts = "".join(f"<script>{script.read_text(encoding='utf-8')}</script>" for script in SCRIPTS)
@@ -55,14 +50,9 @@ def live_page(robot: Robot, q: Vector | None = None) -> str:
 
 
 def live_view(robot: Robot, q: Vector | None = None) -> str:
-    """An element for a page that loads `SCRIPTS` and `STYLE`: the robot, and a slider for each actuator.
+    """HTML for a page that loads `SCRIPTS` and `STYLE`: the robot, and a slider for each actuator.
 
-    Args:
-        robot: The robot, with its visual geometry.
-        q: Where to start (nq,); see `live_robot`.
-
-    Returns:
-        HTML. No name in it can be taken for markup.
+    The arguments are those of `live_robot`. No name in it can be taken for markup.
     """
     data = json.dumps(live_robot(robot, q), separators=(",", ":")).replace("<", "\\u003c")
     return f'<div class="eu-live"><script type="application/json">{data}</script></div>'
@@ -211,4 +201,4 @@ def _triangles(surface: Surface) -> dict[str, Any]:
 
 
 def _pose(pose: Pose) -> list[float]:
-    return [0.0] * 3 + [0.0, 0.0, 0.0, 1.0] if pose is IDENTITY else [*pose.xyz, *pose.quaternion]
+    return [*pose.xyz, *pose.quaternion]

@@ -127,7 +127,8 @@ class MoveTab:
             self._choice.value = chosen if chosen in names else names[0]
 
     def _go_to(self) -> None:
-        self._page.shown.session.go_to(str(self._choice.value))
+        session = self._page.shown.session
+        session.show(session.configurations[str(self._choice.value)])
 
 
 class _Gizmo:

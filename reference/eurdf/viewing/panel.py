@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from eurdf.errors import EurdfError, InvalidRobot
+from eurdf.kinematics.analysis import analyze
 from eurdf.transmissions.passive_limits import passive_limits
 from eurdf.viewing import text
 from eurdf.viewing.figure import LAYERS
@@ -89,18 +91,13 @@ class Panel:
 
     def _checkboxes(self) -> None:
         figure = self._page.shown.figure
-        for layer in LAYERS:
-            if figure.has(layer):
-                self._checkbox(layer, figure.shown[layer])
+        for layer in filter(figure.has, LAYERS):
+            box = self._page.server.gui.add_checkbox(layer, figure.shown[layer])
+            box.on_update(partial(self._toggle, layer))
 
-    def _checkbox(self, layer: str, visible: bool) -> None:
-        box = self._page.server.gui.add_checkbox(layer, visible)
-
-        def toggled(event: Any) -> None:
-            wanted = bool(event.target.value)
-            self._page.worker.ask(("layer", layer), lambda: self._page.shown.figure.toggle(layer, wanted))
-
-        box.on_update(toggled)
+    def _toggle(self, layer: str, event: Any) -> None:
+        wanted = bool(event.target.value)
+        self._page.worker.ask(("layer", layer), lambda: self._page.shown.figure.toggle(layer, wanted))
 
     def _refresh(self, placed: PlacedRobot) -> None:
         """Bring sliders and texts to the state of the session."""
@@ -115,25 +112,22 @@ class Panel:
 
     def _analyze(self) -> None:
         """Show how far the configuration is from singular, and the limits of the passive joints there."""
-        analysis = self._page.shown.session.analyze()
+        session = self._page.shown.session
+        analysis = analyze(session.robot, session.q)
         self._gauge.content = text.gauge(analysis)
         value = analysis.singularity
         self._bar.visible = value is not None
         if value is not None:
             self._farthest = max(self._farthest, value)
             self._bar.value = 100.0 * min(1.0, value / self._farthest) if self._farthest else 0.0
-
-        self._limits.content = self._limits_here()
-
-    def _limits_here(self) -> str:
-        """The limits of the passive joints at the configuration, or why there are none."""
-        session = self._page.shown.session
-        if not session.is_closed:
-            return text.box("the loops are open")
         try:
-            return text.limits(passive_limits(session.robot, session.q))
+            is_open = not session.is_closed
+            limits = (
+                text.box("the loops are open") if is_open else text.limits(passive_limits(session.robot, session.q))
+            )
         except ValueError as reason:  # also NoTransmission
-            return text.box(text.escaped(str(reason)))
+            limits = text.box(text.escaped(str(reason)))
+        self._limits.content = limits
 
     def _watch(self) -> None:
         """Load the robot again when its files change."""

@@ -43,27 +43,19 @@ _CLOSURE: Color = (0.55, 0.2, 0.8)
 _OPEN: Color = (0.9, 0.1, 0.1)
 
 
-@dataclass(frozen=True, slots=True)
-class View:
-    """A view without perspective.
-
-    Attributes:
-        toward_camera: From the robot to the camera, in the world; any length.
-    """
-
-    toward_camera: tuple[float, float, float]
-
-    @property
-    def axes(self) -> Points:
-        """Unit vectors to the right, up and toward the camera, in the world, as rows (3, 3)."""
-        toward = np.array(self.toward_camera) / np.linalg.norm(self.toward_camera)
-        right = np.cross((0.0, 0.0, 1.0), toward)
-        right /= np.linalg.norm(right)
-        return np.array((right, np.cross(toward, right), toward))
-
+#: A view without perspective: from the robot to the camera, in the world; any length.
+View = tuple[float, float, float]
 
 #: From the right, from the front right above, from behind.
-VIEWS = (View((0.0, -1.0, 0.0)), View((1.0, -0.75, 0.45)), View((-1.0, 0.3, 0.25)))
+VIEWS: tuple[View, ...] = ((0.0, -1.0, 0.0), (1.0, -0.75, 0.45), (-1.0, 0.3, 0.25))
+
+
+def axes_of(view: View) -> Points:
+    """Unit vectors to the right, up and toward the camera, in the world, as rows (3, 3)."""
+    toward = np.array(view) / np.linalg.norm(view)
+    right = np.cross((0.0, 0.0, 1.0), toward)
+    right /= np.linalg.norm(right)
+    return np.array((right, np.cross(toward, right), toward))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -107,7 +99,7 @@ def picture(robot: Robot, views: Sequence[View] = VIEWS, *, q: Vector | None = N
     shown = drawn(robot, q, loops)
     boxes = []
     for view in views:
-        points = shown.points @ view.axes.T
+        points = shown.points @ axes_of(view).T
         boxes.append((points.min(axis=0), points.max(axis=0)))
     sizes = [(high - low)[:2] for low, high in boxes]
     width, height = sum(size[0] for size in sizes), max(size[1] for size in sizes)
@@ -189,12 +181,7 @@ def _nearest(colors: Image, palette: npt.NDArray[np.float64]) -> npt.NDArray[np.
 
 
 def drawn(robot: Robot, q: Vector | None, loops: bool) -> Drawn:
-    """What is shown of a robot; see `picture`.
-
-    Raises:
-        InvalidRobot: A mesh is missing.
-        ValueError: There is nothing to draw.
-    """
+    """What is shown of a robot; see `picture`, also for the errors."""
     visual_model = robot.visual_model  # raises if a mesh is missing
     if q is None:
         q = robot.configurations.get(ASSEMBLED)
@@ -236,11 +223,7 @@ def _lightened(color: Color) -> Color:
 
 
 def _renderer() -> Any:
-    """The renderer, pyvista.
-
-    Raises:
-        MissingExtra: It is not installed.
-    """
+    """The renderer, pyvista, or `MissingExtra`."""
     if not os.environ.get("DISPLAY"):
         # Else VTK looks for a screen first, and says so.
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
@@ -287,8 +270,8 @@ def seen(shown: Drawn, view: View, center: Points, pixels: tuple[int, int], scal
         plotter.add_points(
             shown.dots, color=_CLOSURE, point_size=_DOT * _OVERSAMPLING, render_points_as_spheres=True, lighting=False
         )
-    right, up, toward = view.axes
-    focus = center @ view.axes
+    axes = right, up, toward = axes_of(view)
+    focus = center @ axes
     reach = float(np.linalg.norm(np.ptp(shown.points, axis=0)))
     # Over the viewer's left shoulder, and a weak one from the other side, so that no side is black.
     for direction, intensity in ((-0.4 * right + 0.4 * up + toward, 0.75), (right - 0.3 * up + 0.6 * toward, 0.35)):

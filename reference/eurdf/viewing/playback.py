@@ -189,17 +189,15 @@ def gravity_frames(session: Session, show: Show, *, dissipation: bool, held: boo
         EurdfError: The motion cannot be computed, such as that of a joint without inertia.
         ValueError: The motion is too fast for the time step.
     """
-    budget = StepBudget()
     q: Vector = np.full(session.robot.tree.nq, np.nan)
     fall = _GravityMotion(session.robot, held)
-    thread = ThreadPoolExecutor(1, "eurdf viewer gravity")
+    thread, count = ThreadPoolExecutor(1, "eurdf viewer gravity"), 1  # the time of a step is not known yet
     try:
         while True:
             if not np.array_equal(q, session.q):
                 q = session.q
                 fall.begin(q)
                 elapsed = spent = 0.0
-            count = budget.steps
             running = thread.submit(fall.advance, count, dissipation)
             while not running.done():
                 yield _POLL
@@ -212,7 +210,6 @@ def gravity_frames(session: Session, show: Show, *, dissipation: bool, held: boo
                     f"gravity ends after {elapsed:.2f} s: the motion is too fast, as near a singularity, even for "
                     f"steps of {1e3 * _SHORTEST_STEP:.2g} ms; 'reset' returns to the start"
                 ) from None
-            budget.took(seconds)
             begin = time.monotonic()
             session.show(reached)
             q = session.q
@@ -222,26 +219,19 @@ def gravity_frames(session: Session, show: Show, *, dissipation: bool, held: boo
             slow = "" if pace >= 1.0 else f", slow motion: {100.0 * pace:.2g} % of real time"
             show(f"gravity: {elapsed:.2f} s{slow}")
             spent = time.monotonic() - begin
+            count = steps_with_room(count, seconds)
             yield max(0.0, simulated - seconds - spent)
     finally:
         thread.shutdown(wait=False, cancel_futures=True)
 
 
-class StepBudget:
-    """How many steps of a simulation a frame gets: as many as its time has room for, and at least one.
+def steps_with_room(steps: int, seconds: float) -> int:
+    """How many steps of a simulation the next frame gets, after one whose steps took so long, s.
 
-    Attributes:
-        steps: The number.
+    They are as many as its time has room for, at least one and at most twice as many as before.
     """
-
-    def __init__(self) -> None:
-        """Start with one, as the time of a step is not known."""
-        self.steps = 1
-
-    def took(self, seconds: float) -> None:
-        """Learn how long the steps of a frame took, s."""
-        room = _BUDGET * self.steps / max(seconds, 1e-9)
-        self.steps = int(min(max(room, 1.0), 2.0 * self.steps, _STEPS))
+    room = _BUDGET * steps / max(seconds, 1e-9)
+    return int(min(max(room, 1.0), 2.0 * steps, _STEPS))
 
 
 class _GravityMotion:

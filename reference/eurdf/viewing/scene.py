@@ -14,10 +14,11 @@ import pinocchio as pin
 
 from eurdf.array import Matrix, Vector
 from eurdf.closures.se3 import quaternion_of
+from eurdf.convert.inertia import along_principal_axes
 from eurdf.kinematics.evaluate import Frames, frames_at
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.residual import all_openings
-from eurdf.mechanism.body import Anchor, Inertia
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.pose import X, Y, Z, direction
 from eurdf.pinocchio.frames import body_frame_ids, placement_of
@@ -33,8 +34,6 @@ Color = tuple[float, float, float, float]
 #: Red, green, blue, alpha from 0 to 1.
 COLLISION: Color = (0.95, 0.6, 0.1, 0.45)
 INERTIA: Color = (0.25, 0.45, 0.9, 0.5)
-
-# Directions of the axes of a joint, where it has none of its own.
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -145,12 +144,7 @@ class Scene:
     """
 
     def __init__(self, robot: Robot, q: Vector) -> None:
-        """Collect what there is.
-
-        Args:
-            robot: The robot, with the shapes that it was loaded with; none if a mesh is missing.
-            q: A configuration (nq,) that shows its size.
-        """
+        """Collect what there is, with the shapes that were loaded; q (nq,) is a configuration that shows the size."""
         mechanism = robot.mechanism
         self.robot = robot
         self.bodies = tuple(body.name for body in mechanism.bodies)
@@ -257,32 +251,21 @@ def _ellipsoids(robot: Robot) -> list[BodySurface]:
     for number, body in enumerate(robot.mechanism.bodies):
         if body.inertia is None or not body.inertia.mass > 0.0:
             continue
-        half_axes, rotation = _ellipsoid(body.inertia)
-        pose = placement_of(body.inertia.pose) * pin.SE3(rotation, np.zeros(3))
-        parts.append(BodySurface("inertia", number, pose, sphere().scaled(half_axes), INERTIA))
+        found = along_principal_axes(body.inertia)
+        moments = np.array(found.moments)[[0, 3, 5]]
+        # Of half axes a, b, c: a² = 5/2 (I_b + I_c - I_a) / m. Moments that no body can have, which a diagnostic
+        # reports, make a half axis of 0.
+        half_axes = np.sqrt(np.maximum(2.5 * (moments.sum() - 2.0 * moments) / found.mass, 0.0))
+        parts.append(BodySurface("inertia", number, placement_of(found.pose), sphere().scaled(half_axes), INERTIA))
     return parts
-
-
-def _ellipsoid(inertia: Inertia) -> tuple[Vector, Matrix]:
-    """The half axes (3,), m, and the rotation from its axes: a² = 5/2 (I_b + I_c - I_a) / m.
-
-    Moments that no body can have, which a diagnostic reports, make a half axis of 0.
-    """
-    xx, xy, xz, yy, yz, zz = inertia.moments
-    moments, axes = np.linalg.eigh(np.array(((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))))
-    squares = 2.5 * (moments.sum() - 2.0 * moments) / inertia.mass
-    if np.linalg.det(axes) < 0.0:
-        axes[:, 0] = -axes[:, 0]
-    return np.sqrt(np.maximum(squares, 0.0)), axes
 
 
 def _axes(joint: Joint, body: int, actuated: bool) -> list[Axis]:
     """The axes of a joint, fixed to its child: three for a ball, those of the plane and its normal for a planar one."""
     if joint.type.nv in (0, 6):
         return []
-    written = joint.axes or (X, Y, Z)
     in_child = placement_of(joint.offset).inverse()
     return [
         Axis(joint.name, body, in_child.translation, in_child.rotation @ np.array(direction(axis)), actuated)
-        for axis in written
+        for axis in joint.axes or (X, Y, Z)
     ]

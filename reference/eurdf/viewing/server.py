@@ -155,11 +155,7 @@ def _greet(server: viser.ViserServer, listens: str) -> None:
 
 
 def _free_port(host: str, port: int | None) -> int:
-    """A port that can be listened on; viser would try others in silence.
-
-    Raises:
-        OSError: There is none.
-    """
+    """A port that can be listened on, or `OSError`; viser would try others in silence."""
     if port is not None:
         return _bound(host, port)
     for candidate in range(PORT, PORT + _PORTS):

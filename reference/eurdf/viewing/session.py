@@ -170,14 +170,6 @@ class Session:
         self.q = found.q
         return found
 
-    def go_to(self, name: str) -> None:
-        """Go to a named configuration.
-
-        Raises:
-            KeyError: There is none of this name.
-        """
-        self.q = self.configurations[name]
-
     def drag(self, frame: str, target: Any) -> str | None:
         """Bring a frame as near to a target as the closed loops and the position limits allow.
 
@@ -195,10 +187,6 @@ class Session:
             return None
         limits = f" ({', '.join(map(str, found.at_limits))})" if found.at_limits else ""
         return f"{found.reason}{limits}: {', '.join(map(str, found.errors))} off target"
-
-    def analyze(self) -> Analysis:
-        """The dimensions at the configuration."""
-        return analyze(self.robot, self.q)
 
     def carried_to(self, robot: Robot) -> Vector:
         """The configuration of another version of the robot in which its joints are where they are here."""

@@ -106,12 +106,7 @@ def sliders_of(robot: Robot, q: Vector, analysis: Analysis) -> Iterator[Slider]:
 
 
 def values_at(kind: JointType, q: Vector) -> Vector:
-    """The coordinates (n,).
-
-    Args:
-        kind: Type of the joint.
-        q: Its coordinates as Pinocchio has them.
-    """
+    """The coordinates (n,) of the pose of a joint of a type, whose coordinates as Pinocchio has them are q."""
     if kind.quaternion is None:
         x, y, cosine, sine = q
         return np.array((x, y, math.atan2(sine, cosine)))

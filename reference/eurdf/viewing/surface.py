@@ -41,11 +41,7 @@ class Surface:
 
 
 def surface_of(geometry: Any) -> Surface:
-    """The surface of a shape of a geometry model.
-
-    Args:
-        geometry: A box, sphere, cylinder, capsule or mesh of coal.
-    """
+    """The surface of a shape of a geometry model: a box, sphere, cylinder, capsule or mesh of coal."""
     if isinstance(geometry, coal.Box):
         return _box().scaled(np.asarray(geometry.halfSide))
     if isinstance(geometry, coal.Sphere):

@@ -13,11 +13,7 @@ class Worker:
     """Runs tasks one after the other, and plays frames while there are none."""
 
     def __init__(self, report: Callable[[Exception], None]) -> None:
-        """Start the thread.
-
-        Args:
-            report: Called with what a task raised that nobody waits for.
-        """
+        """Start the thread; ``report`` is called with what a task raised that nobody waits for."""
         self._report = report
         self._tasks: dict[Hashable, tuple[Callable[[], Any], Future[Any] | None]] = {}
         self._frames: Iterator[float] | None = None
@@ -46,11 +42,7 @@ class Worker:
         return future.result()
 
     def play(self, frames: Iterator[float] | None) -> None:
-        """Play frames between the tasks, or stop playing.
-
-        Args:
-            frames: Each step shows a frame and yields how long to show it, s.
-        """
+        """Play frames between the tasks, each of which shows itself and yields for how long, s; or stop playing."""
         with self._changed:
             self._frames = frames
             self._changed.notify()
