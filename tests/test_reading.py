@@ -24,9 +24,8 @@ from eurdf.format.urdf import read
 from eurdf.format.urdf.data import UrdfJoint
 from eurdf.format.urdf.elements import UrdfReader
 from eurdf.format.urdf.mimics import check_mimics
-from eurdf.reading.reporter import XmlReporter
 from eurdf.reading.source import read_source
-from eurdf.reading.xml_reader import read_xml
+from eurdf.reading.xml_reader import XmlReporter, read_xml
 from support.hostile import HOSTILE, INERTIAL, MEMORY, chain, joint, numbered, robot, star
 from support.places import DATA, ROOT, WILD
 from support.plain_urdf import Root, trees

@@ -153,22 +153,14 @@ def _diagnostics(read: ReadRobot, of_meshes: Sequence[Diagnostic], loops: bool, 
 
 
 def as_robot(given: Robot | RobotSource, *, geometry: bool = False) -> Robot:
-    """The robot that a caller gave, or the one that `load` makes of the path, text or name that was given.
-
-    Raises:
-        RobotNotFound, InvalidRobot, CannotExpand, MissingExtra: See `load`.
-    """
+    """The robot that a caller gave, or the one that `load` makes of the path, text or name that was given."""
     return load(given, geometry=geometry) if isinstance(given, _SOURCES) else given
 
 
 def of_any_robot(
     function: Callable[Concatenate[Robot, _Rest], _Result], *, geometry: bool = False
 ) -> Callable[Concatenate[Robot | RobotSource, _Rest], _Result]:
-    """A function whose first argument, the robot, may also be given as `load` takes it.
-
-    Args:
-        function: The function of a `Robot`.
-        geometry: Whether it needs the shapes of the robot.
+    """A function whose first argument, the robot, may also be given as `load` takes it, with or without its geometry.
 
     Returns:
         The function, as one of the module that calls this, in which it must have the same name to be pickled.
@@ -205,9 +197,7 @@ def check(
         The findings of all phases, in the order of the phases.
 
     Raises:
-        RobotNotFound: Where there are no such files.
-        CannotExpand: A xacro has an error, or `xacro_args` are given for what is no xacro.
-        MissingExtra: A xacro is given, and the extra ``xacro`` is not installed.
+        RobotNotFound, CannotExpand, MissingExtra: See `load`.
         ValueError: `confined` and `allow_outside` are both True.
     """
     read = read_robot(
@@ -263,14 +253,9 @@ def _check_loops(read: ReadRobot) -> None:
 
 
 def _read_mesh_files(urdf: Urdf, files: FoundFiles) -> tuple[dict[str, Mesh], Diagnostics]:
-    """EU-URD-034: every mesh file that was found can be read as a mesh.
+    """EU-URD-034: every mesh file that `find_meshes` found can be read as a mesh.
 
-    Args:
-        urdf: The URDF.
-        files: What `find_meshes` found; other files than meshes are ignored.
-
-    Returns:
-        The meshes, by path; one diagnostic for each mesh that cannot be read, and one for all of other formats.
+    The meshes, by path; one diagnostic for each mesh that cannot be read, and one for all of other formats.
     """
     paths = files.paths
     scaled = [(shape.filename, shape.size) for shape in urdf.shapes if shape.kind == "mesh" and shape.filename in paths]

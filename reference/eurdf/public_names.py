@@ -15,12 +15,7 @@ from typing import Any
 
 
 def public_names(module: str, file: str) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
-    """The functions ``__getattr__`` and ``__dir__`` of a module, whose stub is read when they are first used.
-
-    Args:
-        module: Its ``__name__``.
-        file: Its ``__file__``.
-    """
+    """``__getattr__`` and ``__dir__`` of a module, by its name and file; its stub is read when they are first used."""
 
     @cache
     def defined_in() -> dict[str, str]:

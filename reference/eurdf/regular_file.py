@@ -27,12 +27,7 @@ def open_now(path: str | os.PathLike[str]) -> int:
 
 
 def open_regular(path: str | os.PathLike[str]) -> BinaryIO:
-    """A regular file, opened to be read.
-
-    Raises:
-        OSError: It cannot be opened, or is not a regular file.
-        ValueError: The path has a NUL.
-    """
+    """A regular file, opened to be read, as by `open_now`; `OSError` if it is no regular file."""
     descriptor = open_now(path)
     if not stat.S_ISREG(os.fstat(descriptor).st_mode):
         os.close(descriptor)

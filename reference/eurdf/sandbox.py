@@ -71,14 +71,10 @@ def run(
     folder: str | None = None,
     environment: Mapping[str, str] | None = None,
 ) -> Done:
-    """Run a file of Python, which can import this package.
+    """Run a file of Python, which can import this package, and begins with `request_and_answers`.
 
-    Args:
-        program: The file; it begins with `request_and_answers`.
-        request: What it is asked, as JSON.
-        seconds: Time that it may take; for programs in C++, `bound_time` says more.
-        folder: Its working folder; by default, that of this process.
-        environment: Its environment; by default, that of this process.
+    The request is JSON. By default, it has the working folder and the environment of this process, and no bound of
+    time; for programs in C++, `bound_time` says more.
     """
     import subprocess  # only now: few robots need it
 
@@ -118,9 +114,7 @@ def bound_memory(more: int) -> None:
 def bound_time(seconds: float, processor: float | None = None) -> None:
     """End this process after a time, also one that is in C++; the bounds of an earlier call no longer count.
 
-    Args:
-        seconds: Time from now on.
-        processor: Processor time from now on; no effect on Windows.
+    Both times are from now on; that of the processor has no effect on Windows.
     """
     faulthandler.dump_traceback_later(seconds, exit=True)
     if processor is not None and resource is not None:

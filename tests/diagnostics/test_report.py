@@ -10,12 +10,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import eurdf
-from eurdf.commands.output import output_schemas, schema_text
+from eurdf.commands.output import output_schemas
 from eurdf.diagnostics import REGISTRY, Diagnostic, Phase, Place, Rule, Severity
 from eurdf.diagnostics.lines import Lines
 from eurdf.diagnostics.report import Report, report_schema, reports_to_json
 from eurdf.diagnostics.text import cells, report_lines, summary_line, total_line
 from eurdf.diagnostics.wording import visible
+from eurdf.format.schema import schema_text
 from support.places import ROOT
 
 SCHEMAS = ROOT / "schema"

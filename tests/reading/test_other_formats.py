@@ -112,4 +112,4 @@ def test_long_preamble_takes_no_time(tmp_path: Path) -> None:
 
 
 def test_every_format_of_the_table_is_imported() -> None:
-    assert [import_format(name).name for name in IMPORTED] == list(IMPORTED)
+    assert all(import_format(name).losses for name in IMPORTED)

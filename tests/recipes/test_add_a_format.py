@@ -45,7 +45,7 @@ def write(given: ExportInput, losses: Losses) -> ExportOutput:
     return ExportOutput({**urdf.files, "loops.csv": "\\n".join(lines).encode()}, urdf.coordinates)
 
 
-FORMAT = Format("loop-table", "URDF with a table of its loops", write, PLAIN_ROWS, (*EXACT, "3d closure"))
+FORMAT = Format(write, PLAIN_ROWS, (*EXACT, "3d closure"))
 ''',
     ),
 )

@@ -50,7 +50,7 @@ class TreeInDrake(SdfTree):
 
     def __init__(self, robot: Robot, export: eurdf.convert.Export) -> None:
         with tempfile.TemporaryDirectory() as folder:
-            super().__init__(Exported(export.write(folder)[0], robot, export.coordinates))
+            super().__init__(Exported(export.write(folder)[0], robot, export.coordinates, export.start))
         self.names = list(export.coordinates.names)  # Drake's vectors are in another order, which `at` knows
 
     bias = None

@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import zip_longest
-from typing import TYPE_CHECKING
 
 from eurdf.advice.hinges import LikelyHinge, likely_hinge
 from eurdf.advice.passive import PassiveMotions
-from eurdf.diagnostics import quoted
+from eurdf.array import Vector
+from eurdf.diagnostics import Diagnostics, Place, plural, quoted
 from eurdf.kinematics.analysis import Analysis, analyze
 from eurdf.kinematics.loop_analysis import LoopAnalysis
-from eurdf.pinocchio.robot import build_robot
-
-if TYPE_CHECKING:
-    from eurdf.array import Vector
-    from eurdf.diagnostics import Diagnostics, Place
-    from eurdf.linking.robot_files import ReadRobot
-    from eurdf.mechanism.mechanism import Mechanism
-    from eurdf.pinocchio.robot import Robot
+from eurdf.linking.robot_files import ReadRobot
+from eurdf.mechanism.mechanism import Mechanism
+from eurdf.pinocchio.robot import Robot, build_robot
 
 # Warnings of what changes which joints are actuated or constrained.
 _REASONS = frozenset({"near-miss-key", "closure-type-unknown", "urdf-closure-ignored"})
@@ -42,10 +37,10 @@ def advise_on_actuation(read: ReadRobot, robot: Robot, q: Vector, diagnostics: D
         return
     if not mechanism.actuators:
         key = _closures_key(mechanism)
-        count, noun = len(mechanism.constraints), "coupling" if key == "couplings" else "closure"
+        noun = "coupling" if key == "couplings" else "closure"
         diagnostics.report(
             "x-no-actuator",
-            f"the robot has {count} {noun if count == 1 else noun + 's'} and no actuator",
+            f"the robot has {plural(len(mechanism.constraints), noun)} and no actuator",
             _place_of_key(read, key),
             f"list the joints that its motors drive under '{_actuators_key(mechanism)}'",
         )
@@ -58,25 +53,20 @@ def advise_on_actuation(read: ReadRobot, robot: Robot, q: Vector, diagnostics: D
     shaky = [loop for loop in analysis.loops if loop.mobility and loop.finite_mobility == 0]
     if shaky:  # what actuators do there says little about another configuration
         for loop in shaky:
-            _report_shaky(read, robot, loop, diagnostics)
+            diagnostics.report(
+                "x-shaky-loops",
+                f"the loops of {_constraints(mechanism, loop)} have {plural(loop.mobility, 'motion')} to first order, "
+                "but are rigid",
+                read.place_of_constraint(loop.closures[0]),
+                "check the lengths at this configuration, or state another one as 'assembled'",
+            )
         return
     dependent = [loop for loop in analysis.loops if loop.dependent_actuators]
     if dependent:
         for loop, locking in zip(dependent, _locking(robot, analysis.q, dependent), strict=True):
-            hinge = None if locking else likely_hinge(robot, analysis.q, loop, _frees(robot, loop))
+            hinge = None if locking else _freeing_hinge(robot, analysis.q, loop)
             _report_dependent(read, robot, loop, locking, hinge, diagnostics)
     _report_uncontrolled(read, robot, analysis, diagnostics)
-
-
-def _report_shaky(read: ReadRobot, robot: Robot, loop: LoopAnalysis, diagnostics: Diagnostics) -> None:
-    """Report loops that are rigid although their rank leaves motions."""
-    count = f"{loop.mobility} {'motion' if loop.mobility == 1 else 'motions'}"
-    diagnostics.report(
-        "x-shaky-loops",
-        f"the loops of {_constraints(robot.mechanism, loop)} have {count} to first order, but are rigid",
-        read.place_of_constraint(loop.closures[0]),
-        "check the lengths at this configuration, or state another one as 'assembled'",
-    )
 
 
 def _report_dependent(
@@ -106,7 +96,9 @@ def _report_dependent(
         place = read.place_of_constraint(hinge.closure)
         hint = f"if closure '{hinge.closure}' is a pin, {hinge} frees the actuators"
     else:
-        place = _place_of_last_actuator(read, dependent)
+        # Of several actuators the one that is listed last, as what was added most likely.
+        entry = next(entry for entry in reversed(read.description.actuators) if entry.joint in dependent)
+        place = read.description.document.place(entry.pointer)
         hint = f"list only actuators that can move{'' if locked else ' independently'}, or correct the closures"
     diagnostics.report("x-dependent-actuators", message, place, hint)
 
@@ -145,24 +137,24 @@ def _locking(robot: Robot, q: Vector, loops: Sequence[LoopAnalysis]) -> list[tup
     return found
 
 
-def _frees(robot: Robot, loop: LoopAnalysis) -> Callable[[Robot, LoopAnalysis], bool]:
-    """Whether a group with another closure has independent actuators, and no more motions without one."""
-    most = len(PassiveMotions(robot).needing_actuators(loop))
-
-    def frees(trial: Robot, found: LoopAnalysis) -> bool:
-        return not found.dependent_actuators and len(PassiveMotions(trial).needing_actuators(found)) <= most
-
-    return frees
+def _freeing_hinge(robot: Robot, q: Vector, loop: LoopAnalysis) -> LikelyHinge | None:
+    """A closure that as a hinge makes actuators independent, and leaves no more motions without one."""
+    before = _uncontrolled(robot, loop)
+    return likely_hinge(
+        robot, q, loop, lambda trial, found: not found.dependent_actuators and _uncontrolled(trial, found) <= before
+    )
 
 
-def _controls(robot: Robot, loop: LoopAnalysis) -> Callable[[Robot, LoopAnalysis], bool]:
-    """Whether a group with another closure has the same controlled motions, and fewer without an actuator."""
-    least = len(PassiveMotions(robot).needing_actuators(loop))
+def _controlling_hinge(robot: Robot, q: Vector, loop: LoopAnalysis) -> LikelyHinge | None:
+    """A closure that as a hinge leaves the controlled motions as they are, and fewer without an actuator."""
+    before, controlled = _uncontrolled(robot, loop), loop.controlled
+    return likely_hinge(
+        robot, q, loop, lambda trial, found: found.controlled == controlled and _uncontrolled(trial, found) < before
+    )
 
-    def controls(trial: Robot, found: LoopAnalysis) -> bool:
-        return found.controlled == loop.controlled and len(PassiveMotions(trial).needing_actuators(found)) < least
 
-    return controls
+def _uncontrolled(robot: Robot, loop: LoopAnalysis) -> int:
+    return len(PassiveMotions(robot).needing_actuators(loop))
 
 
 def _trials(names: Sequence[str]) -> list[tuple[str, ...]]:
@@ -186,7 +178,7 @@ def _report_uncontrolled(read: ReadRobot, robot: Robot, analysis: Analysis, diag
             "actuate a joint of each motion, add the missing closure, or use type 6d if it also fixes the orientation"
         )
         loose = (loop for loop in analysis.loops if loop.actuated and passive.needing_actuators(loop))
-        hinges = (likely_hinge(robot, analysis.q, loop, _controls(robot, loop)) for loop in loose)
+        hinges = (_controlling_hinge(robot, analysis.q, loop) for loop in loose)
         if (hinge := next(filter(None, hinges), None)) is not None:
             hint = f"if closure '{hinge.closure}' is a pin, {hinge} leaves fewer; else {hint}"
         shown = "; ".join(moved[:_MOTIONS_LISTED]) + ("; ..." if len(moved) > _MOTIONS_LISTED else "")
@@ -212,19 +204,11 @@ def _place_of_key(read: ReadRobot, key: str) -> Place:
     return read.description.document.place((key,), True)
 
 
-def _place_of_last_actuator(read: ReadRobot, joints: Sequence[str]) -> Place:
-    """Of several actuators the one that is listed last, as what was added most likely."""
-    entry = next(entry for entry in reversed(read.description.actuators) if entry.joint in joints)
-    return read.description.document.place(entry.pointer)
-
-
 def _constraints(mechanism: Mechanism, loop: LoopAnalysis) -> str:
     """The closures and the couplings of a group of loops."""
-    couplings = {coupling.name for coupling in mechanism.couplings}
-    closures = [name for name in loop.closures if name not in couplings]
-    coupled = [name for name in loop.closures if name in couplings]
-    parts = [_counted(noun, names) for noun, names in (("closure", closures), ("coupling", coupled)) if names]
-    return " and ".join(parts)
+    kinds = {"closure": mechanism.closures, "coupling": mechanism.couplings}
+    named = {noun: [each.name for each in kind if each.name in loop.closures] for noun, kind in kinds.items()}
+    return " and ".join(_counted(noun, names) for noun, names in named.items() if names)
 
 
 def _counted(noun: str, names: Sequence[str]) -> str:

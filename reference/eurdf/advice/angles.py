@@ -5,16 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from functools import partial
-from typing import TYPE_CHECKING
 
+from eurdf.diagnostics import Diagnostics, Place
 from eurdf.format.model import Description
+from eurdf.format.urdf.data import Urdf
 from eurdf.linking.robot_files import ReadRobot
+from eurdf.mechanism.mechanism import Mechanism
 from eurdf.reading.yaml_node import Pointer
-
-if TYPE_CHECKING:
-    from eurdf.diagnostics import Diagnostics, Place
-    from eurdf.format.urdf.data import Urdf
-    from eurdf.mechanism.mechanism import Mechanism
 
 # An orientation beyond one turn, and a joint angle beyond two, is looked at, in rad. Wrists and steering wheels turn up
 # to one and a half times to either side; of published robots, limits are at most 10 rad or else beyond `_MOST`.
@@ -33,7 +30,7 @@ _PER_DEGREE = 2.0
 # A multiple of a quarter turn in rad, to this rounding of its digits, is one on purpose; a whole number is not such.
 _ROUNDING = 0.01
 
-_Place = Callable[[], "Place"]
+_Place = Callable[[], Place]
 _Found = tuple[float, str, _Place]
 
 

@@ -4,23 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
 
+from eurdf.array import Vector
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.hinge import HingeClosure
 from eurdf.closures.point import PointClosure
 from eurdf.kinematics.analysis import analyze
 from eurdf.kinematics.loop_analysis import LoopAnalysis
 from eurdf.mechanism.constraint import Closure
-from eurdf.pinocchio.robot import build_robot
-
-if TYPE_CHECKING:
-    from eurdf.array import Vector
-    from eurdf.mechanism.pose import Vector3
-    from eurdf.pinocchio.robot import Robot
+from eurdf.mechanism.pose import Vector3
+from eurdf.pinocchio.robot import Robot, build_robot
 
 #: So many robots are built and analysed at most.
 _MOST_TRIED = 24
@@ -51,12 +48,8 @@ def likely_hinge(
 ) -> LikelyHinge | None:
     """The first 3d or 6d closure of a group of loops that is better as a hinge, about the first axis that is.
 
-    Args:
-        robot: The robot.
-        q: A closed configuration (nq,).
-        loop: The group.
-        is_better: Whether the group is, in a robot with the hinge; asked only if the loops can move as far as their
-            rank says.
+    The configuration (nq,) is closed. Whether the group ``is_better`` in a robot with the hinge is asked only if the
+    loops can move as far as their rank says.
     """
     mechanism = robot.mechanism
     group = [closure for closure in mechanism.closures if closure.name in loop.closures]

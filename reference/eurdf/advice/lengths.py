@@ -5,15 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
-from typing import TYPE_CHECKING
 
+from eurdf.diagnostics import Diagnostics, Place
+from eurdf.format.urdf.data import Urdf
 from eurdf.linking.mesh_files import place_of_file
 from eurdf.linking.robot_files import ReadRobot
-
-if TYPE_CHECKING:
-    from eurdf.diagnostics import Diagnostics, Place
-    from eurdf.format.urdf.data import Urdf
-    from eurdf.pinocchio.meshes import Mesh
+from eurdf.pinocchio.meshes import Mesh
 
 # A length beyond this, in m, is looked at. In a hundred published robots the longest is 2.9 m.
 _LONG = 10.0
@@ -28,7 +25,7 @@ _TIMES = 100.0
 _HEAVY = 10.0
 
 # A length in m, what it is the length of, and its place.
-_Found = tuple[float, str, Callable[[], "Place"]]
+_Found = tuple[float, str, Callable[[], Place]]
 
 
 def advise_on_lengths(read: ReadRobot, meshes: Mapping[str, Mesh], diagnostics: Diagnostics) -> None:

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from eurdf.array import Vector
+from eurdf.diagnostics import Diagnostics
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.loop import joints_of_loops
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.linking.configurations import BeyondLimit, beyond_limits
-
-if TYPE_CHECKING:
-    from eurdf.array import Vector
-    from eurdf.diagnostics import Diagnostics
-    from eurdf.linking.robot_files import ReadRobot
-    from eurdf.pinocchio.robot import Robot
+from eurdf.linking.robot_files import ReadRobot
+from eurdf.pinocchio.robot import Robot
 
 # Joints that a hint lists.
 _JOINTS_LISTED = 4
@@ -41,7 +37,7 @@ def advise_on_limits(read: ReadRobot, robot: Robot, q: Vector, diagnostics: Diag
         beyond = min(beyond, _beyond(robot, near.q), key=lambda found: max(map(_excess, found), default=0.0))
     if not beyond:  # the search without limits ended within them
         return
-    widest = max(within.open, key=lambda opening: max(opening.position, opening.angle))
+    widest = max(within.open, key=lambda opening: opening.width)
     listed = ", ".join(map(_said, beyond[:_JOINTS_LISTED])) + (", ..." if len(beyond) > _JOINTS_LISTED else "")
     diagnostics.report(
         "x-closes-beyond-limits",
@@ -54,11 +50,9 @@ def advise_on_limits(read: ReadRobot, robot: Robot, q: Vector, diagnostics: Diag
 def _beyond(robot: Robot, q: Vector) -> list[BeyondLimit]:
     """The coordinates of joints of the loops that are beyond their limits."""
     names, first = robot.tree.velocity_names, robot.tree.own_velocities
-    joints = joints_of_loops(robot)
-    in_loops = {names[first[joint].start] for joint in joints}
-    return [
-        found for found in beyond_limits(robot.mechanism.joints, robot.joint_positions(q)) if found.joint in in_loops
-    ]
+    in_loops = {names[first[joint].start] for joint in joints_of_loops(robot)}
+    beyond = beyond_limits(robot.mechanism.joints, robot.joint_positions(q))
+    return [found for found in beyond if found.joint in in_loops]
 
 
 def _middle(robot: Robot, q: Vector) -> Vector:
@@ -75,7 +69,6 @@ def _excess(found: BeyondLimit) -> float:
 
 
 def _said(found: BeyondLimit) -> str:
-    side, limit = ("below", found.lower) if found.value < found.lower else ("above", found.upper)
-    unit = "m" if found.coordinate == "length" else "rad"
-    bound = "lower" if side == "below" else "upper"
-    return f"'{found.joint}' {_excess(found):.3g} {unit} {side} its {bound} limit {limit:.4g}"
+    side = f"below its lower limit {found.lower:.4g}" if found.value < found.lower else ""
+    side = side or f"above its upper limit {found.upper:.4g}"
+    return f"'{found.joint}' {_excess(found):.3g} {found.unit} {side}"

@@ -9,10 +9,10 @@ from eurdf.advice.quaternions import closes_w_first
 from eurdf.diagnostics import Diagnostics
 from eurdf.kinematics.opening import Opening, widest
 from eurdf.linking.robot_files import ReadRobot
+from eurdf.mechanism.mechanism import Mechanism
 
 if TYPE_CHECKING:
     from eurdf.kinematics.assembly import Assembly
-    from eurdf.mechanism.mechanism import Mechanism
     from eurdf.pinocchio.robot import Robot
 
 #: Loops that are open by no more than this, in rad and of the length of the longest loop, may be so because numbers in
@@ -30,7 +30,17 @@ def closure_diagnostics(read: ReadRobot, robot: Robot, assembly: Assembly | None
     if read.yaml is None or not mechanism.constraints:
         return diagnostics
     if "assembled" in mechanism.configurations:
-        return assembled_diagnostics(read, robot)
+        from eurdf.kinematics.residual import openings_once
+
+        openings = openings_once(robot, robot.configurations["assembled"])
+        if any(opening.is_open for opening in openings):
+            diagnostics.report(
+                "assembled-open",
+                f"the loops are open at the assembled configuration: {widest(openings)}",
+                read.place_of_configuration("assembled"),
+                _hint_for_assembled(robot, openings),
+            )
+        return diagnostics
     from eurdf.kinematics.assembly import assemble
 
     assembly = assemble(robot) if assembly is None else assembly
@@ -59,22 +69,6 @@ def _hint_for_open(mechanism: Mechanism, name: str) -> str:
     if any(coupling.name == name for coupling in mechanism.couplings):
         return "check the coefficients and offsets of the couplings, and that enough joints can move"
     return "check where the frames of the closure are, and that enough joints can move"
-
-
-def assembled_diagnostics(read: ReadRobot, robot: Robot) -> Diagnostics:
-    """EU-CLO-005: at ``assembled`` every closure is closed."""
-    from eurdf.kinematics.residual import openings_once
-
-    diagnostics = Diagnostics()
-    openings = openings_once(robot, robot.configurations["assembled"])
-    if any(opening.is_open for opening in openings):
-        diagnostics.report(
-            "assembled-open",
-            f"the loops are open at the assembled configuration: {widest(openings)}",
-            read.place_of_configuration("assembled"),
-            _hint_for_assembled(robot, openings),
-        )
-    return diagnostics
 
 
 def _hint_for_assembled(robot: Robot, openings: Sequence[Opening]) -> str:

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
 
 from eurdf.array import Matrix, Vector
+from eurdf.diagnostics import Diagnostics
 from eurdf.kinematics.loop import joints_of_loops
 from eurdf.kinematics.scale import characteristic_length
+from eurdf.linking.robot_files import ReadRobot
 from eurdf.mechanism.mechanism import ROOT_JOINT
-
-if TYPE_CHECKING:
-    from eurdf.diagnostics import Diagnostics
-    from eurdf.linking.robot_files import ReadRobot
-    from eurdf.pinocchio.robot import Robot
+from eurdf.pinocchio.robot import Robot
 
 # How far from the closed configuration the joints are moved for a second look, rad and characteristic lengths: what is
 # singular at one configuration alone is a gimbal lock, and no missing mass.
@@ -76,7 +74,9 @@ def advise_on_massless_links(read: ReadRobot, robot: Robot, q: Vector, diagnosti
             _report(read, [child_of[model.names[joint]] for joint in moving if joint in massless], why, diagnostics)
             continue
         for joint in joints:
-            if joint not in massless or joint not in looped or joint in second or _has_armature(robot, joint):
+            if joint not in massless or joint not in looped or joint in second:
+                continue
+            if (model.armature[list(robot.tree.velocities_of(model.names[joint]))] > 0.0).all():
                 continue
             reach = _reach(model, joint, children, anchors)
             if reach > _REACH:
@@ -103,10 +103,6 @@ def _reach(model: Any, joint: int, children: dict[int, list[int]], anchors: dict
     return max((float(np.linalg.norm(placement.translation)) for placement in carried), default=0.0)
 
 
-def _has_armature(robot: Robot, joint: int) -> bool:
-    return bool((robot.model.armature[list(robot.tree.velocities_of(robot.model.names[joint]))] > 0.0).all())
-
-
 def _is_massless(inertia: Any) -> bool:
     return not inertia.mass and not inertia.inertia.any()
 
@@ -125,12 +121,7 @@ def _together(top: int, massless: set[int], children: dict[int, list[int]]) -> l
 def _motions_at_rest(model: Any, joints: list[int], massless: set[int], q: Vector, length: float) -> Matrix:
     """Basis (k, n) of the velocities of joints by which nothing moves that has mass, nor an armature that resists.
 
-    Args:
-        model: The model.
-        joints: As `_together` gives them.
-        massless: All bodies without mass.
-        q: Configuration (nq,).
-        length: Characteristic length, m.
+    The joints are as `_together` gives them, the characteristic length is in m.
     """
     first, columns = {}, 0
     for joint in joints:

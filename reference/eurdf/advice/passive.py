@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pinocchio as pin
@@ -12,9 +11,7 @@ from eurdf.array import Matrix, Vector
 from eurdf.kinematics.loop import joints_of_loops
 from eurdf.kinematics.loop_analysis import LoopAnalysis, Motion, sparse_basis
 from eurdf.kinematics.scale import characteristic_length
-
-if TYPE_CHECKING:
-    from eurdf.pinocchio.robot import Robot
+from eurdf.pinocchio.robot import Robot
 
 # By how much lines that count as one may differ, in rad and characteristic lengths: the numbers in files are rounded.
 _SAME_LINE = 1e-3
@@ -120,9 +117,8 @@ class PassiveMotions:
 def _turns_about_one_line(twists: list[Vector], length: float) -> bool:
     """Whether twists are such, except those of bodies that do not move.
 
-    Args:
-        twists: Of bodies, each (6,), linear and angular, rad/s and m/s; the velocities that they come from are about 1.
-        length: Characteristic length, m.
+    Each is (6,), linear and angular, m/s and rad/s; the velocities that they come from are about 1. The characteristic
+    length is in m.
     """
     if not twists:
         return True

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from eurdf.mechanism.mechanism import ROOT_JOINT
+from eurdf.diagnostics import Diagnostics
+from eurdf.linking.robot_files import ReadRobot
+from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 
 if TYPE_CHECKING:
-    from eurdf.diagnostics import Diagnostics
-    from eurdf.linking.robot_files import ReadRobot
-    from eurdf.mechanism.mechanism import Mechanism
     from eurdf.pinocchio.robot import Robot
 
 # Numbers of a quaternion that differ by less are one.
@@ -33,7 +32,9 @@ def advise_on_quaternions(read: ReadRobot, robot: Robot | None, diagnostics: Dia
         looped: set[str] = set()
         closed = by_turned = False
         if robot is not None:
-            looped = _looped(robot)
+            from eurdf.kinematics.loop import joints_of_loops
+
+            looped = {robot.model.names[joint] for joint in joints_of_loops(robot)}
             closed = _closes(robot, coordinates)
             by_turned = not closed and _closes(robot, {**coordinates, **turned})
         for joint, values in turned.items():
@@ -80,11 +81,3 @@ def _closes(robot: Robot, coordinates: _Coordinates) -> bool:
 
     q = robot.configuration(coordinates)
     return not any(opening.is_open for opening in all_openings(robot, q))
-
-
-def _looped(robot: Robot) -> set[str]:
-    """Names of the joints of the loops."""
-    from eurdf.kinematics.loop import joints_of_loops
-
-    model = robot.model
-    return {model.names[joint] for joint in joints_of_loops(robot)}

@@ -6,15 +6,13 @@ import os
 from pathlib import Path
 from typing import NamedTuple
 
-from eurdf.collection.near_paths import near_path
+from eurdf.collection.near_paths import URDF_ENDINGS, YAML_ENDINGS, near_path
 from eurdf.errors import RobotNotFound
 from eurdf.mesh_files.folders import MANIFEST
 from eurdf.reading.robot_source import STDIN, RobotSource, display_name, is_stream, is_xml, source_of
 from eurdf.reading.source import Source, unreadable
 
 _FOLDER = Path(__file__).parent
-_YAML = (".yaml", ".yml")
-_URDF = (".urdf", ".xml", ".xacro")
 # What a folder may have instead: a message names it, so that the next one says what to do with it.
 _OTHERS = (".xacro", ".xml", ".sdf", ".usd", ".usda", ".usdc", ".usdz")
 
@@ -35,12 +33,6 @@ def collection_folder() -> Path | None:
         if folder.is_dir():
             return folder
     return None
-
-
-def schema_folder() -> Path | None:
-    """The folder of the schema files, beside that of the collection."""
-    robots = collection_folder()
-    return None if robots is None else robots.parent / "schema"
 
 
 def collection_names() -> list[str]:
@@ -78,7 +70,7 @@ def find_robot(path: RobotSource, urdf: RobotSource | None = None) -> RobotFiles
         raise RobotNotFound("", "the path of the robot is empty; '.' is the working directory")
     where = Path(path)
     if os.path.lexists(where):
-        if where.suffix.lower() in _URDF:
+        if where.suffix.lower() in URDF_ENDINGS:
             _refuse_second_urdf(path, urdf)
             return RobotFiles(None, where)
         return RobotFiles(where, _given_urdf(urdf))
@@ -101,11 +93,7 @@ def has_urdf(folder: Path) -> bool:
 
 
 def _files(folder: Path) -> list[Path]:
-    """What is in a folder, except folders: a link to nothing, or a pipe, is an error where it is read.
-
-    Raises:
-        FileError: The folder cannot be read.
-    """
+    """What is in a folder, except folders: a link to nothing, or a pipe, is an error where it is read."""
     try:
         names = os.listdir(folder)
     except OSError as error:
@@ -132,13 +120,13 @@ def _refuse_second_urdf(path: RobotSource, urdf: RobotSource | None) -> None:
 
 
 def _in_folder(folder: Path, given: Path | Source | None) -> RobotFiles:
-    for ending in _YAML:
+    for ending in YAML_ENDINGS:
         description = folder / f"robot{ending}"
         # Asked in two ways, since the first takes one call of the system and is nearly always true.
         if os.path.isfile(description) or (os.path.lexists(description) and not os.path.isdir(description)):
             return RobotFiles(description, given)
     files = _files(folder)
-    descriptions = [path for path in files if path.suffix.lower() in _YAML]
+    descriptions = [path for path in files if path.suffix.lower() in YAML_ENDINGS]
     # By the ending that catalogues of schemas know, other YAML files beside it aside.
     descriptions = [path for path in descriptions if path.stem.lower().endswith(".eurdf")] or descriptions
     if len(descriptions) == 1:

@@ -9,20 +9,15 @@ from collections.abc import Collection, Iterable
 from pathlib import Path
 
 #: Endings of files that a robot may be given by.
-ENDINGS = (".yaml", ".yml", ".urdf", ".xml", ".xacro")
+YAML_ENDINGS, URDF_ENDINGS = (".yaml", ".yml"), (".urdf", ".xml", ".xacro")
+ENDINGS = (*YAML_ENDINGS, *URDF_ENDINGS)
 
 #: Files and folders that a name is compared with.
 _COMPARED = 2000
 
 
 def near_path(path: str, names: Collection[str] = (), endings: tuple[str, ...] = ENDINGS) -> str | None:
-    """What a path may mean that leads nowhere, or None.
-
-    Args:
-        path: Such a path.
-        names: Names of robots, for a path that is no more than a name.
-        endings: Endings of the files that may be meant.
-    """
+    """What a path may mean that leads nowhere, or None: a file with an ending, or by a name alone a robot."""
     if not path.strip() or "\0" in path:
         return None
     place = Path(path)

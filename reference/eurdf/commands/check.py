@@ -49,7 +49,7 @@ def check(
 ) -> int:
     """Check, and write the diagnostics."""
     import eurdf
-    from eurdf.diagnostics import quoted
+    from eurdf.diagnostics import plural, quoted
     from eurdf.diagnostics.wording import visible
 
     skipped = without_robot(paths)
@@ -78,7 +78,6 @@ def check(
     else:
         write_lines([[(f"{visible(path)}: no robot", "")] for path in paths], sys.stdout)
     if skipped:
-        count = "1 folder" if len(skipped) == 1 else f"{len(skipped)} folders"
         names = visible(quoted(skipped, len(skipped)))
-        write_lines([[(f"skipped {count} without a robot: {names}", "")]], sys.stderr)
+        write_lines([[(f"skipped {plural(len(skipped), 'folder')} without a robot: {names}", "")]], sys.stderr)
     return 0 if all(report.passes(strict) for report in reports) else 1

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from eurdf.collection.near_paths import near_path
+from eurdf.collection.near_paths import URDF_ENDINGS, near_path
 from eurdf.commands.selection import select_one
 from eurdf.commands.terminal import write_refusal
 from eurdf.errors import CannotRun, InvalidRobot, MissingExtra
@@ -21,17 +21,14 @@ from eurdf.reading.robot_source import is_stream, is_text
 STDOUT = "-"
 
 _PATH = "a robot: a folder, a .yaml, .urdf or .xacro file, - for standard input, or a name of the collection"
-_URDF_ENDINGS = (".urdf", ".xml", ".xacro")
 
 
 @dataclass(slots=True, eq=False, repr=False)
 class Option:
     """An argument of a command: the default of a parameter of its function.
 
-    Attributes:
-        names: Its names; those of an option are made of that of the parameter if there are none.
-        group: Options in succession that have the same one exclude each other.
-        settings: The other parameters of `argparse.ArgumentParser.add_argument`.
+    Without names, that of an option is made of the parameter's. Options in succession that have the same group exclude
+    each other. The settings are other parameters of `argparse.ArgumentParser.add_argument`.
     """
 
     names: tuple[str, ...]
@@ -196,12 +193,9 @@ def ending(exit_codes: str, *examples: str) -> str:
 
 @contextmanager
 def cannot_run(*errors: type[Exception], unless: tuple[type[Exception], ...] = (), by: str = "") -> Iterator[None]:
-    """Raise `CannotRun` in place of some errors; one that says what to do by itself stays as it is.
+    """Raise `CannotRun` in place of some errors, with ``by`` before their texts.
 
-    Args:
-        errors: Their types.
-        unless: Types of errors that stay as they are, too.
-        by: What comes before their texts.
+    An error that says what to do by itself stays as it is, and one of the types ``unless``.
     """
     try:
         yield
@@ -212,20 +206,15 @@ def cannot_run(*errors: type[Exception], unless: tuple[type[Exception], ...] = (
 
 
 def require_urdf(path: str) -> None:
-    """Check that a URDF exists.
-
-    Raises:
-        CannotRun: It does not exist.
-    """
+    """Raise `CannotRun` if a URDF does not exist."""
     if not (os.path.exists(path) or is_stream(path) or is_text(path)):
-        raise CannotRun(f"the URDF '{path}' does not exist{_hint(near_path(path, endings=_URDF_ENDINGS))}")
+        raise CannotRun(f"the URDF '{path}' does not exist{_hint(near_path(path, endings=URDF_ENDINGS))}")
 
 
 def _file_options(values: dict[str, Any]) -> dict[str, Any]:
     """Take the values of options that say which files to read; as keyword arguments of `eurdf.load`.
 
-    Raises:
-        CannotRun: A file or a folder does not exist.
+    A file or a folder that does not exist is refused by `CannotRun`.
     """
     taken: dict[str, Any] = {}
     if "confined" in values:

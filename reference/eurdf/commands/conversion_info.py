@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
-from eurdf.convert.losses import Effect
+from eurdf.convert.losses import Effect, Loss
 from eurdf.convert.verification.read_model import Finding
 from eurdf.json_schema import Keywords, NullIfInfinite
 from eurdf.kinematics.opening import Opening
 
 if TYPE_CHECKING:
-    from eurdf.convert.losses import Loss
     from eurdf.convert.verification.verify import Verification
     from eurdf.diagnostics import Place
 
@@ -160,16 +159,7 @@ class ImportInfo:
 def loss_infos(losses: Sequence[Loss], place_of: Callable[[Loss], Place | None]) -> tuple[LossInfo, ...]:
     """Losses, and where the element of each is stated, if anywhere."""
     return tuple(
-        LossInfo(
-            loss.code,
-            loss.effect,
-            loss.concept,
-            loss.name,
-            loss.message,
-            loss.hint,
-            None if place is None else place.file,
-            None if place is None else place.line or None,
-        )
+        LossInfo(**asdict(loss), file=place.file if place else None, line=place.line or None if place else None)
         for loss, place in ((loss, place_of(loss)) for loss in losses)
     )
 

@@ -13,11 +13,10 @@ from eurdf.commands.conversion_lines import loss_lines, verification_lines
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import writing
 from eurdf.commands.terminal import progress_bar, write_lines, write_notes, write_refusal
-from eurdf.convert.formats import ACTUATORS, CLOSURES, EXPORTS, MESH_FILES
+from eurdf.convert.formats import ACTUATORS, CLOSURES, EXPORTS, MESH_FILES, Actuators, ClosureChoice, MeshFileChoice
 from eurdf.errors import CannotRun
 
 if TYPE_CHECKING:
-    from eurdf.convert.formats import Actuators, ClosureChoice, MeshFileChoice
     from eurdf.convert.losses import Loss
     from eurdf.diagnostics import Place
     from eurdf.linking.robot_files import ReadRobot
@@ -106,7 +105,8 @@ def export(
     else:
         losses = exported.losses
         with writing():
-            folder = output or f"{_file_name(read.mechanism.name)}_{to}"
+            name = re.sub(r"[^A-Za-z0-9._-]", "_", read.mechanism.name).strip(".") or "robot"
+            folder = output or f"{name}_{to}"
             paths = [os.fspath(each) for each in exported.write(folder, force=force)]
         if verify:
             with progress_bar("simulating") as progress:
@@ -124,10 +124,6 @@ def export(
         if verification is not None:
             write_lines(verification_lines(verification), sys.stdout)
     return 1 if refusal or (verification is not None and verification.findings) else 0
-
-
-def _file_name(robot: str) -> str:
-    return re.sub(r"[^A-Za-z0-9._-]", "_", robot).strip(".") or "robot"
 
 
 def _place(read: ReadRobot, loss: Loss) -> Place | None:

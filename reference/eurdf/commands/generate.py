@@ -8,18 +8,19 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, Literal
 
 from eurdf.commands.command import FORCE_DESCRIPTION, OUTPUT, URDF, cannot_run, command, flag, option, require_urdf
-from eurdf.commands.description_file import (
+from eurdf.commands.output import write_result
+from eurdf.commands.output_file import (
     NOT_BESIDE,
     SCHEMA,
     DescriptionFile,
     EditorSchema,
+    refuse_to_replace,
     schema_beside,
     urdf_named,
     urdf_notes,
 )
-from eurdf.commands.output import write_result
-from eurdf.commands.output_file import refuse_to_replace
 from eurdf.commands.terminal import write_notes, write_refusal
+from eurdf.diagnostics import plural
 from eurdf.errors import CannotRun
 from eurdf.reading.robot_source import display_name
 
@@ -157,5 +158,4 @@ def _summary(generation: Generation) -> list[str]:
 
 
 def _count(what: str, names: Collection[str], more: str = "") -> str:
-    many = f"{len(names)} {what}{'' if len(names) == 1 else 's'}{more}"
-    return many + (f": {', '.join(names)}" if names else "")
+    return plural(len(names), what) + more + (f": {', '.join(names)}" if names else "")

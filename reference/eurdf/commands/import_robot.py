@@ -14,6 +14,7 @@ from eurdf.commands.conversion_lines import loss_lines
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import writing
 from eurdf.commands.terminal import write_lines, write_notes, write_reports
+from eurdf.diagnostics import plural
 from eurdf.reading.other_formats import IMPORTED
 
 if TYPE_CHECKING:
@@ -96,7 +97,7 @@ def _loops(found: Import) -> list[str]:
     is_open = [opening for opening in found.opened if opening.is_open]
     if not found.opened:
         return []
-    count = f"{len(found.opened)} constraint{'' if len(found.opened) == 1 else 's'}"
+    count = plural(len(found.opened), "constraint")
     if not is_open:
         return [f"{count} closed at {found.start}"]
     widest = max(is_open, key=lambda opening: opening.width)

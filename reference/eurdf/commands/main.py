@@ -44,11 +44,7 @@ _START_FASTER = {"OPENBLAS_NUM_THREADS": "1", "PYDANTIC_DISABLE_PLUGINS": "__all
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command line.
-
-    Returns:
-        The exit code: 0 success, 1 a robot has errors, 2 the command cannot run.
-    """
+    """Run the command line; the exit code is 0 for success, 1 if a robot has errors, 2 if the command cannot run."""
     for name, value in _START_FASTER.items():
         os.environ.setdefault(name, value)
     for name in ("stdout", "stderr"):

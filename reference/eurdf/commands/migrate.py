@@ -7,17 +7,17 @@ from pathlib import Path
 from typing import Any
 
 from eurdf.commands.command import FORCE_DESCRIPTION, OUTPUT, ROBOT, command, flag
-from eurdf.commands.description_file import (
+from eurdf.commands.output import write_result
+from eurdf.commands.output_file import (
     NOT_BESIDE,
     SCHEMA,
     DescriptionFile,
     EditorSchema,
+    refuse_to_replace,
     schema_beside,
     urdf_named,
     urdf_notes,
 )
-from eurdf.commands.output import write_result
-from eurdf.commands.output_file import refuse_to_replace
 from eurdf.errors import CannotRun
 
 _DESCRIPTION = """\

@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import inspect
-import json
 import re
 import sys
 from collections.abc import Iterator
@@ -53,6 +52,8 @@ def _schema(result: type) -> dict[str, Any]:
     """
     from pydantic import ConfigDict, TypeAdapter
 
+    from eurdf.format.schema import DIALECT
+
     config = ConfigDict(extra="forbid", use_attribute_docstrings=True, arbitrary_types_allowed=True)
     # The configuration of a tuple is also that of its members, which are classes without one.
     parts = TypeAdapter(tuple[result], config=config).json_schema(mode="serialization")["$defs"]  # type: ignore[valid-type]
@@ -69,7 +70,7 @@ def _schema(result: type) -> dict[str, Any]:
             own["properties"][name] = dict(sorted({**field, "description": text}.items()))
         own["required"] = list(own["properties"])
     own = parts.pop(result.__name__)
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **({"$defs": parts} if parts else {}), **own}
+    return {"$schema": DIALECT, **({"$defs": parts} if parts else {}), **own}
 
 
 def _parts(result: Any) -> Iterator[type]:
@@ -91,13 +92,10 @@ def _sentences(*classes: type) -> dict[str, str]:
     return {name: " ".join(text.split()).replace("``", "'").replace("`", "'") for name, text in found}
 
 
-def schema_text(schema: dict[str, Any]) -> str:
-    """The text of the schema file."""
-    return json.dumps(schema, indent=2, ensure_ascii=False) + "\n"
-
-
 def main(folder: str) -> None:
     """Write every schema into a folder."""
+    from eurdf.format.schema import schema_text
+
     for name, schema in output_schemas().items():
         Path(folder, name).write_text(schema_text(schema), encoding="utf-8")
 

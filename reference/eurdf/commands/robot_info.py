@@ -222,13 +222,7 @@ def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
         for coupling in mechanism.couplings
     )
     own["actuator_list"] = tuple(
-        ActuatorInfo(
-            joint,
-            joints[joint].type,
-            joints[joint].type.nv,
-            name,
-            controls.get(joint),
-        )
+        ActuatorInfo(joint, joints[joint].type, joints[joint].type.nv, name, controls.get(joint))
         for joint, name in zip(mechanism.actuators, robot.actuation.names, strict=True)
     )
     own["frame_list"] = tuple(FrameInfo(frame.name, frame.body) for frame in mechanism.frames if frame.kind == "frame")

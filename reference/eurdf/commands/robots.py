@@ -14,6 +14,8 @@ from eurdf.json_schema import Count
 # A narrower terminal has no space for descriptions.
 _WIDE = 120
 
+_COUNTS = ("nv", "closures", "nc", "mobility", "actuated", "uncontrolled")
+
 
 @dataclass(frozen=True, slots=True)
 class CollectedRobot:
@@ -73,27 +75,18 @@ def _collected(name: str) -> CollectedRobot:
         return CollectedRobot(name, error=next(str(each) for each in refusal.diagnostics if each.severity == "error"))
     mechanism, analysis = robot.mechanism, eurdf.analyze(robot)
     description = mechanism.metadata.get("description")
-    return CollectedRobot(
-        name=name,
-        description=description if isinstance(description, str) else None,
-        root=mechanism.root,
-        nv=analysis.nv,
-        closures=len(mechanism.closures),
-        nc=analysis.nc,
-        mobility=analysis.mobility,
-        actuated=analysis.actuated,
-        uncontrolled=analysis.uncontrolled,
-    )
+    text = description if isinstance(description, str) else None
+    counts = {count: getattr(analysis, count) for count in _COUNTS if count != "closures"}
+    return CollectedRobot(name, text, mechanism.root, closures=len(mechanism.closures), **counts)
 
 
 def _show(collection: Collection) -> None:
     from eurdf.diagnostics.wording import visible
 
-    counts = ("nv", "closures", "nc", "mobility", "actuated", "uncontrolled")
     described = not is_terminal(sys.stdout) or columns() >= _WIDE
     rows = []
     for robot in collection.robots:
-        numbers = (getattr(robot, count) for count in counts)
+        numbers = (getattr(robot, count) for count in _COUNTS)
         said = cell("cannot be built", "red") if robot.error else cell(robot.description or "")
         rows.append(
             (
@@ -103,9 +96,9 @@ def _show(collection: Collection) -> None:
                 *([said] if described else []),
             )
         )
-    headings = ("robot", *counts, "root", *(["description"] if described else []))
-    table = new_table(*headings, rows=rows, right=range(1, len(counts) + 1))
-    for column in table.columns[: len(counts) + 2]:
+    headings = ("robot", *_COUNTS, "root", *(["description"] if described else []))
+    table = new_table(*headings, rows=rows, right=range(1, len(_COUNTS) + 1))
+    for column in table.columns[: len(_COUNTS) + 2]:
         column.no_wrap = described
     write_rendered(table)
     errors = (f"{robot.name}: {robot.error}" for robot in collection.robots if robot.error)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eurdf.collection import find_robot, has_urdf
+from eurdf.collection.near_paths import YAML_ENDINGS
 from eurdf.diagnostics import FileError
 from eurdf.errors import CannotRun, RobotNotFound
 from eurdf.reading.robot_source import is_stream, is_text
@@ -22,10 +23,9 @@ if TYPE_CHECKING:
 #: The name of the neutral configuration, unless the description has one of this name.
 NEUTRAL = "neutral"
 
-_DESCRIPTIONS = ("robot.yaml", "robot.yml")
-_YAML_SUFFIXES = (".yaml", ".yml")
+_DESCRIPTIONS = tuple(f"robot{ending}" for ending in YAML_ENDINGS)
 # The file name ending of descriptions in a folder with other YAML files; schema catalogs know it.
-_OWN_SUFFIXES = (".eurdf.yaml", ".eurdf.yml")
+_OWN_SUFFIXES = tuple(f".eurdf{ending}" for ending in YAML_ENDINGS)
 
 # Top-level keys that only descriptions of robots have, in version 2 or version 1.
 _FORMAT_KEY = re.compile(rb"""^(["']?)(?:extended_urdf|closed_loop)\1[ \t]*:""", re.MULTILINE)
@@ -37,12 +37,8 @@ def select(paths: Iterable[str], allow_none: bool = False) -> list[str]:
     A folder with a ``robot.yaml`` or ``robot.yml`` is one robot. Any other folder is searched: each folder in it with
     such a file is a robot; in the others, a YAML file is a robot if its name is ``*.eurdf.yaml``, or if it has the
     top-level key ``extended_urdf`` or ``closed_loop``. Hidden folders and links to folders are skipped. Any other path,
-    and a folder in which no robot is found, is passed to `eurdf.load`.
-
-    Args:
-        paths: The paths that the user gave.
-        allow_none: Whether a folder can contain no robot. Its only YAML file is then treated like one of any other
-            folder.
+    and a folder in which no robot is found, is passed to `eurdf.load`. If ``allow_none``, a folder can contain no
+    robot, and its only YAML file is treated like one of any other folder.
 
     Raises:
         RobotNotFound: A path does not exist, or contains no robot.
@@ -54,10 +50,7 @@ def select(paths: Iterable[str], allow_none: bool = False) -> list[str]:
 def without_robot(paths: Sequence[str]) -> list[str]:
     """The folders without a robot among several paths: those that ``robots/*/`` also stands for.
 
-    Empty if no path is left without them: that is an error of the caller.
-
-    Raises:
-        CannotRun: A folder cannot be read.
+    Empty if no path is left without them: that is an error of the caller. `CannotRun` if a folder cannot be read.
     """
     found = [path for path in paths if os.path.isdir(path) and not _has_robot(path)]
     return [] if len(found) == len(paths) else list(dict.fromkeys(found))
@@ -71,12 +64,7 @@ def _has_robot(folder: str) -> bool:
 
 
 def select_one(path: str) -> str:
-    """The single robot that a path selects.
-
-    Raises:
-        RobotNotFound: There is no robot.
-        CannotRun: There are several robots.
-    """
+    """The single robot that a path selects, as `select` does; several are refused by `CannotRun`."""
     robots = select([path])
     if len(robots) > 1:
         raise CannotRun(f"'{path}' contains {len(robots)} robots, such as '{robots[0]}'; give one of them")
@@ -84,11 +72,7 @@ def select_one(path: str) -> str:
 
 
 def named_configuration(robot: Robot, name: str) -> Vector:
-    """A configuration of the description, or the neutral one.
-
-    Raises:
-        CannotRun: There is none of this name.
-    """
+    """A configuration of the description, or the neutral one; `CannotRun` if there is none of this name."""
     import pinocchio as pin
 
     from eurdf.diagnostics import did_you_mean
@@ -138,7 +122,7 @@ def _robots_below(folder: str) -> list[str]:
         found += [
             os.path.join(place, name)
             for name in sorted(files)
-            if name.endswith(_OWN_SUFFIXES) or (name.endswith(_YAML_SUFFIXES) and _describes_robot(Path(place, name)))
+            if name.endswith(_OWN_SUFFIXES) or (name.endswith(YAML_ENDINGS) and _describes_robot(Path(place, name)))
         ]
     return found
 

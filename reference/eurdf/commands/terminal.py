@@ -137,13 +137,7 @@ def write_rendered(*renderables: RenderableType) -> None:
 
 
 def new_table(*headings: str, rows: Iterable[Iterable[Any]] = (), right: Iterable[int] = ()) -> Table:
-    """A table for the standard output, with lines on a terminal.
-
-    Args:
-        headings: Of its columns; "" is none.
-        rows: Its cells.
-        right: Indices of the columns that are aligned to the right.
-    """
+    """A table for the standard output, with lines on a terminal; the columns ``right`` are aligned to the right."""
     from rich import box
     from rich.table import Table
 

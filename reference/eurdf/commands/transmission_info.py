@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 
 from eurdf.array import Matrix, Vector
 from eurdf.json_schema import PAIRS, ROW, Count
+from eurdf.pinocchio.robot import Robot
 from eurdf.transmissions.inertia import reflected_inertia
 from eurdf.transmissions.limits import CommonLimits, SerialLimits, serial_limits
 from eurdf.transmissions.motors import linkage_bodies
@@ -18,9 +19,6 @@ from eurdf.transmissions.positions import beyond_limits
 from eurdf.transmissions.selection import Selection
 from eurdf.transmissions.serial_model import Choice, Neglected
 from eurdf.transmissions.transmission import at_one
-
-if TYPE_CHECKING:
-    from eurdf.pinocchio.robot import Robot
 
 Rows = tuple[tuple[float, ...], ...]
 
@@ -115,14 +113,9 @@ def transmission_info(
     configurations: Sequence[Vector | None],
     positions: Sequence[Sequence[float]],
 ) -> TransmissionInfo:
-    """A transmission as ``eurdf transmission`` shows it.
+    """A transmission as ``eurdf transmission`` shows it, at closed configurations (nq,) and positions of the joints.
 
-    Args:
-        robot: The robot.
-        joints: The joints.
-        motors: The motors that move them.
-        configurations: Closed configurations (nq,); None where the joints cannot be reached.
-        positions: Of the joints at each of them.
+    A configuration is None where the joints cannot be reached.
     """
     reasons: list[str] = []
     poses = [_pose(robot, joints, motors, q, own, reasons) for q, own in zip(configurations, positions, strict=True)]
@@ -139,12 +132,7 @@ def transmission_info(
 
 
 def _pose(
-    robot: Robot,
-    joints: Selection,
-    motors: Selection,
-    q: Vector | None,
-    positions: Sequence[float],
-    reasons: list[str],
+    robot: Robot, joints: Selection, motors: Selection, q: Vector | None, positions: Sequence[float], reasons: list[str]
 ) -> PoseInfo:
     if q is None:
         return PoseInfo(tuple(positions), reached=False)

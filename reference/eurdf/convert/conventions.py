@@ -5,15 +5,13 @@ from __future__ import annotations
 from itertools import combinations, product
 
 import numpy as np
-import numpy.typing as npt
 
+from eurdf.array import Matrix
 from eurdf.closures.kind import ClosureKind, PoseArrays
 from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Vector3
 from eurdf.mechanism.spanning_tree import rigid_roots
-
-Matrix = npt.NDArray[np.float64]
 
 #: Error at which a position actuator reaches the effort limit, rad or m; and its gain without such a limit.
 FULL_EFFORT_AT, GAIN = 0.1, 100.0

@@ -9,14 +9,11 @@ from functools import reduce
 from operator import mul
 
 import numpy as np
-import numpy.typing as npt
 
+from eurdf.array import Matrix, Vector
 from eurdf.convert.parts import OwnVectors, Part
 from eurdf.mechanism.pose import IDENTITY_QUATERNION, Pose, Quaternion
 from eurdf.writing.xml_text import rpy_of
-
-Vector = npt.NDArray[np.float64]
-Matrix = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, repr=False)
@@ -90,10 +87,10 @@ class Coordinates:
             if part.mimics:
                 continue
             own = self._from_model(part, _off_circles(given[start : start + part.nq].tolist(), part.circular))
-            place = self.own.places[part.joint]
-            if place.nq > len(own):
+            place, _ = self.own.places[part.joint]
+            if place.stop - place.start > len(own):
                 own[-1:] = math.cos(own[-1]), math.sin(own[-1])
-            q[place.idx_q : place.idx_q + place.nq] = own
+            q[place] = own
         return q
 
     def rates(self, q: Vector) -> Matrix:
@@ -102,7 +99,7 @@ class Coordinates:
         T = np.zeros((self.nv, self.own.nv))
         for part, row in zip(self.parts, self._idx_v, strict=False):
             block = self._block(part, q)
-            column = self.own.places[part.joint].idx_v
+            _, column = self.own.places[part.joint]
             T[row : row + block.shape[0], column : column + block.shape[1]] = block
         return T
 
@@ -119,7 +116,7 @@ class Coordinates:
             if part.mimics:
                 continue
             mine = given[row : row + part.nv]
-            at = self.own.places[part.joint].idx_v
+            _, at = self.own.places[part.joint]
             if part.ratios:
                 for value, (index, multiplier, _) in zip(mine, part.ratios, strict=True):
                     if multiplier:  # of a helical joint, the angle is last
@@ -133,7 +130,7 @@ class Coordinates:
         found = self.rates(q) @ _checked("a", a, self.own.nv)
         v = _checked("v", v, self.own.nv)
         for part, row in zip(self.parts, self._idx_v, strict=False):
-            at = self.own.places[part.joint].idx_v
+            _, at = self.own.places[part.joint]
             if part.rotation == "xyz":
                 # ω = E ȧ, so ä = E⁻¹ (ω̇ - Ė ȧ); found has E⁻¹ ω̇.
                 inverse = self._block(part, q)
@@ -152,10 +149,9 @@ class Coordinates:
         return np.asarray(found)
 
     def _own_coordinates(self, part: Part, q: Vector) -> tuple[float, ...]:
-        place = self.own.places[part.joint]
-        own = q[place.idx_q : place.idx_q + place.nq].tolist()
-        expected = 1 if part.mimics else len(part.type.coordinates)
-        if place.nq > expected:
+        place, _ = self.own.places[part.joint]
+        own = q[place].tolist()
+        if len(own) > (1 if part.mimics else len(part.type.coordinates)):
             own[-2:] = [math.atan2(own[-1], own[-2])]
         return tuple(own)
 

@@ -13,18 +13,10 @@ from eurdf.array import Vector
 from eurdf.convert.common_losses import BEYOND_LIMITS, UNKNOWN
 from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.export_format import ExportInput, Triangles, export_format
-from eurdf.convert.formats import (
-    ACTUATORS,
-    CLOSURES,
-    EXPORTS,
-    MESH_FILES,
-    Actuators,
-    ClosureChoice,
-    MeshFileChoice,
-)
+from eurdf.convert.formats import ACTUATORS, CLOSURES, EXPORTS, MESH_FILES, Actuators, ClosureChoice, MeshFileChoice
 from eurdf.convert.hinges import with_hinges
 from eurdf.convert.losses import Effect, Loss, Losses
-from eurdf.convert.parts import OwnVectors, VectorPlace
+from eurdf.convert.parts import OwnVectors
 from eurdf.convert.verification.verify import Verification, verify
 from eurdf.diagnostics import did_you_mean
 from eurdf.errors import CannotExport, InvalidRobot
@@ -197,11 +189,7 @@ def export(
 
 
 def export_linked(
-    read: ReadRobot,
-    choices: Choices,
-    package_dirs: Sequence[str | os.PathLike[str]],
-    *,
-    allow_outside: bool = False,
+    read: ReadRobot, choices: Choices, package_dirs: Sequence[str | os.PathLike[str]], *, allow_outside: bool = False
 ) -> Export:
     """Export a robot that was read; see `export`."""
     files = find_meshes(read.urdf, package_dirs, allow_outside=allow_outside)
@@ -267,13 +255,14 @@ def _export(
 
 def _triangles(folders: Folders, path: Path) -> Triangles | None:
     meshes, _ = read_meshes([("", (1.0, 1.0, 1.0))], {"": os.fspath(path)}, folders)
-    return meshes.get(os.fspath(path))
+    mesh = meshes.get(os.fspath(path))
+    return None if mesh is None else (mesh.vertices, mesh.triangles)
 
 
 def _own_vectors(robot: Robot) -> OwnVectors:
-    places = {name: VectorPlace(slot.idx_q, slot.nq, slot.idx_v) for name, slot in robot.slots.items()}
+    places = {name: (slice(slot.idx_q, slot.idx_q + slot.nq), slot.idx_v) for name, slot in robot.slots.items()}
     if robot.mechanism.root == "floating":
-        places[ROOT_JOINT] = VectorPlace(0, 7, 0)
+        places[ROOT_JOINT] = (slice(0, 7), 0)
     return OwnVectors(robot.model.nq, robot.model.nv, MappingProxyType(places))
 
 

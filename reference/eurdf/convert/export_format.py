@@ -3,36 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
+from eurdf.array import Matrix
 from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.formats import Actuators, MeshFileChoice
 from eurdf.convert.losses import Losses, LossKind
 from eurdf.convert.parts import OwnVectors
 from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mesh_files.folders import Folders
 from eurdf.mesh_files.reader import MeshReader
 
-
-class Triangles(Protocol):
-    """The triangles of a mesh file: vertices (n, 3), in the unit of the file, and their indices (m, 3)."""
-
-    @property
-    def vertices(self) -> npt.NDArray[np.float64]: ...  # noqa: D102
-
-    @property
-    def triangles(self) -> npt.NDArray[np.int64]: ...  # noqa: D102
-
-
-def _unread(path: Path) -> None:
-    """No reader of meshes."""
+#: The triangles of a mesh file: vertices (n, 3), in the unit of the file, and their indices (m, 3).
+Triangles = tuple[Matrix, npt.NDArray[np.int64]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,23 +41,18 @@ class ExportInput:
 
     mechanism: Mechanism
     own: OwnVectors
-    configurations: Mapping[str, Mapping[str, tuple[float, ...]]] = field(default_factory=dict)
-    meshes: Mapping[str, Path] = field(default_factory=dict)
-    refused: Mapping[str, str] = field(default_factory=dict)
-    reader: MeshReader = field(default_factory=lambda: MeshReader(Folders()))
-    actuators: Actuators = "motor"
-    mesh_files: MeshFileChoice = "copy"
-    read_mesh: Callable[[Path], Triangles | None] = _unread
+    configurations: Mapping[str, Mapping[str, tuple[float, ...]]]
+    meshes: Mapping[str, Path]
+    refused: Mapping[str, str]
+    reader: MeshReader
+    actuators: Actuators
+    mesh_files: MeshFileChoice
+    read_mesh: Callable[[Path], Triangles | None]
 
     @property
     def start(self) -> Mapping[str, tuple[float, ...]]:
         """The configuration to start from; empty, where all coordinates are neutral, if none is known."""
         return next(iter(self.configurations.values()), {})
-
-    @property
-    def mimics(self) -> dict[str, Mimic]:
-        """For each mimic joint, the joint at the end of its chain of leaders, and the relation between the two."""
-        return self.mechanism.leaders
 
 
 def coordinates_at(
@@ -100,15 +83,11 @@ class Format:
     """A format to export to.
 
     Attributes:
-        name: As the user gives it.
-        title: What it is.
         write: Writes a robot, and adds the losses that `rows` leaves to it.
         rows: Every kind of loss.
         exact: The joints and closures without a row, as in `ELEMENTS`: they are as in the robot.
     """
 
-    name: str
-    title: str
     write: Callable[[ExportInput, Losses], ExportOutput]
     rows: tuple[LossKind, ...]
     exact: tuple[str, ...]

@@ -1,8 +1,12 @@
-"""3d closures as hinges, where the bodies turn about one axis alone: for solvers that hold no ball in a loop."""
+"""The axis of a hinge, of which the rest of the mechanism shows that its bodies turn about this axis alone.
+
+Exports make hinges of 3d closures, for solvers that hold no ball in a loop. Imports find the axes of hinges of which a
+file states the frames alone.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -18,6 +22,8 @@ from eurdf.kinematics.analysis import analyze
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.mechanism.constraint import Closure
+from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.pose import AXES, Vector3
 from eurdf.pinocchio.robot import Robot, build_robot
 
 #: Singular values of an angular velocity, relative to those of the whole motion, that count as none.
@@ -25,6 +31,11 @@ _NO_TURN = 1e-9
 
 #: How far the loops are moved to see whether the axis stays, rad or m, and how far it may turn, rad.
 _STEP, _SAME = 0.2, 1e-6
+
+#: Largest angle between the axis that is allowed and one of the frames, rad: files may be in single precision.
+_PARALLEL = 1e-4
+
+_AXES = dict(zip("xyz", AXES, strict=True))
 
 
 def with_hinges(robot: Robot, q: Vector) -> tuple[Robot, tuple[Loss, ...]]:
@@ -95,3 +106,52 @@ def _frames(robot: Robot, data: Any, closure: Closure) -> list[Vector]:
     """Orientations (3, 3) of A and B in the world."""
     sites = [robot.tree.site(anchor) for anchor in closure.anchors]
     return [data.oMi[joint].rotation @ placement.rotation for joint, placement in sites]
+
+
+# -- hinges without an axis -------------------------------------------------------------------------------------------
+
+
+def allowed_axes(
+    mechanism: Mechanism, names: Collection[str], coordinates: Mapping[str, tuple[float, ...]]
+) -> dict[str, str] | None:
+    """For each hinge, the axis of its two frames that it can have, if that is one axis.
+
+    With only their points closed, the other joints and closures decide how the links turn against each other. They must
+    turn about one axis that is fixed in both links, and is x, y or z of both frames.
+
+    Args:
+        mechanism: The mechanism, in which the axes of these hinges have no meaning.
+        names: Of the hinges.
+        coordinates: Where to start closing the loops.
+
+    Returns:
+        The axes of the hinges that have one; None if the loops cannot be closed.
+    """
+    points = tuple(each.with_orientation_free() if each.name in names else each for each in mechanism.closures)
+    robot = build_robot(replace(mechanism, closures=points), geometry=False)
+    assembly = assemble(robot, robot.configuration(coordinates), limits=False)
+    if not assembly.closes:
+        return None
+    hinges = with_hinges(robot, assembly.q)[0].mechanism.closures
+    found: dict[str, str] = {}
+    for closure in hinges:
+        if closure.name in names and isinstance(closure, HingeClosure):
+            for name, axis in _AXES.items():
+                if _parallel(closure.axes, axis):
+                    found[closure.name] = name
+    return found
+
+
+def with_axes(mechanism: Mechanism, axes: Mapping[str, str]) -> Mechanism:
+    """The mechanism with these axes of its hinges, each the same in both frames."""
+    closures = tuple(
+        HingeClosure(each.name, each.a, each.b, axes=(_AXES[axes[each.name]],) * 2) if each.name in axes else each
+        for each in mechanism.closures
+    )
+    return replace(mechanism, closures=closures)
+
+
+def _parallel(axes: tuple[Vector3, Vector3], axis: Vector3) -> bool:
+    """Whether unit vectors in both frames are along an axis, or both against it."""
+    cosines = [sum(one * other for one, other in zip(each, axis, strict=True)) for each in axes]
+    return cosines[0] * cosines[1] > 0.0 and min(map(abs, cosines)) > 1.0 - _PARALLEL**2 / 2.0

@@ -12,7 +12,6 @@ from eurdf.convert.losses import Losses, LossKind, dropped, exact
 from eurdf.convert.names import FileNames
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mesh_files.reader import MeshReader
-from eurdf.reading.other_formats import IMPORTED
 from eurdf.reading.resource import FileFinder
 
 
@@ -80,19 +79,12 @@ class ImportFormat:
     """A format to import from.
 
     Attributes:
-        name: As the user gives it, in `eurdf.reading.other_formats.IMPORTED`.
         read: Reads a file.
         losses: Every kind of loss that `read` can record, beside those of all formats.
     """
 
-    name: str
     read: Callable[[ImportInput], RobotRead]
     losses: tuple[LossKind, ...]
-
-    @property
-    def title(self) -> str:
-        """What it is."""
-        return IMPORTED[self.name].title
 
 
 def loss_kinds(rows: Mapping[str, LossKind]) -> tuple[LossKind, ...]:

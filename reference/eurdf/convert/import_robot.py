@@ -6,7 +6,7 @@ import math
 import os
 import re
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -15,8 +15,8 @@ from types import MappingProxyType
 import numpy as np
 
 from eurdf.array import Vector
-from eurdf.convert.import_format import ImportFormat, ImportInput, RobotRead, import_format, loss_kinds
-from eurdf.convert.loop_axes import allowed_axes, with_axes
+from eurdf.convert.hinges import allowed_axes, with_axes
+from eurdf.convert.import_format import ImportInput, RobotRead, import_format, loss_kinds
 from eurdf.convert.losses import Effect, Loss, Losses, dropped, exact
 from eurdf.convert.readme import licence_file, readme
 from eurdf.convert.xml_elements import places_of_names, recognized
@@ -185,7 +185,7 @@ def import_robot(
     name = format or recognized(file)
     finder = FileFinder(file.absolute().parent, [] if within is None else [within], allow_outside=allow_outside)
     chosen = import_format(name)
-    imported = _import(chosen, ImportInput(file, finder, Losses((*COMMON, *chosen.losses))))
+    imported = _import(name, chosen.read, ImportInput(file, finder, Losses((*COMMON, *chosen.losses))))
     if strict and (refused := tuple(loss for loss in imported.losses if loss.effect is not Effect.EXACT)):
         more = f"; and {len(refused) - 1} more" if len(refused) > 1 else ""
         raise CannotImport(file, f"it has losses: {refused[0]}{more}", refused)
@@ -203,15 +203,15 @@ def _relative(found: Diagnostic, folder: str) -> Diagnostic:
     return Diagnostic(found.code, found.message.replace(here, ""), place, hint)
 
 
-def _import(chosen: ImportFormat, given: ImportInput) -> Import:
+def _import(format_: str, read_file: Callable[[ImportInput], RobotRead], given: ImportInput) -> Import:
     path, losses = given.path, given.losses
-    read = chosen.read(given)
+    read = read_file(given)
     licence = licence_file(path, given.folders)
     for outside in given.folders.let_through:
         losses.add("import-file-outside", outside)
     start, coordinates = read.start
     # First: no number that the format refuses, such as an infinite one, may reach the kinematics.
-    _description(path, chosen.name, read.mechanism, read)
+    _description(path, format_, read.mechanism, read)
     _must_be_coordinates(path, start, coordinates)
     mechanism = _with_points_joined(read.mechanism, losses)
     if read.without_axis:
@@ -225,17 +225,17 @@ def _import(chosen: ImportFormat, given: ImportInput) -> Import:
         version=version_needed(mechanism),
         metadata=MappingProxyType({"source": visible(path.name), **mechanism.metadata}),
     )
-    written, schema = _description(path, chosen.name, mechanism, read)
+    written, schema = _description(path, format_, mechanism, read)
     files = {
         "robot.urdf": written.urdf,
         "robot.yaml": written.yaml.encode(),
-        "README.md": readme(path, chosen, mechanism, losses.found, read, opened, licence).encode(),
+        "README.md": readme(path, IMPORTED[format_].title, mechanism, losses.found, read, opened, licence).encode(),
         FILES[schema]: schema_text(json_schema(schema)).encode(),
         **given.meshes,
     }
     if licence is not None:
         files["LICENSE"] = licence.read_bytes()
-    return Import(chosen.name, mechanism, losses.found, MappingProxyType(files), start, opened, closes, read.sources)
+    return Import(format_, mechanism, losses.found, MappingProxyType(files), start, opened, closes, read.sources)
 
 
 def _with_points_joined(mechanism: Mechanism, losses: Losses) -> Mechanism:

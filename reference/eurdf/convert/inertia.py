@@ -6,16 +6,14 @@ import math
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
+from eurdf.array import Matrix
 from eurdf.convert.coordinates import rotation_matrix
 from eurdf.convert.losses import Losses
 from eurdf.errors import CannotExport
 from eurdf.mechanism.body import Body, Inertia
 from eurdf.mechanism.pose import IDENTITY, Pose
 from eurdf.writing.xml_text import angles_with_yaw
-
-Matrix = npt.NDArray[np.float64]
 
 #: A change of a principal moment by this part of the largest one is rounding.
 _SAME_MOMENT = 1e-12

@@ -91,6 +91,7 @@ class MeshFiles:
 
 def _wavefront(triangles: Triangles) -> bytes:
     """An OBJ file."""
-    lines = [f"v {numbers(vertex)}" for vertex in triangles.vertices.tolist()]
-    lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles.triangles.tolist()]
+    vertices, faces = triangles
+    lines = [f"v {numbers(vertex)}" for vertex in vertices.tolist()]
+    lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces.tolist()]
     return "\n".join([*lines, ""]).encode()

@@ -12,15 +12,9 @@ from eurdf.writing.xml_text import representable
 class UniqueNames:
     """Unique names of the elements of one kind; each name that had to change is a loss."""
 
-    def __init__(
-        self,
-        losses: Losses,
-        *reserved: str,
-        code: str = "export-name",
-        representable: Callable[[str], str] = representable,
-    ) -> None:
-        self._losses, self._used, self._code = losses, set(reserved), code
-        self._representable = representable
+    def __init__(self, losses: Losses, *reserved: str, representable: Callable[[str], str] = representable) -> None:
+        self._losses, self._used, self._representable = losses, set(reserved), representable
+        self._code = "import-name" if losses.has_kind("import-name") else "export-name"
 
     def new(self, name: str) -> str:
         """The name, or one made of it that is not used yet."""

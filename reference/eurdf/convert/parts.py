@@ -12,33 +12,19 @@ from eurdf.mechanism.pose import IDENTITY_QUATERNION, Quaternion
 
 
 @dataclass(frozen=True, slots=True)
-class VectorPlace:
-    """Where the coordinates and velocities of a joint are in the vectors of a robot.
-
-    Attributes:
-        idx_q: Index of its first coordinate in q.
-        nq: Number of its coordinates in q; one more than in files where an angle is (cos, sin).
-        idx_v: Index of its first velocity in v.
-    """
-
-    idx_q: int
-    nq: int
-    idx_v: int
-
-
-@dataclass(frozen=True, slots=True)
 class OwnVectors:
     """The vectors of a robot.
 
     Attributes:
         nq: Number of coordinates.
         nv: Number of velocities.
-        places: Place of each joint with coordinates of its own, by name; of a floating root under ``root_joint``.
+        places: For each joint with coordinates of its own, by name, where these are in q, and the index of its first
+            velocity in v; of a floating root under ``root_joint``.
     """
 
     nq: int
     nv: int
-    places: Mapping[str, VectorPlace]
+    places: Mapping[str, tuple[slice, int]]
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from eurdf.convert.import_format import ImportFormat, RobotRead
+from eurdf.convert.import_format import RobotRead
 from eurdf.convert.losses import Loss
 from eurdf.diagnostics.wording import visible
 from eurdf.kinematics.opening import Opening
@@ -35,7 +35,7 @@ def licence_file(path: Path, folders: Folders) -> Path | None:
 
 def readme(
     path: Path,
-    format_: ImportFormat,
+    title: str,
     mechanism: Mechanism,
     losses: Sequence[Loss],
     read: RobotRead,
@@ -46,7 +46,7 @@ def readme(
     lines = [
         f"# {_plain(mechanism.name)}",
         "",
-        f"Imported from `{_plain(path.name)}` ({format_.title}).",
+        f"Imported from `{_plain(path.name)}` ({title}).",
         "",
         "| | |",
         "| --- | --- |",

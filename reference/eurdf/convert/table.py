@@ -49,8 +49,7 @@ def details(name: str) -> str:
 
 def imports() -> str:
     """Tables in Markdown of the losses of imports: one for each format, and one for what all share."""
-    formats = [import_format(name) for name in IMPORTED]
-    parts = [(each.title, each.losses) for each in formats] + [("Every format", COMMON)]
+    parts = [(each.title, import_format(name).losses) for name, each in IMPORTED.items()] + [("Every format", COMMON)]
     return "\n".join(_of_imports(title, losses) for title, losses in parts)
 
 

@@ -1,14 +1,8 @@
 """Diagnostics: codes, places, messages, and how they are shown."""
 
-from eurdf.diagnostics.diagnostic import (
-    Diagnostic,
-    Diagnostics,
-    FileError,
-    Hint,
-    Place,
-)
+from eurdf.diagnostics.diagnostic import Diagnostic, Diagnostics, FileError, Hint, Place
 from eurdf.diagnostics.registry import REGISTRY, Phase, Rule, Severity
-from eurdf.diagnostics.wording import did_you_mean, enumerated, quoted
+from eurdf.diagnostics.wording import did_you_mean, enumerated, plural, quoted
 
 __all__ = [
     "REGISTRY",
@@ -22,5 +16,6 @@ __all__ = [
     "Severity",
     "did_you_mean",
     "enumerated",
+    "plural",
     "quoted",
 ]

@@ -6,6 +6,7 @@ is advice of this parser (EU-DIA-006): a warning that no clause requires.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from enum import Enum
 from typing import NamedTuple
 
@@ -59,24 +60,9 @@ class Rule(NamedTuple):
     title: str
 
 
-def _rules(phase: Phase, rows: str) -> list[Rule]:
-    rules = []
-    for row in rows.strip().splitlines():
-        code, clause, severity, title = row.split(maxsplit=3)
-        rules.append(Rule(code, phase, Severity(severity), clause, title))
-    return rules
-
-
-def _advice(rows: str) -> list[Rule]:
-    """This parser's own warnings: a code with `OWN_PREFIX`, and a title (EU-DIA-006)."""
-    pairs = (row.split(maxsplit=1) for row in rows.strip().splitlines())
-    return [Rule(code, Phase.ADVICE, Severity.WARNING, None, title) for code, title in pairs]
-
-
-_TABLE = [
-    *_rules(
-        Phase.YAML,
-        """
+#: The phases, and below each its codes; advice has neither clauses nor severities.
+_TABLE = """
+yaml:
 file-unreadable            EU-FIL-001 error   The file cannot be read.
 file-too-large             EU-FIL-002 error   The file is larger than the allowed maximum.
 file-not-utf8              EU-FIL-003 error   The file is not UTF-8 text.
@@ -90,11 +76,7 @@ yaml-too-deep              EU-YML-007 error   Nodes are nested deeper than the a
 yaml-key-not-string        EU-YML-008 error   A mapping key is not a string.
 yaml-not-finite            EU-YML-009 error   A number is infinite or NaN.
 yaml-version               EU-YML-010 error   A %YAML directive states a version other than 1.2.
-""",
-    ),
-    *_rules(
-        Phase.SCHEMA,
-        """
+schema:
 unsupported-version        EU-VER-001 error   The file states an unknown version of Extended URDF.
 unknown-key                EU-EXT-001 error   A mapping has a key that is not part of the format.
 near-miss-key              EU-ONE-002 warning A user-defined key is similar to a key of the format.
@@ -104,11 +86,7 @@ wrong-length               EU-SCH-003 error   A list has the wrong length.
 wrong-value                EU-SCH-004 error   A value is not one of the allowed values.
 out-of-range               EU-SCH-005 error   A number is outside the allowed range.
 conflicting-keys           EU-SCH-006 error   Two keys exclude each other.
-""",
-    ),
-    *_rules(
-        Phase.URDF,
-        """
+urdf:
 urdf-not-found             EU-FIL-004 error   The URDF file that the description names does not exist.
 xml-syntax                 EU-URD-001 error   The file is not well-formed XML.
 xml-doctype                EU-URD-002 error   The XML has a document type declaration.
@@ -147,11 +125,7 @@ urdf-unknown-material      EU-URD-029 warning A material is used but not defined
 urdf-texture-missing       EU-URD-033 warning A texture names no file, or one that is not found.
 urdf-mesh-unreadable       EU-URD-034 error   A mesh file cannot be read as a mesh.
 urdf-planar-axis           EU-URD-030 warning The axis of a planar joint is not z, and is read as z.
-""",
-    ),
-    *_rules(
-        Phase.LINK,
-        """
+link:
 unknown-frame              EU-FRM-001 error   A name is not a link, joint or frame of the robot.
 ambiguous-frame            EU-FRM-002 error   A name refers to two different frames.
 duplicate-frame            EU-FRM-003 error   The name of a frame is already in use.
@@ -168,11 +142,7 @@ length-mismatch            EU-ONE-003 error   Two corresponding lists have diffe
 duplicate-actuator-name    EU-ACT-008 error   Two actuators have the same name.
 duplicate-replacement      EU-JNT-002 error   A joint is changed or merged more than once.
 duplicate-joint-name       EU-JNT-003 error   The name of a joint that the description creates is already in use.
-""",
-    ),
-    *_rules(
-        Phase.SEMANTIC,
-        """
+semantic:
 actuator-immobile          EU-ACT-002 error   An actuated joint cannot move.
 actuator-duplicate         EU-ACT-003 error   A joint is listed as an actuator twice.
 actuator-mimic             EU-ACT-004 error   An actuated joint is a mimic joint.
@@ -200,26 +170,15 @@ closure-axis-zero          EU-CLO-013 error   An axis of a hinge is zero.
 coupling-joint             EU-CPL-003 error   A coupled joint does not have exactly one coordinate of its own.
 coupling-duplicate         EU-CPL-004 error   A coupling is a multiple of another one.
 closure-type-unknown       EU-CLO-007 warning A closure has a user-defined type and is not part of the model.
-""",
-    ),
-    *_rules(
-        Phase.INERTIA,
-        """
+inertia:
 negative-mass              EU-INR-001 error   A mass is negative.
 inertia-not-psd            EU-INR-002 error   A rotational inertia is not positive semidefinite.
 inertia-triangle           EU-INR-003 warning The principal moments of an inertia violate the triangle inequality.
 leaf-without-inertia       EU-INR-004 error   The last moving link of a chain has no mass or no inertia about its joint.
-""",
-    ),
-    *_rules(
-        Phase.CLOSURE,
-        """
+closure:
 assembled-open             EU-CLO-005 error   A closure is open at the assembled configuration.
 closure-cannot-close       EU-CLO-006 error   No configuration closes the loops.
-""",
-    ),
-    *_advice(
-        """
+advice:
 x-angle-in-degrees         An angle is probably in degrees, because it is large.
 x-length-in-millimetres    A length is probably in millimetres, because it is large.
 x-quaternion-order         A quaternion is probably in the order w, x, y, z.
@@ -236,9 +195,20 @@ x-urdf-outside-folder      The URDF that a description names is outside the fold
 x-file-outside-folder      A mesh or texture is outside the folder of the robot and the packages that are given.
 x-mesh-format              A mesh has a format that this parser does not read.
 x-loops-not-checked        The loops were not checked in full: there are too many, or too many of them share joints.
-""",
-    ),
-]
+"""
+
+
+def _rules() -> Iterator[Rule]:
+    for row in _TABLE.strip().splitlines():
+        code, *more = row.split(maxsplit=1)
+        if not more:
+            phase = Phase(code.removesuffix(":"))
+        elif phase is Phase.ADVICE:
+            yield Rule(code, phase, Severity.WARNING, None, *more)
+        else:
+            clause, severity, title = more[0].split(maxsplit=2)
+            yield Rule(code, phase, Severity(severity), clause, title)
+
 
 #: Every rule by its code.
-REGISTRY: dict[str, Rule] = {rule.code: rule for rule in _TABLE}
+REGISTRY: dict[str, Rule] = {rule.code: rule for rule in _rules()}

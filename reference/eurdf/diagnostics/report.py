@@ -60,10 +60,7 @@ class Report:
 def reports_to_json(reports: Iterable[Report], strict: bool = False, skipped: Iterable[str] = ()) -> dict[str, Any]:
     """The diagnostics of any number of robots as one object; `report_schema` describes it.
 
-    Args:
-        reports: One for each robot, in the order to show.
-        strict: Whether a warning makes ``ok`` false, too; severities do not change.
-        skipped: Folders without a robot that were given among others.
+    If strict, a warning makes ``ok`` false, too; severities do not change. The folders ``skipped`` had no robot.
     """
     robots = [report.to_json(strict) for report in reports]
     ok = all(robot["ok"] for robot in robots)

@@ -24,13 +24,10 @@ _BRACE = re.compile(r"[{}]")
 
 
 def sarif_log(reports: Iterable[Report], version: str, folder: str | None = None) -> dict[str, Any]:
-    """One log with one run that contains the diagnostics of all robots.
+    """One log with one run that contains the diagnostics of all robots, and the version of eurdf.
 
-    Args:
-        reports: One for each robot. A diagnostic of a URDF that several robots share occurs once.
-        version: Version of eurdf.
-        folder: Paths are relative to this folder; the working directory by default. A file outside of it has an
-            absolute path.
+    A diagnostic of a URDF that several robots share occurs once. Paths are relative to the folder, by default the
+    working directory; a file outside of it has an absolute path.
     """
     found = list(dict.fromkeys(found for report in reports for found in report.diagnostics))
     used = {one.code for one in found}
@@ -67,14 +64,9 @@ def _result(found: Diagnostic, index: int, folder: str) -> dict[str, Any]:
         "ruleId": found.code,
         "ruleIndex": index,
         "level": found.severity.value,
-        "message": {"text": _message_text(text)},
+        "message": {"text": _LINK.sub(r"\\[", _BRACE.sub(lambda brace: 2 * brace.group(), encodable(text)))},
         "locations": [_location(found.place, folder)],
     }
-
-
-def _message_text(text: str) -> str:
-    doubled = _BRACE.sub(lambda brace: 2 * brace.group(), encodable(text))
-    return _LINK.sub(r"\\[", doubled)
 
 
 def _location(place: Place, folder: str) -> dict[str, Any]:

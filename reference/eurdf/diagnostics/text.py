@@ -12,7 +12,7 @@ from dataclasses import replace
 from eurdf.diagnostics.diagnostic import Diagnostic
 from eurdf.diagnostics.registry import Severity
 from eurdf.diagnostics.report import Report
-from eurdf.diagnostics.wording import visible
+from eurdf.diagnostics.wording import plural, visible
 
 #: The pieces of one line, each with a rich style (empty for none).
 Line = list[tuple[str, str]]
@@ -47,7 +47,7 @@ def total_line(reports: Sequence[Report], strict: bool = False) -> Line:
     failed = len(reports) - passed
     counts = _counts(*reports)
     return [
-        (f"{_plural(len(reports), 'robot')}: ", "bold"),
+        (f"{plural(len(reports), 'robot')}: ", "bold"),
         (f"{passed} passed", "green" if passed else ""),
         (", ", ""),
         (f"{failed} failed", "bold red" if failed else ""),
@@ -151,8 +151,4 @@ def _clip(text: str, span: tuple[int, int], start: int | None, end: int | None, 
 def _counts(*reports: Report) -> str:
     errors = sum(len(report.errors) for report in reports)
     warnings = sum(len(report.warnings) for report in reports)
-    return ", ".join(_plural(number, word) for number, word in ((errors, "error"), (warnings, "warning")) if number)
-
-
-def _plural(number: int, word: str) -> str:
-    return f"{number} {word}" if number == 1 else f"{number} {word}s"
+    return ", ".join(plural(number, word) for number, word in ((errors, "error"), (warnings, "warning")) if number)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable, Sequence
+from functools import partial
 
 #: Number of similar names that are compared with the name of the element.
 _CLOSE = 20
@@ -38,6 +39,11 @@ def quoted(names: Sequence[str], most: int = 3) -> str:
     return ", ".join(f"'{name}'" for name in names[:most]) + (", ..." if len(names) > most else "")
 
 
+def plural(number: int, noun: str) -> str:
+    """A number of things: "1 joint", "2 joints"."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
 def enumerated(names: Sequence[str], most: int = 6) -> str:
     """Quoted names for a sentence: the first ones, and how many more there are: "'a', 'b' and 2 more"."""
     items = [f"'{name}'" for name in names[:most]]
@@ -49,16 +55,12 @@ def enumerated(names: Sequence[str], most: int = 6) -> str:
 def did_you_mean(wrong: str, known: Iterable[str], beside: str = "") -> str | None:
     """The hint for a misspelt name: the most similar known name, or None if none is similar.
 
-    If several names are about equally similar, it is the one most similar to ``beside``: if joint 'right_knee' mimics
-    'hip', the hint is 'right_hip', although 'left_hip' needs fewer added letters.
+    If several names are about equally similar, it is the one most similar to ``beside``, the element that contains the
+    wrong name: if joint 'right_knee' mimics 'hip', the hint is 'right_hip', although 'left_hip' needs fewer added
+    letters.
 
     The time is bounded. If there are too many names, only those that share the first or second half of the wrong name
     are compared; this includes every name that differs in one place.
-
-    Args:
-        wrong: The unknown name.
-        known: The known names.
-        beside: Name of the element that contains the wrong name.
     """
     if " - " in wrong:
         known = list(known)
@@ -76,7 +78,10 @@ def did_you_mean(wrong: str, known: Iterable[str], beside: str = "") -> str | No
             first, second = wrong[:half], wrong[size - half :]
             candidates = [name for name in candidates if name.startswith(first) or name.endswith(second)][:most]
         close = difflib.get_close_matches(wrong, candidates, n=_CLOSE)
-        nearest = _most_alike(beside, _about_as_near(wrong, close)) if beside else next(iter(close), None)
+        nearest = next(iter(close), None)
+        if beside and nearest is not None:
+            least = _ratio(wrong, nearest) - _ABOUT
+            nearest = max((name for name in close if _ratio(wrong, name) >= least), key=partial(_ratio, beside))
     return None if nearest is None else f"did you mean '{nearest}'?"
 
 
@@ -84,16 +89,6 @@ def meant(wrong: object, known: Iterable[str]) -> str:
     """The hint of `did_you_mean` as the end of a message: after a semicolon, or empty."""
     hint = did_you_mean(wrong, known) if isinstance(wrong, str) else None
     return f"; {hint}" if hint else ""
-
-
-def _about_as_near(wrong: str, close: list[str]) -> list[str]:
-    """Of similar names, sorted by similarity, those about as similar as the first."""
-    ratios = [_ratio(wrong, name) for name in close]
-    return [name for name, ratio in zip(close, ratios, strict=True) if ratio >= ratios[0] - _ABOUT]
-
-
-def _most_alike(beside: str, names: list[str]) -> str | None:
-    return max(names, key=lambda name: _ratio(beside, name), default=None)
 
 
 def _ratio(one: str, other: str) -> float:

@@ -35,7 +35,6 @@ from eurdf.reading.yaml_node import Pointer
 if TYPE_CHECKING:
     from eurdf.closures.kind import ClosureKind
 
-
 #: The axes of a frame, by their letters.
 AXES: Mapping[str, Vector3] = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
@@ -205,13 +204,7 @@ def _key(stated: ClosureKey) -> Any:
 
 
 def _record(form: Form, since: Version, own: dict[str, Any]) -> Record:
-    """A mapping that states a closure.
-
-    Args:
-        form: What its kind says of it.
-        since: The first version that has it.
-        own: Its fields in place of those of `ClosureEntry`.
-    """
+    """A mapping that states a closure, by what its kind says; ``own`` fields replace those of `ClosureEntry`."""
     keys = own | {name: _key(each) for name, each in form.keys.items()}
     typed = [(name, Any, each) for name, each in keys.items()]
     about = {"title": form.title, "since": since, "__doc__": form.text}

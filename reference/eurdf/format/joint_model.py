@@ -99,7 +99,7 @@ class JointEntry(Entry):
     """What a description says of a joint of any type.
 
     Attributes:
-        name: Joint of the URDF; of merged joints, the one that results.
+        name: JointEntry of the URDF; of merged joints, the one that results.
         type: New type, or None to keep the URDF's own.
         merges: Names of three joints of the URDF that become this one; empty where none do.
         axes: Two axes of a universal joint in the joint's frame, as written; empty where none are.

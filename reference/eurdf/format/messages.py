@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from eurdf.diagnostics import Diagnostic, Place, did_you_mean
+from eurdf.diagnostics import Diagnostic, did_you_mean
 from eurdf.format.closure_model import CLOSURE
 from eurdf.format.conventions import HINT, VERSION2_0, VERSION2_1, VERSION_KEY, Version
 from eurdf.format.joint_model import ACTUATOR, JOINT, LimitsEntry
@@ -15,9 +15,7 @@ from eurdf.format.model import VERSION1, VERSION2
 from eurdf.format.value_types import Violation
 from eurdf.format.wording import described, likeliest_key, near, quoted
 from eurdf.reading.yaml_node import Pointer
-
-if TYPE_CHECKING:
-    from eurdf.reading.yaml_reader import YamlDocument
+from eurdf.reading.yaml_reader import YamlDocument
 
 #: Maximum number of reported errors per file; a file with more is not a description.
 MOST = 100
@@ -27,8 +25,7 @@ _JOINT_TYPE_HINTS = {
     "universal": "a universal joint needs its axes: {type: universal, axes: xy}",
     "helical": "a helical joint needs its pitch: {type: helical, pitch: 0.005}",
     **dict.fromkeys(
-        ("revolute", "continuous", "prismatic", "planar", "floating"),
-        "a joint without a type keeps its URDF type",
+        ("revolute", "continuous", "prismatic", "planar", "floating"), "a joint without a type keeps its URDF type"
     ),
 }
 
@@ -44,13 +41,7 @@ _NAMED = {"joints": "joint", "configurations": "configuration"}
 
 
 def diagnostics_of(found: Sequence[Violation], version: Version, document: YamlDocument) -> list[Diagnostic]:
-    """The diagnostics of the errors of a file, in file order.
-
-    Args:
-        found: The errors.
-        version: The version that the file is checked against.
-        document: The file.
-    """
+    """The diagnostics of the errors of a file, which was checked against a version, in file order."""
     return _Messages(found, version, document).diagnostics()
 
 
@@ -69,7 +60,7 @@ class _Messages:
 
     def __init__(self, found: Sequence[Violation], version: Version, document: YamlDocument) -> None:
         self.version = version
-        self.document = document
+        self.document, self.place = document, document.place
         self.omitted = len(found) - MOST
         mistyped = {each.pointer[:2] for each in found[:MOST] if each.pointer[::2] == ("closures", "type")}
         # A key that some type or version does not have may go with the type that was meant.
@@ -107,9 +98,6 @@ class _Messages:
             diagnostics.append(Diagnostic(last.code, last.message, last.place, hint))
         return diagnostics
 
-    def place(self, pointer: Pointer, key: bool = False) -> Place:
-        return self.document.place(pointer, key)
-
     # -- missing and unknown keys ---------------------------------------------------------------------------------
 
     def lacking(self, mapping: Pointer, keys: Sequence[str]) -> Diagnostic:
@@ -122,9 +110,7 @@ class _Messages:
     def unknown_key(self, violation: Violation, meant: str | None) -> Diagnostic:
         """The diagnostic of a key that the mapping does not have, or that does not go with its others.
 
-        Args:
-            violation: The error.
-            meant: The required key that it misspells, or None.
+        ``meant`` is the required key that it misspells.
         """
         record: Record
         union: OneOf | None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from eurdf.diagnostics import Diagnostics
 from eurdf.format.closure_model import ClosureEntry, NamedFrame
@@ -20,10 +20,7 @@ from eurdf.format.joint_model import Fixed, Geared, JointEntry, Spherical, Unive
 from eurdf.format.model import DESCRIPTION, VERSION1, VERSION2, Description, Version1, violations
 from eurdf.format.wording import described, near, quoted
 from eurdf.reading.other_formats import of_mapping
-from eurdf.reading.reporter import YamlReporter
-
-if TYPE_CHECKING:
-    from eurdf.reading.yaml_reader import YamlDocument
+from eurdf.reading.yaml_reader import YamlDocument, YamlReporter
 
 _KEYS1, _KEYS2 = VERSION1.all_keys, VERSION2.all_keys
 
@@ -31,12 +28,7 @@ _KEYS1, _KEYS2 = VERSION1.all_keys, VERSION2.all_keys
 def read_description(document: YamlDocument, diagnostics: Diagnostics) -> Description | None:
     """The description in a YAML file, of whichever version it is, before any name in it is looked up.
 
-    Args:
-        document: The file.
-        diagnostics: Where findings are added.
-
-    Returns:
-        The description, or None if an error was found.
+    None if an error was found.
     """
     data = document.data
     reporter = YamlReporter(document, diagnostics)

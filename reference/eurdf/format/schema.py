@@ -34,13 +34,7 @@ _OTHER_THAN_TEXT = {"not": {"type": "string"}}
 
 @dataclass(frozen=True, slots=True)
 class Names:
-    """The names in the URDF of one robot.
-
-    Attributes:
-        links: Names of its links.
-        joints: Names of its joints, the fixed ones too.
-        movable_joints: Names of its joints that can move.
-    """
+    """The names in the URDF of one robot: its links, its joints, fixed ones too, and those that can move."""
 
     links: Sequence[str]
     joints: Sequence[str]
@@ -54,16 +48,12 @@ def names_of(urdf: Urdf) -> Names:
 
 
 def json_schema(version: SchemaVersion, names: Names | None = None) -> Schema:
-    """The schema of a version, as the models say it.
+    """The schema of a version, as the models say it, for any robot or with the names of one.
 
-    With the names of one robot, an editor completes them. A file can itself define names that the URDF does not have:
-    by the key ``frames``, and by giving joints another type. Where a file can define names, the schema offers those of
-    the URDF and accepts others. It rejects unknown names in a file that has neither key, and where a file cannot define
-    names (links, joints to merge).
-
-    Args:
-        version: Version of the format.
-        names: Names of one robot, or None for the schema of any.
+    With names, an editor completes them. A file can itself define names that the URDF does not have: by the key
+    ``frames``, and by giving joints another type. Where a file can define names, the schema offers those of the URDF
+    and accepts others. It rejects unknown names in a file that has neither key, and where a file cannot define names
+    (links, joints to merge).
     """
     number = NUMBERS[version]
     schemas = Schemas(number)

@@ -10,6 +10,7 @@ import sys
 from collections.abc import Collection
 from typing import Any, Literal, NamedTuple
 
+from eurdf.diagnostics.wording import plural
 from eurdf.format.conventions import (
     LARGEST,
     OWN_KEY,
@@ -52,12 +53,7 @@ class Violation(NamedTuple):
 
 
 class Check:
-    """The check of one file.
-
-    Attributes:
-        version: Of the file.
-        found: Its errors.
-    """
+    """The check of one file of some version, and its errors."""
 
     def __init__(self, version: Version) -> None:
         self.version = version
@@ -69,12 +65,7 @@ class Check:
 
 
 class Schemas:
-    """The JSON Schemas of the types in one version.
-
-    Attributes:
-        version: The version.
-        definitions: Of the types that have a name, by that name.
-    """
+    """The JSON Schemas of the types in one version; the definitions are of those that have a name, by that name."""
 
     def __init__(self, version: Version) -> None:
         self.version = version
@@ -270,14 +261,14 @@ class ListOf(ValueType):
             file.report(at, "wrong-type", "must be a list", value)
         elif self.most is not None and len(value) > self.most:
             bound = "" if self.least == self.most else "at most "
-            file.report(at, "wrong-length", f"must have {bound}{_items(self.most)}, not {len(value)}")
+            file.report(at, "wrong-length", f"must have {bound}{plural(self.most, 'item')}, not {len(value)}")
         else:
             before = len(file.found)
             for index, item in enumerate(value):
                 self.item.check(item, (*at, index), file)
             if len(value) < self.least and len(file.found) == before:
                 bound = "" if self.least == self.most else "at least "
-                file.report(at, "wrong-length", f"must have {bound}{_items(self.least)}, not {len(value)}")
+                file.report(at, "wrong-length", f"must have {bound}{plural(self.least, 'item')}, not {len(value)}")
 
     def read(self, value: list[Any], at: Pointer) -> tuple[Any, ...]:
         read = self.item.read
@@ -292,10 +283,6 @@ class ListOf(ValueType):
 
     def default(self, value: tuple[Any, ...]) -> list[Any] | None:
         return [*value] if len(value) >= self.least else None
-
-
-def _items(number: int) -> str:
-    return f"{number} {'item' if number == 1 else 'items'}"
 
 
 class ByName(ValueType):

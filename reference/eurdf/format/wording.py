@@ -37,9 +37,7 @@ def described(value: Any) -> str:
 def near(name: str, known: Iterable[str]) -> str | None:
     """The first known name that an unknown one is near (chapter Scope and terms), or None.
 
-    Args:
-        name: The unknown name.
-        known: Names of the format; they are short.
+    The known names are short, as those of the format are.
     """
     folded = name.translate(_FOLD)
     return next((one for one in known if _is_near(folded, one.translate(_FOLD))), None)
@@ -70,11 +68,6 @@ def edits(one: str, other: str) -> int:
 
 
 def likeliest_key(key: str, keys: Iterable[str]) -> str | None:
-    """The most similar known key, for a hint: looser than `near`, and dashes and blanks are ignored.
-
-    Args:
-        key: An unknown key.
-        keys: The known ones, in lower case and with underscores.
-    """
+    """The most similar of the known keys, for a hint: looser than `near`, and dashes and blanks are ignored."""
     folded = key.casefold().replace("-", "_").replace(" ", "_")
     return next(iter(difflib.get_close_matches(folded, list(keys), n=1)), None)

@@ -9,9 +9,8 @@ from typing import Any
 from eurdf.format.joint_model import Geared
 from eurdf.linking.joints import Joints
 from eurdf.mechanism.joint import Joint
-from eurdf.reading.reporter import YamlReporter
 from eurdf.reading.yaml_node import Pointer
-from eurdf.reading.yaml_reader import YamlDocument
+from eurdf.reading.yaml_reader import YamlDocument, YamlReporter
 
 
 def link_actuators(entries: Iterable[Geared], joints: Joints) -> tuple[str, ...]:

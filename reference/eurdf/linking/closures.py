@@ -10,8 +10,8 @@ from eurdf.linking.frame_names import FrameNames
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import RIGID, Closure, Compliance
 from eurdf.mechanism.pose import Pose, Vector3
-from eurdf.reading.reporter import YamlReporter
 from eurdf.reading.yaml_node import Pointer
+from eurdf.reading.yaml_reader import YamlReporter
 
 
 def link_closures(

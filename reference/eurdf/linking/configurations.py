@@ -11,7 +11,7 @@ from eurdf.diagnostics import Hint, did_you_mean
 from eurdf.format.yaml_text import Value, flow
 from eurdf.linking.joints import Joints
 from eurdf.mechanism.joint import LIMIT_TOLERANCE, Joint
-from eurdf.reading.reporter import YamlReporter
+from eurdf.reading.yaml_reader import YamlReporter
 
 #: A quaternion in a file may be off unit length by this much; it is normalised when read (EU-CFG-003).
 QUATERNION_TOLERANCE = 1e-6
@@ -21,15 +21,7 @@ _MOST_TOLD = 4
 
 
 class BeyondLimit(NamedTuple):
-    """A coordinate beyond the limits of its joint.
-
-    Attributes:
-        joint: Name of the joint.
-        coordinate: What the coordinate is: an angle or a length.
-        value: rad or m.
-        lower: Lower limit.
-        upper: Upper limit.
-    """
+    """A coordinate, an angle or a length, that is beyond the limits of its joint; rad or m."""
 
     joint: str
     coordinate: str
@@ -38,13 +30,17 @@ class BeyondLimit(NamedTuple):
     upper: float
 
     @property
+    def unit(self) -> str:
+        """Of its numbers."""
+        return "m" if self.coordinate == "length" else "rad"
+
+    @property
     def limits(self) -> str:
         """The limits, with their unit."""
-        return f"{self.lower:.12g} to {self.upper:.12g} {'m' if self.coordinate == 'length' else 'rad'}"
+        return f"{self.lower:.12g} to {self.upper:.12g} {self.unit}"
 
     def __str__(self) -> str:
-        unit = "m" if self.coordinate == "length" else "rad"
-        return f"'{self.joint}' at {self.value:.6g} {unit} (limits {self.lower:g} to {self.upper:g})"
+        return f"'{self.joint}' at {self.value:.6g} {self.unit} (limits {self.lower:g} to {self.upper:g})"
 
 
 def link_configurations(
@@ -105,19 +101,14 @@ def within_limits(value: float, lower: float, upper: float) -> bool:
 def beyond_limits(joints: Iterable[Joint], coordinates: Mapping[str, Sequence[float]]) -> list[BeyondLimit]:
     """EU-CFG-004: the coordinates of a configuration that are beyond their limits.
 
-    Args:
-        joints: The joints to check; those with a quaternion have no limits.
-        coordinates: Coordinates by joint; a joint that is left out is at its neutral, or mimics another.
+    A joint that is left out is at its neutral, or mimics another; joints with a quaternion have no limits.
     """
     return [
         BeyondLimit(joint.name, name, value, lower, upper)
         for joint in joints
         if joint.type.quaternion is None and (joint.mimic is None or joint.name in coordinates)
         for name, value, (lower, upper) in zip(
-            joint.type.coordinates,
-            coordinates.get(joint.name, joint.type.neutral),
-            joint.ranges,
-            strict=True,
+            joint.type.coordinates, coordinates.get(joint.name, joint.type.neutral), joint.ranges, strict=True
         )
         if not within_limits(value, lower, upper)
     ]

@@ -28,8 +28,7 @@ Member = tuple[Pose, Inertia]
 def check_inertias(urdf: Urdf, diagnostics: Diagnostics) -> set[str]:
     """EU-INR-001 to -003, link by link: mass not negative, inertia positive semidefinite, triangle inequality.
 
-    Returns:
-        Names of the links with an error, of which nothing more can be said.
+    The result is the names of the links with an error, of which nothing more can be said.
     """
     faulty: set[str] = set()
     valid: list[tuple[UrdfLink, Inertia]] = []
@@ -63,13 +62,8 @@ def check_leaves(
 ) -> None:
     """EU-INR-004: what a joint moves at the end of the tree has inertia along every motion of that joint.
 
-    Elsewhere massless bodies describe joints of several axes; at a leaf they make the mass matrix singular.
-
-    Args:
-        mechanism: The mechanism.
-        urdf: The URDF, for places in diagnostics.
-        diagnostics: Gets what is found.
-        faulty: Links whose own inertia is invalid: leaves that they are part of are skipped.
+    Elsewhere massless bodies describe joints of several axes; at a leaf they make the mass matrix singular. Leaves with
+    a link whose own inertia is invalid, one of ``faulty``, are skipped.
     """
     root = mechanism.bodies[0].name
     rigid = rigid_roots(root, mechanism.joints)

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 
-from eurdf.diagnostics import Diagnostics, Hint, did_you_mean, quoted
+from eurdf.diagnostics import Diagnostics, Hint, did_you_mean, plural, quoted
 from eurdf.format.urdf.data import Limit, Urdf, UrdfJoint
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint, JointProperties, is_no_range
-from eurdf.reading.reporter import YamlReporter
+from eurdf.reading.yaml_reader import YamlReporter
 
 _NONE = JointProperties()
 _UNLIMITED = Limit(-math.inf, math.inf, math.inf, math.inf)
@@ -56,34 +56,32 @@ def joint_of(joint: UrdfJoint) -> Joint:
 def check_ranges(urdf: Urdf, joints: Mapping[str, Joint], diagnostics: Diagnostics) -> None:
     """EU-URD-025: a joint that is to move has a range; URDF reads limits that are left out as 0.
 
-    Args:
-        urdf: The URDF.
-        joints: The joints of the mechanism: those that the description merges, makes another type or gives limits need
-            no range in the URDF.
-        diagnostics: Gets what is found.
+    Of ``joints``, those of the mechanism, the ones that the description merges, makes another type or gives limits need
+    no range in the URDF.
     """
     found = [
         joint
         for joint in urdf.joints.values()
         if (limit := joint.limit) is not None
         and is_no_range(limit.lower, limit.upper)
-        and _has_no_range(joint, joints.get(joint.name))
+        and joint.type.is_ranged
+        and (made := joints.get(joint.name)) is not None
+        and made.type.is_ranged
+        and made.lacks_range
     ]
-    if not found:
-        return
-    names = quoted([joint.name for joint in found])
-    count = "1 joint has" if len(found) == 1 else f"{len(found)} joints have"
-    diagnostics.report(
-        "urdf-no-range",
-        f"{count} the position limits 0 and 0: {names}",
-        partial(urdf.document.place, next(found[0].element.iterchildren("limit"))),
-        "state 'lower' and 'upper', or use type 'continuous' if there are no limits",
-    )
+    hint = "state 'lower' and 'upper', or use type 'continuous' if there are no limits"
+    report_of_joints("urdf-no-range", found, "the position limits 0 and 0", "limit", hint, urdf, diagnostics)
 
 
-def _has_no_range(joint: UrdfJoint, made: Joint | None) -> bool:
-    """Whether the range from 0 to 0 of a joint of the URDF is that of its joint in the mechanism."""
-    return joint.type.is_ranged and made is not None and made.type.is_ranged and made.lacks_range
+def report_of_joints(
+    code: str, found: Sequence[UrdfJoint], what: str, tag: str, hint: str, urdf: Urdf, diagnostics: Diagnostics
+) -> None:
+    """Report once what several joints have, if any has it, at the element ``tag`` of the first."""
+    if found:
+        names = quoted([joint.name for joint in found])
+        has = f"{plural(len(found), 'joint')} {'has' if len(found) == 1 else 'have'}"
+        place = partial(urdf.document.place, next(found[0].element.iterchildren(tag)))
+        diagnostics.report(code, f"{has} {what}: {names}", place, hint)
 
 
 @dataclass(slots=True, eq=False, repr=False)

@@ -24,10 +24,9 @@ from eurdf.mechanism.body import Frame
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, Motor, Root, root_joint
 from eurdf.mechanism.spanning_tree import depth_first, rigid_roots
-from eurdf.reading.reporter import YamlReporter
 from eurdf.reading.source import Source
 from eurdf.reading.yaml_node import json_pointer
-from eurdf.reading.yaml_reader import read_yaml
+from eurdf.reading.yaml_reader import YamlReporter, read_yaml
 
 #: Velocities that the joints of a robot may have. The memory of a model grows with the square of their number.
 VELOCITY_LIMIT = 4_000
@@ -84,8 +83,7 @@ def link(
 def reread(text: str, urdf: Urdf, file: str) -> tuple[Mechanism | None, Diagnostics]:
     """Read and link the text of a description, before it is written to a file.
 
-    Returns:
-        The mechanism, or None where an error was found; and what was found.
+    The mechanism, or None where an error was found; and what was found.
     """
     diagnostics = Diagnostics()
     try:

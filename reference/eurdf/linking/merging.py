@@ -57,16 +57,11 @@ class BallChain(NamedTuple):
 
 
 def check_chain(
-    chain: tuple[Joint, Joint, Joint],
-    urdf: Urdf,
-    closure_links: Collection[str],
-    *,
-    rotary: Collection[str] = ROTARY,
+    chain: tuple[Joint, Joint, Joint], urdf: Urdf, closure_links: Collection[str], *, rotary: Collection[str] = ROTARY
 ) -> BallChain:
     """EU-JNT-011 to -014: the joints follow one another, nothing else hangs or weighs between them, their axes meet.
 
-    Raises:
-        NotMergeable: Where one of these does not hold.
+    `NotMergeable` says which of these does not hold.
     """
     for joint in chain:
         if joint.type not in rotary:
@@ -158,10 +153,8 @@ def _lines(chain: tuple[Joint, Joint, Joint]) -> tuple[Pose, list[tuple[Vector3,
 def _meeting_point(lines: list[tuple[Vector3, Vector3]]) -> Vector3:
     """The point nearest to the three axes, in the frame of the body before.
 
-    It solves Σ (I - u uᵀ) p = Σ (I - u uᵀ) o for the lines o + s u.
-
-    Raises:
-        NotMergeable: Where two axes are parallel, or one passes the point by more than `MEETING`.
+    It solves Σ (I - u uᵀ) p = Σ (I - u uᵀ) o for the lines o + s u. `NotMergeable` where two axes are parallel, or one
+    passes the point by more than `MEETING`.
     """
     for (_, u), (_, v) in itertools.combinations(lines, 2):
         if math.hypot(*cross(u, v)) < PARALLEL:

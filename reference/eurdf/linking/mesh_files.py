@@ -37,16 +37,10 @@ def find_meshes(
     confined: bool = False,
     allow_outside: bool = False,
 ) -> FoundFiles:
-    """EU-URD-028, EU-URD-033: look every mesh and every texture up.
+    """EU-URD-028, EU-URD-033: look every mesh and every texture up, in the robot's folder and in packages.
 
-    Args:
-        urdf: The URDF.
-        package_dirs: Folders to look for packages in.
-        confined: Whether a mesh outside the robot's folder and the packages is an error.
-        allow_outside: Whether such a mesh is read.
-
-    Returns:
-        The files, with one diagnostic for all meshes, one for all textures of a kind.
+    A mesh that is outside is an error if files are ``confined``, and is read if ``allow_outside``. There is one
+    diagnostic for all meshes, and one for all textures of a kind.
     """
     source = urdf.document.source
     real = Path(os.path.realpath(source.files[0])).parent if source.files and not confined else source.folder

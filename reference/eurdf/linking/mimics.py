@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from functools import partial
 from types import MappingProxyType
 
-from eurdf.diagnostics import Diagnostics, quoted
+from eurdf.diagnostics import Diagnostics
 from eurdf.format.conventions import HINT, LARGEST, is_too_small, too_large, too_small
 from eurdf.format.joint_model import JointEntry
 from eurdf.format.urdf.data import Urdf
+from eurdf.linking.joints import report_of_joints
 from eurdf.mechanism.joint import Mimic, drivers
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.reading.reporter import YamlReporter
+from eurdf.reading.yaml_reader import YamlReporter
 
 
 def freed_joints(entries: Iterable[JointEntry], urdf: Urdf, reporter: YamlReporter) -> set[str]:
@@ -91,13 +91,6 @@ def warn_of_ignored_mimics(mechanism: Mechanism, urdf: Urdf, diagnostics: Diagno
         return
     free = {joint.name for joint in mechanism.joints if joint.type.is_axial} - set(mechanism.actuators)
     found = [joint for joint in urdf.joints.values() if joint.mimic is not None and joint.name in free]
-    if not found:
-        return
-    names = quoted([joint.name for joint in found])
-    count = "1 joint has" if len(found) == 1 else f"{len(found)} joints have"
-    diagnostics.report(
-        "x-mimic-ignored",
-        f"{count} a <mimic> but no actuator, and version 1 ignores <mimic>: {names}",
-        partial(urdf.document.place, next(found[0].element.iterchildren("mimic"))),
-        "actuate the joints that move freely, remove <mimic>, or use version 2, which respects it",
-    )
+    what = "a <mimic> but no actuator, and version 1 ignores <mimic>"
+    hint = "actuate the joints that move freely, remove <mimic>, or use version 2, which respects it"
+    report_of_joints("x-mimic-ignored", found, what, "mimic", hint, urdf, diagnostics)

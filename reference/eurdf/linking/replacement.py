@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from eurdf.diagnostics import Hint
+from eurdf.format.closure_model import AXES
 from eurdf.format.conventions import HINT, is_too_small, too_small
 from eurdf.format.joint_model import JointEntry
 from eurdf.linking.joints import Joints
@@ -16,8 +17,6 @@ from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import Vector3, cross, direction
-
-_LETTERS: dict[str, Vector3] = {"X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
 
 _RATES = ("velocity", "acceleration", "deceleration", "jerk")
 _FORCES = ("effort", "friction")
@@ -28,14 +27,10 @@ _BY_VELOCITY = (*_RATES, *_FORCES, "damping", "armature", "gear_ratio", "rotor_i
 def replace_joints(
     joints: Joints, entries: Iterable[JointEntry], closure_links: Collection[str], *, version: str
 ) -> None:
-    """Apply every entry of the description, then the three-revolute rule of version 1.
+    """Apply every entry of the description to the URDF's joints, in place, then the three-revolute rule of version 1.
 
-    Args:
-        joints: The URDF's joints; changed in place.
-        entries: As written.
-        closure_links: Links that carry a frame of a closure.
-        version: Version of the description: version 1 merges revolutes by itself; since version 2.1, a description
-            may state springs and losses of mimic joints.
+    Only version 1 merges revolutes by itself, but for those that carry a frame of a closure; since version 2.1, a
+    description may state springs and losses of mimic joints.
     """
     urdf, diagnostics = joints.urdf, joints.reporter.diagnostics
     mimicking = {joint.name: joint.mimic.joint for joint in urdf.joints.values() if joint.mimic}
@@ -232,12 +227,11 @@ class _Replacement(NamedTuple):
         while between.name in self.joints.urdf.links:
             between = Body(between.name + "'", virtual=True)
         self.joints.bodies.append(between)
-        letters = self.entry.split
+        one, other = (AXES[letter] for letter in self.entry.split.lower())
         del self.joints.by_name[joint.name]
-        self.joints.by_name[first] = replace(joint, name=first, child=between.name, axes=(_LETTERS[letters[0]],))
+        self.joints.by_name[first] = replace(joint, name=first, child=between.name, axes=(one,))
         self.joints.split[joint.name] = (first, second)
-        axes = (_LETTERS[letters[1]],)
-        return Joint(second, joint.type, between.name, joint.child, axes=axes, properties=joint.properties)
+        return Joint(second, joint.type, between.name, joint.child, axes=(other,), properties=joint.properties)
 
     def cylindrical(self, joint: Joint) -> Joint:
         """EU-JNT-027: limits of the URDF's joint stay with the coordinate of its kind; the other has none."""

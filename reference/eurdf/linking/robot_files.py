@@ -206,16 +206,9 @@ def read_urdf_alone(
 ) -> Urdf:
     """Read what is given as a URDF, without looking for a description.
 
-    Args:
-        path: A file, a xacro, ``-`` for standard input, a pipe, or a text.
-        diagnostics: Where findings are added.
-        package_dirs: Folders to look for packages in, which a xacro finds files in.
-        xacro_args: Values of the arguments of a xacro.
-
     Raises:
         InvalidRobot: It has an error.
-        CannotExpand: A xacro has an error, or arguments are given for what is no xacro.
-        MissingExtra: A xacro is given, and the extra ``xacro`` is not installed.
+        CannotExpand, MissingExtra: See `read_robot`, which also explains the arguments.
     """
     try:
         text = source_of(path)
@@ -258,19 +251,13 @@ def _named_xacro(
 ) -> Source:
     """The URDF that a xacro is expanded to which the description names.
 
-    Args:
-        urdf: The xacro.
-        description: The description.
-        diagnostics: Gets the warnings of xacro.
-        package_dirs: Folders to look for packages in.
-        xacro_args: Values of its arguments.
-        folders: Where the files that it reads may be; None if files are confined.
+    The files that it reads are in ``folders``, which are None if files are confined.
 
     Raises:
         CannotExpand: It has an error, and arguments are given, which may be the reason.
         FileError: ``file-unreadable``: it is no regular file, has an error, or files are confined; or
             ``file-too-large``.
-        MissingExtra: The extra ``xacro`` is not installed.
+        MissingExtra: See `read_robot`.
     """
     place = description.document.place(("urdf",))
     if folders is None:
@@ -331,8 +318,7 @@ def _read_description(path: Path | Source, diagnostics: Diagnostics, confined: b
 def _own_source(path: Path | Source, confined: bool = False) -> Source:
     """The text of a file of the robot that the caller named, or found in a folder.
 
-    Raises:
-        FileError: It cannot be read; or files are confined to their folder, and it is a link to one elsewhere.
+    `FileError` if it cannot be read; or if files are confined to their folder, and it is a link to one elsewhere.
     """
     if isinstance(path, Source):
         return path

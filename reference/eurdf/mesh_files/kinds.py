@@ -65,11 +65,7 @@ def is_embedded(uri: str) -> bool:
 
 
 def gltf_document(suffix: str, content: bytes) -> tuple[dict[str, Any], bytes]:
-    """The JSON of a glTF file of version 2, and the data that are in the file, if it is a binary one.
-
-    Raises:
-        ValueError: It has none.
-    """
+    """The JSON of a glTF file of version 2, and the data that are in a binary one; `ValueError` if it has none."""
     text, data = (content, b"") if suffix == ".gltf" else _chunks(content)
     if len(text) > JSON_LIMIT:
         raise ValueError(f"its JSON has more than {JSON_LIMIT:,} bytes; keep buffers out of it")

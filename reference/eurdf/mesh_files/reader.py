@@ -69,14 +69,9 @@ class MeshFile(NamedTuple):
     left_out: dict[str, str]
 
     def place(self, path: str, files: MutableMapping[str, bytes]) -> dict[str, str]:
-        """Add it to files to write, and the files that it names where the copy looks for them.
+        """Add it to files to write, by path from the folder to write to, and what it names where the copy looks for it.
 
-        Args:
-            path: Path of the copy, relative to the folder to write to.
-            files: Content of each file, by such a path.
-
-        Returns:
-            For each file that it names and that is not among them: its name, and why.
+        The result is for each file that it names and that is not among them: its name, and why.
         """
         files[path] = self.content
         missing = dict(self.left_out)
@@ -126,9 +121,7 @@ class MeshReader:
     def alone(self, path: str, scratch: Callable[[], Path]) -> tuple[str, int]:
         """A file with the same triangles that names no other file, and its size in bytes.
 
-        Args:
-            path: A mesh file.
-            scratch: Gives the path, without an ending, at which such a file is written if the mesh is none itself.
+        If the mesh is none itself, it is written at the path that ``scratch`` gives, without an ending.
 
         Raises:
             RefusedFile: As for `read`, or the mesh loader does not know its format.

@@ -35,8 +35,7 @@ def resolve(text: str) -> Scalar:
 def resolve_tagged(tag: str, text: str) -> Scalar:
     """EU-SEC-001: value of a scalar, plain or quoted, with a tag of the core schema, which are all that have a meaning.
 
-    Raises:
-        ValueError: The core schema has no such tag for scalars, or the text does not fit it.
+    `ValueError` if the core schema has no such tag for scalars, or the text does not fit it.
     """
     name = tag.removeprefix(TAG_PREFIX)
     if name == "str":

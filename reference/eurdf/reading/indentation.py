@@ -33,9 +33,8 @@ class _Level(NamedTuple):
 def indentation_hint(text: Lines, line: int) -> str | None:
     """How to indent a line that does not continue what is before it.
 
-    Returns:
-        The hint; None if the line does not begin with a key or ``-``, its indentation is not wrong, or more than
-        `LOOKED_AT` lines would have to be looked at.
+    None if the line does not begin with a key or ``-``, its indentation is not wrong, or more than `LOOKED_AT` lines
+    would have to be looked at.
     """
     if line > LOOKED_AT:
         return None

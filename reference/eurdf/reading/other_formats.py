@@ -21,13 +21,7 @@ _HINGE = "type: hinge and axes: [AXIS_IN_A, AXIS_IN_B] of version 2.1"
 
 
 class OtherFormat(NamedTuple):
-    """A format that is not Extended URDF.
-
-    Attributes:
-        title: What it is.
-        hint: What to do with a file of the format.
-        importer: Name of the format for ``eurdf import``; empty if no import reads it.
-    """
+    """A format that is not Extended URDF, what to do with a file of it, and its name for ``eurdf import``, or ""."""
 
     title: str
     hint: str
@@ -137,11 +131,5 @@ def of_binary(data: bytes) -> OtherFormat | None:
 
 
 def other_format(code: str, found: OtherFormat, place: Place) -> FileError:
-    """The error of a file that has another format.
-
-    Args:
-        code: The code of what is wrong with it as a file of this format.
-        found: Its format.
-        place: Its begin.
-    """
+    """The error, with a code, of a file that has another format and begins at a place."""
     return FileError(code, f"the file is {found.title}", place, found.hint)

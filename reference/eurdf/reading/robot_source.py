@@ -57,10 +57,7 @@ def display_name(given: RobotSource) -> str:
 def source_of(given: RobotSource, limit: int = FILE_LIMIT) -> Source | None:
     """The source of a text, or of what a stream holds; None for the path of anything else.
 
-    Relative paths in it start from the working directory.
-
-    Raises:
-        FileError: ``file-unreadable``, ``file-too-large`` or ``file-not-utf8``.
+    Relative paths in it start from the working directory. The errors are those of `read_source`.
     """
     if is_text(given):
         data = given if isinstance(given, bytes) else str(given).encode("utf-8", "surrogatepass")

@@ -58,10 +58,7 @@ class Source:
         return Path(self.file).parent if self.base is None else self.base
 
     def position(self, index: int) -> tuple[int, int]:
-        r"""Line and column, both from 1, of a character (EU-DIA-011, EU-DIA-012).
-
-        A line ends at ``\n``, ``\r\n`` or ``\r``, as in YAML 1.2, XML and most editors; other Unicode breaks are text.
-        """
+        """Line and column, both from 1, of a character (EU-DIA-012); see `Lines`."""
         return self.lines.position(index)
 
     def place(self, start: int, end: int | None = None, pointer: str = "") -> Place:
@@ -83,14 +80,9 @@ class Source:
 
 
 def read_source(path: str | os.PathLike[str], limit: int = FILE_LIMIT, *, is_quoted: bool = True) -> Source:
-    """Read a text file.
+    """Read a text file; lines of it are shown in diagnostics if ``is_quoted``.
 
     Never reads more than ``limit`` bytes, and nothing that is not a regular file: a pipe or a device could block.
-
-    Args:
-        path: Path of the file.
-        limit: Largest size accepted, in bytes.
-        is_quoted: Whether diagnostics show lines of the file.
 
     Raises:
         FileError: ``file-unreadable``, ``file-too-large`` or ``file-not-utf8``.
@@ -100,17 +92,7 @@ def read_source(path: str | os.PathLike[str], limit: int = FILE_LIMIT, *, is_quo
 
 
 def decoded(data: bytes, file: str, base: Path | None = None, *, is_quoted: bool = True) -> Source:
-    """The text that is in some bytes, EU-FIL-003.
-
-    Args:
-        data: The bytes.
-        file: What diagnostics call the text.
-        base: Folder that relative paths start from, for a text that is not in a file.
-        is_quoted: Whether diagnostics show lines of the text.
-
-    Raises:
-        FileError: ``file-not-utf8``.
-    """
+    """The text that is in some bytes, or ``file-not-utf8``, EU-FIL-003; for the arguments see `Source`."""
     if found := of_binary(data):
         raise other_format("file-not-utf8", found, Place(file, 1, 1))
     # The first bytes distinguish UTF-16 and UTF-32 from UTF-8, with or without a byte order mark (YAML 1.2.2, 5.2).
@@ -130,11 +112,7 @@ def decoded(data: bytes, file: str, base: Path | None = None, *, is_quoted: bool
 
 
 def read_bytes(file: str, limit: int = FILE_LIMIT) -> bytes:
-    """Read a file as `read_source` does; its text may have any encoding.
-
-    Raises:
-        FileError: ``file-unreadable`` or ``file-too-large``.
-    """
+    """Read a file as `read_source` does, with the same errors; its text may have any encoding."""
     place = Place(file)
     try:
         descriptor = open_now(file)
@@ -167,16 +145,7 @@ def read_bytes(file: str, limit: int = FILE_LIMIT) -> bytes:
 
 
 def begin_of_file(path: str | os.PathLike[str], size: int) -> bytes:
-    """The first bytes of a file.
-
-    Args:
-        path: Path of the file.
-        size: How many bytes, at most.
-
-    Raises:
-        OSError: It cannot be read, or is not a regular file.
-        ValueError: The path has a NUL.
-    """
+    """The first bytes of a file, so many at most; the errors are those of `open_regular`."""
     with open_regular(path) as stream:
         return stream.read(size)
 

@@ -14,7 +14,7 @@ import sys
 from collections.abc import Sequence
 from importlib import import_module
 from types import ModuleType
-from typing import Any
+from typing import Any, NoReturn
 
 from eurdf.mesh_files.folders import Folders
 from eurdf.sandbox import bound_memory, request_and_answers
@@ -99,11 +99,10 @@ class _NoEnvironment(dict[str, str]):
         super().__init__()
         self._watch = watch
 
-    def __contains__(self, name: object) -> bool:
+    def __getitem__(self, name: object) -> NoReturn:
         raise self._watch.refuse(f"it reads the environment variable '{name}', {_MAY_NOT}")
 
-    def __getitem__(self, name: str) -> str:
-        raise self._watch.refuse(f"it reads the environment variable '{name}', {_MAY_NOT}")
+    __contains__ = __getitem__
 
 
 def main() -> None:

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import re
+from functools import partial
+from typing import NamedTuple
 
 from lxml import etree
 
-from eurdf.diagnostics import FileError, Place
+from eurdf.diagnostics import Diagnostics, FileError, Hint, Place
 from eurdf.reading.source import FILE_LIMIT, Source, short, too_large
 from eurdf.reading.xml_syntax import ATTRIBUTE, DEPTH_LIMIT, HARMLESS_ERRORS, refused, syntax_error
+
+Element = etree._Element
 
 #: Tags and attributes that a file may have: what takes memory is their number.
 TAG_LIMIT = 1_000_000
@@ -103,6 +107,19 @@ def written_name(element: etree._Element, name: str) -> str:
         return f"{element.prefix}:{local}" if element.prefix else local
     prefixes = [prefix for prefix, bound in element.nsmap.items() if prefix and bound == uri]
     return f"{(prefixes or ['xml'])[0]}:{local}"
+
+
+class XmlReporter(NamedTuple):
+    """Adds diagnostics on an XML file."""
+
+    document: XmlDocument
+    diagnostics: Diagnostics
+
+    def report(
+        self, code: str, message: str, element: Element, attribute: str | None = None, hint: Hint = None
+    ) -> None:
+        """Report at an element, or at one of its attributes: see `Diagnostics.report` and `XmlDocument.place`."""
+        self.diagnostics.report(code, message, partial(self.document.place, element, attribute), hint)
 
 
 def read_xml(source: Source) -> XmlDocument:

@@ -100,11 +100,8 @@ def _explain_namespaces(
 ) -> tuple[int, int, str, str | None]:
     """As `_explain`, for namespaces.
 
-    Args:
-        text: The text.
-        problem: What expat says.
-        at: The character it points at: of an element its first, or inside a name.
-        declared: The namespaces of each prefix, the innermost last.
+    Expat points at a character: of an element its first, or inside a name. The namespaces of each prefix are
+    ``declared``, the innermost last.
     """
     if problem == errors.XML_ERROR_INVALID_TOKEN:
         while _NAME.fullmatch(text[at - 1]) and text[at - 1] != "?":

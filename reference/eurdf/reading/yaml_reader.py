@@ -8,25 +8,19 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from functools import partial
 from math import isfinite
-from typing import Any
+from typing import Any, NamedTuple
 
 from yaml import CSafeLoader
 from yaml.error import MarkedYAMLError, YAMLError
-from yaml.events import (
-    AliasEvent,
-    Event,
-    MappingStartEvent,
-    ScalarEvent,
-    SequenceStartEvent,
-    StreamEndEvent,
-)
+from yaml.events import AliasEvent, Event, MappingStartEvent, ScalarEvent, SequenceStartEvent, StreamEndEvent
 
-from eurdf.diagnostics import FileError, Place
+from eurdf.diagnostics import Diagnostics, FileError, Hint, Place
 from eurdf.reading.core_schema import TAG_PREFIX, resolve, resolve_tagged
 from eurdf.reading.other_formats import of_text, other_format
 from eurdf.reading.source import FILE_LIMIT, Source, short, too_large
-from eurdf.reading.yaml_node import Alias, Node, Span, YamlCollection, json_pointer
+from eurdf.reading.yaml_node import Alias, Node, Pointer, Span, YamlCollection, json_pointer
 from eurdf.reading.yaml_syntax import stray_mark, syntax_error, unusual_name
 
 #: Maximum depth of nested mappings and lists, aliases expanded.
@@ -87,6 +81,17 @@ class YamlDocument:
         return self.source.place(*self.span(pointer, key), json_pointer(pointer))
 
 
+class YamlReporter(NamedTuple):
+    """Adds diagnostics on a YAML file."""
+
+    document: YamlDocument
+    diagnostics: Diagnostics
+
+    def report(self, code: str, message: str, pointer: Pointer, hint: Hint = None, *, key: bool = False) -> None:
+        """Report at a value, or at its key: see `Diagnostics.report` and `YamlDocument.place`."""
+        self.diagnostics.report(code, message, partial(self.document.place, pointer, key), hint)
+
+
 def read_yaml(source: Source) -> YamlDocument:
     """Read a file that holds one YAML 1.2 mapping.
 
@@ -99,6 +104,14 @@ def read_yaml(source: Source) -> YamlDocument:
         if found := of_text(source.text):
             raise other_format(error.diagnostic.code, found, source.place(0)) from None
         raise
+
+
+def plain_data(text: str) -> dict[str, Any] | None:
+    """The plain values of a text; None if it is not one YAML mapping."""
+    try:
+        return read_yaml(Source("", text, text.encode())).data
+    except FileError:
+        return None
 
 
 def _read_nodes(source: Source) -> YamlCollection:

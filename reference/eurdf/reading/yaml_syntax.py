@@ -35,8 +35,7 @@ _UNUSUAL_NAME = _Meaning("this is not a valid anchor name", "use only ASCII lett
 _TAB = _Meaning("a tab is used as indentation", "indent with spaces")
 _MEANINGS = {
     "mapping values are not allowed in this context": _Meaning(
-        "a ':' is not allowed here",
-        "quote a value that has ': ' in it, and indent the keys of one mapping equally",
+        "a ':' is not allowed here", "quote a value that has ': ' in it, and indent the keys of one mapping equally"
     ),
     "mapping keys are not allowed in this context": _Meaning("a '?' is not allowed here"),
     "block sequence entries are not allowed in this context": _Meaning(
@@ -86,9 +85,8 @@ def unusual_name(place: Place) -> FileError:
 def stray_mark(source: Source, data: bytes) -> FileError | None:
     """The error of the first byte order mark outside quotes, which libyaml takes for an ordinary character.
 
-    Args:
-        source: A text that is YAML otherwise, without its own byte order mark.
-        data: What libyaml reads: the same number of characters, perhaps others.
+    The text is YAML otherwise, without its own byte order mark. ``data`` is what libyaml reads: as many characters,
+    perhaps others.
     """
     index = source.text.find(_MARK)
     if index > 0:  # libyaml skips one at the start
@@ -108,12 +106,7 @@ def stray_mark(source: Source, data: bytes) -> FileError | None:
 
 
 def syntax_error(source: Source, error: YAMLError | UnicodeDecodeError) -> FileError:
-    """The error at which libyaml stopped.
-
-    Args:
-        source: The text; libyaml may have read one with other characters, but the same number of them.
-        error: What libyaml raised.
-    """
+    """The error at which libyaml stopped, which may have read other characters, but the same number of them."""
     text = source.text
     if not isinstance(error, MarkedYAMLError) or error.problem is None:
         # Also an error of libyaml's decoder, whose position is in bytes.

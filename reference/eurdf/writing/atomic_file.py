@@ -25,29 +25,19 @@ _Path = TypeVar("_Path", bound="str | os.PathLike[str]")
 
 
 def write_atomically(path: str | os.PathLike[str], content: str | bytes, *, replace: bool = True) -> None:
-    """Write a file, completely or not at all, also if the process is killed; an existing one keeps its permissions.
-
-    Args:
-        path: Path of the file; a symbolic link is followed.
-        content: Content of the file; a text is written in UTF-8.
-        replace: Whether to replace an existing file.
-
-    Raises:
-        FileExistsError: It exists, and ``replace`` is False; a link counts, wherever it leads.
-        OSError: It cannot be written; ``filename`` is the path.
-    """
+    """Write one file as `write_together` does; an existing one keeps its permissions."""
     write_together({path: content}, replace=replace)
 
 
 def write_together(files: Mapping[_Path, str | bytes], *, replace: bool = True, follow: bool = True) -> None:
-    """Write files as `write_atomically` does: all of them, or none.
+    """Write files, by path, completely or not at all, also if the process is killed: all of them, or none.
 
     Each takes its name only when all are on the disk, in the order given. If the process is killed between the first
-    and the last of these steps, only the first files are written.
+    and the last of these steps, only the first files are written. A text is written in UTF-8.
 
     Args:
         files: Content of each file, by its path.
-        replace: Whether to replace existing files.
+        replace: Whether to replace existing files; a link counts as one, wherever it leads.
         follow: Whether a symbolic link is followed, or is itself what is replaced.
 
     Raises:
@@ -139,13 +129,7 @@ def _link_or_copy(path: Path, to: Path) -> None:
 def write_to_disk(path: Path, content: str | bytes, like: os.stat_result | None = None) -> None:
     """Write a new file, and wait until it is on the disk.
 
-    Args:
-        path: Path of the file, which does not exist.
-        content: Its content; a text is written in UTF-8.
-        like: Status of the file whose owner and permissions it gets; by default those of a new file.
-
-    Raises:
-        OSError: It cannot be written.
+    It gets the owner and permissions that are in the status ``like``, by default those of a new file.
     """
     with path.open("xb") as stream:
         stream.write(content.encode() if isinstance(content, str) else content)
@@ -179,15 +163,7 @@ def naming(path: str | os.PathLike[str]) -> Iterator[None]:
 
 
 def replaceable(path: str | os.PathLike[str], *, follow: bool = False) -> os.stat_result | None:
-    """The status of what has a path; None if nothing has it.
-
-    Args:
-        path: The path.
-        follow: Whether a symbolic link is followed.
-
-    Raises:
-        OSError: It is no file.
-    """
+    """The status of what has a path, a symbolic link followed or not, or None; `OSError` if it is no file."""
     try:
         status = os.stat(path, follow_symlinks=follow)
     except FileNotFoundError:
@@ -205,9 +181,6 @@ def scratch_folder(beside: Path) -> Iterator[Path]:
 
     A lock shows whether the process that made such a folder still runs. Windows has no such lock: what a killed process
     left stays there.
-
-    Raises:
-        OSError: It cannot be made.
     """
     with contextlib.suppress(OSError):
         for entry in filter(_NAME.fullmatch, os.listdir(beside)):
@@ -228,11 +201,7 @@ def scratch_folder(beside: Path) -> Iterator[Path]:
 
 @contextlib.contextmanager
 def _locked(folder: Path) -> Iterator[bool]:
-    """Lock a folder; False if another one has the lock, or has removed the folder.
-
-    Raises:
-        OSError: It cannot be locked.
-    """
+    """Lock a folder, or raise `OSError`; False if another one has the lock, or has removed the folder."""
     if fcntl is None:
         raise OSError("no locks")
     try:

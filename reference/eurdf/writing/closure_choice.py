@@ -4,16 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from eurdf.closures import REGISTRY
-from eurdf.diagnostics import enumerated
+from eurdf.diagnostics import enumerated, plural
 from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.writing.naming_conventions import ClosureType
-
-if TYPE_CHECKING:
-    from eurdf.kinematics.analysis import Analysis
 
 # Groups of loops that share no joint are judged one by one, but for a robot of so many that it would take long.
 _MOST_GROUPS = 32
@@ -24,11 +20,9 @@ _MOST_CLOSURES = 12
 
 @dataclass(frozen=True, slots=True)
 class ChosenTypes:
-    """The types that were chosen.
+    """The types that were chosen, by the name of the closure.
 
-    Attributes:
-        types: By the name of the closure.
-        notes: Why, one sentence for each group of loops that share joints.
+    The notes say why, one sentence for each group of loops that share joints.
     """
 
     types: Mapping[str, ClosureType]
@@ -131,7 +125,7 @@ def _candidate(mechanism: Mechanism, types: Mapping[str, ClosureType]) -> _Candi
     from eurdf.pinocchio.robot import build_robot
 
     closures = tuple(_with_type(closure, types.get(closure.name)) for closure in mechanism.closures)
-    analysis: Analysis = analyze(build_robot(replace(mechanism, closures=closures), geometry=False))
+    analysis = analyze(build_robot(replace(mechanism, closures=closures), geometry=False))
     if analysis.left_out or not analysis.closes:
         return _Candidate(types, False, left_out=analysis.left_out)
     return _Candidate(
@@ -164,7 +158,7 @@ def _effect(candidate: _Candidate) -> str:
         return "no configuration closes the loops"
     if not candidate.mobility:
         return "the loops close, but nothing in them can move"
-    many = f"{candidate.mobility} {'motion' if candidate.mobility == 1 else 'motions'}"
+    many = plural(candidate.mobility, "motion")
     if candidate.dependent:
         return f"the loops close and keep {many}, but {'; '.join(map(_dependent, candidate.dependent[:3]))}"
     if candidate.locked:

@@ -23,14 +23,9 @@ _OPENING = (BlockEntryToken, FlowSequenceStartToken, KeyToken)
 
 @dataclass(frozen=True, slots=True)
 class Comment:
-    """A comment.
+    """A comment, from its ``#`` on, and where that is: its index in the text of the file, and line and column from 1.
 
-    Attributes:
-        text: From its ``#`` on.
-        index: Of its ``#``, in the text of the file.
-        line: From 1.
-        column: From 1.
-        beside: Whether it is behind something on its line, and so about that.
+    It is ``beside`` something on its line, and so about that, or alone.
     """
 
     text: str

@@ -38,9 +38,7 @@ from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import IDENTITY, Vector3
 from eurdf.mechanism.same_model import with_universal_joints
 from eurdf.writing import urdf_elements as elements
-from eurdf.writing.urdf_elements import (
-    Color,
-)
+from eurdf.writing.urdf_elements import Color
 from eurdf.writing.xml_text import file_content, representable, rpy_of
 
 #: Between two hyphens, which an XML comment must not contain.
@@ -55,13 +53,7 @@ class NotWritable(ValueError):  # noqa: N818 - named as the other refusals are
 
 @dataclass(frozen=True, slots=True)
 class DescriptionFiles:
-    """The two files of a robot.
-
-    Attributes:
-        urdf: Content of the URDF.
-        yaml: Text of the YAML file.
-        version: Version of the YAML file, the lowest that can say what the mechanism says.
-    """
+    """The URDF of a robot, and its YAML file, of the lowest version that can say what the mechanism says."""
 
     urdf: bytes
     yaml: str

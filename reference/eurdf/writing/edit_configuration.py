@@ -7,13 +7,11 @@ from collections.abc import Mapping, Sequence
 from itertools import takewhile
 from typing import Any
 
-from eurdf.diagnostics import FileError
 from eurdf.diagnostics.lines import BREAK
 from eurdf.format.model import VERSION2
 from eurdf.format.yaml_text import Value, flow, lines_of
-from eurdf.reading.source import Source
 from eurdf.reading.yaml_node import Node, Span, YamlCollection
-from eurdf.reading.yaml_reader import YamlDocument, read_yaml
+from eurdf.reading.yaml_reader import YamlDocument, plain_data
 
 
 class NotEditable(Exception):  # noqa: N818 - shown to the user as it is
@@ -23,13 +21,9 @@ class NotEditable(Exception):  # noqa: N818 - shown to the user as it is
 def with_configuration(document: YamlDocument, name: str, coordinates: Mapping[str, Sequence[float]]) -> str:
     """The text of a description of version 2 with a named configuration added, or its coordinates replaced.
 
-    Comments, also those inside a configuration that is replaced, and the rest of the text stay as they are. A joint
-    that the file states and ``coordinates`` does not is an error: where it is at its neutral, state that.
-
-    Args:
-        document: The description.
-        name: Name of the configuration.
-        coordinates: For each joint to state, its coordinates as files have them.
+    The coordinates are given by joint, as files have them. Comments, also those inside a configuration that is
+    replaced, and the rest of the text stay as they are. A joint that the file states and ``coordinates`` does not is an
+    error: where it is at its neutral, state that.
 
     Raises:
         NotEditable: The result does not read back as it should, such as where an anchor is involved.
@@ -168,9 +162,8 @@ def _same(old: object, new: Value) -> bool:
 
 def _reads_back(text: str, before: Mapping[str, Any], name: str, value: Mapping[str, Value]) -> bool:
     """Whether a text has the data of before, and the coordinates in the configuration."""
-    try:
-        after = read_yaml(Source("", text, text.encode())).data
-    except FileError:
+    after = plain_data(text)
+    if after is None:
         return False
     found = after["configurations"].pop(name)
     others = {key: other for key, other in before.get("configurations", {}).items() if key != name}

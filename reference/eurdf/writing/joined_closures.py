@@ -50,12 +50,7 @@ class Joined:
 
 @dataclass(frozen=True, slots=True)
 class Apart:
-    """Two 3d closures of the same two bodies that cannot both be closed.
-
-    Attributes:
-        names: Of the closures.
-        distances: Of their points in one body and in the other, m.
-    """
+    """Two 3d closures of the same two bodies that cannot both be closed, and the distances of their points there, m."""
 
     names: tuple[str, str]
     distances: tuple[float, float]

@@ -8,11 +8,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
-from eurdf.diagnostics import FileError
 from eurdf.diagnostics.lines import BREAK
 from eurdf.format.closure_model import AXES, CLOSURE, FrameReference, NamedFrame
 from eurdf.format.conventions import VERSION2_0, VERSION2_1, is_own_key
-from eurdf.format.joint_model import JOINT, JointEntry, Overridden, Spherical
+from eurdf.format.joint_model import JOINT, Overridden, Spherical
 from eurdf.format.model import VERSION1, Description
 from eurdf.format.schema import FILES
 from eurdf.format.urdf.data import Urdf
@@ -28,9 +27,8 @@ from eurdf.format.yaml_text import (
     section,
     text_of,
 )
-from eurdf.reading.source import Source
 from eurdf.reading.yaml_node import Pointer
-from eurdf.reading.yaml_reader import YamlDocument, read_yaml
+from eurdf.reading.yaml_reader import YamlDocument, plain_data
 from eurdf.writing.comments import Attached, Comment, attach, comments_of
 
 # The comment by which an editor finds the schema.
@@ -53,29 +51,6 @@ class NotMigratable(Exception):  # noqa: N818 - shown to the user as it is
     def __init__(self, message: str, pointer: Pointer) -> None:
         self.pointer = pointer
         super().__init__(message)
-
-
-def migrated(
-    description: Description,
-    urdf: Urdf,
-    merged: Mapping[str, Sequence[str]],
-    urdf_path: str = "robot.urdf",
-    schema: str | None = None,
-) -> tuple[str, list[str]]:
-    """Write a description of version 1 in version 2: its text, and what was done, one sentence each.
-
-    Args:
-        description: The description, of version 1 and linked without error.
-        urdf: Its URDF.
-        merged: The joints that version 1 merges by rule: for each spherical joint, the three it is made of.
-        urdf_path: Path of the URDF from the new file.
-        schema: Path of the schema from the new file, for its first line; None for no such line.
-
-    Raises:
-        NotMigratable: Version 2 cannot say the same.
-    """
-    migration = _MigratedFile(description, urdf, merged, urdf_path, schema)
-    return migration.text(), migration.notes
 
 
 def version_needed(urdf: Urdf) -> Literal["2", "2.1"]:
@@ -108,8 +83,17 @@ def own_keys(data: Iterable[str]) -> dict[str, str]:
 
 
 @dataclass(slots=True)
-class _MigratedFile:
-    """One file at work; the fields are the arguments of `migrated`."""
+class MigratedText:
+    """A description of version 1 that is written in version 2.
+
+    Attributes:
+        description: The description, of version 1 and linked without error.
+        urdf: Its URDF.
+        merged: The joints that version 1 merges by rule: for each spherical joint, the three it is made of.
+        urdf_path: Path of the URDF from the new file.
+        schema: Path of the schema from the new file, for its first line; None for no such line.
+        notes: What was done, one sentence each.
+    """
 
     description: Description
     urdf: Urdf
@@ -120,10 +104,12 @@ class _MigratedFile:
 
     @property
     def document(self) -> YamlDocument:
+        """The file."""
         return self.description.document
 
     @property
     def mimicking(self) -> list[str]:
+        """The mimic joints of the URDF."""
         return [joint.name for joint in self.urdf.joints.values() if joint.mimic]
 
     @property
@@ -136,6 +122,11 @@ class _MigratedFile:
         }
 
     def text(self) -> str:
+        """The text of the new file, and in `notes` what was done.
+
+        Raises:
+            NotMigratable: Version 2 cannot say the same.
+        """
         comments = comments_of(self.document.source)
         own, comments = self.own_entries(comments)
         attached = attach(comments, self.pointers(), self.document)
@@ -174,6 +165,7 @@ class _MigratedFile:
     # -- what the format knows ------------------------------------------------------------------------------------
 
     def closures(self, attached: Mapping[Pointer, Attached]) -> Iterator[YamlEntry]:
+        """The closures, with the comments that go with each."""
         for index, closure in enumerate(self.description.closures):
             a, b = map(self.frame, closure.frames)
             value = CLOSURE.write(CLOSURE.entry(closure.type, {}, name=closure.name, frames=(a, b)))
@@ -199,6 +191,7 @@ class _MigratedFile:
         return NamedFrame(target=joint)
 
     def joints(self, attached: Mapping[Pointer, Attached]) -> Iterator[YamlEntry]:
+        """The joints: replaced, merged by rule, freed."""
         pointers: dict[str, Pointer] = {entry.name: entry.pointer for entry in self.description.joints}
         changed = {*pointers, *(joint for joints in self.merged.values() for joint in joints)}
         mimicking = self.mimicking
@@ -232,12 +225,14 @@ class _MigratedFile:
             )
 
     def joint(self, entry: JointEntry) -> Value:
+        """What the new file says of a joint that is replaced."""
         axes = tuple(AXES[letter] for letter in entry.split.lower())
         mimic = False if entry.name in self.mimicking else None
         written: Value = JOINT.write(type(entry)(type=entry.type, axes=axes, mimic=mimic))
         return written
 
     def actuators(self, attached: Mapping[Pointer, Attached]) -> Iterator[YamlEntry]:
+        """The actuators; the two halves of a universal joint are one."""
         entries, halves = iter(self.description.actuators), self.halves
         for entry in entries:
             name, pointers = entry.joint, [entry.pointer]
@@ -287,12 +282,7 @@ class _MigratedFile:
 def _says(text: str, key: str, value: object) -> bool:
     """Whether the text is an entry of a block mapping at the top, with this key and this value."""
     # What follows must still be read as the next entry.
-    text += "\nnext: entry\n"
-    try:
-        data = read_yaml(Source("", text, text.encode())).data
-    except FileError:
-        return False
-    return repr(data) == repr({key: value, "next": "entry"})
+    return repr(plain_data(f"{text}\nnext: entry\n")) == repr({key: value, "next": "entry"})
 
 
 def _section(key: str, items: list[YamlEntry], above: tuple[str, ...], beside: str) -> YamlEntry:

@@ -12,20 +12,14 @@ from eurdf.linking.link import reread
 from eurdf.linking.robot_files import ReadRobot
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.same_model import differences, with_universal_joints
-from eurdf.reading.reporter import XmlReporter
+from eurdf.reading.xml_reader import XmlReporter
 from eurdf.reading.yaml_node import json_pointer
-from eurdf.writing.migrated_text import NotMigratable, migrated, own_keys
+from eurdf.writing.migrated_text import MigratedText, NotMigratable, own_keys
 
 
 @dataclass(frozen=True, slots=True)
 class Migration:
-    """A description in version 2.
-
-    Attributes:
-        text: Of the YAML file.
-        notes: What was done, one sentence each.
-        mechanism: That the text describes.
-    """
+    """A description in version 2: its text, what was done, one sentence each, and the mechanism that it describes."""
 
     text: str
     notes: tuple[str, ...]
@@ -33,22 +27,18 @@ class Migration:
 
 
 def migrate(read: ReadRobot, urdf_path: str = "robot.urdf", schema: str | None = None) -> Migration:
-    """Write a robot's description of version 1 in version 2.
+    """Write a robot's description of version 1 in version 2; for the paths see `MigratedText`.
 
-    What version 1 does by itself is said; user data and the comments are kept. The text is read once more,
-    and only returned where it describes the same model.
-
-    Args:
-        read: Of version 1.
-        urdf_path: Path of the URDF from the folder of the new file.
-        schema: Path of the schema from the folder of the new file, for its first line; None for no such line.
+    What version 1 does by itself is said; user data and the comments are kept. The text is read once more, and only
+    returned where it describes the same model.
 
     Raises:
         NotMigratable: Version 2 cannot say the same.
     """
     description, urdf, before = read.description, read.urdf, read.mechanism
     _refuse_wrong_mimics(urdf)
-    text, notes = migrated(description, urdf, merged_by_rule(read), urdf_path, schema)
+    migrated = MigratedText(description, urdf, merged_by_rule(read), urdf_path, schema)
+    text = migrated.text()
     after, diagnostics = reread(text, urdf, description.document.source.file)
     if after is None:
         raise NotMigratable(f"version 2 does not allow it: {diagnostics.errors[0].message}", ())
@@ -59,15 +49,11 @@ def migrate(read: ReadRobot, urdf_path: str = "robot.urdf", schema: str | None =
         found.append("your own data differ")
     if found:
         raise NotMigratable(f"version 2 would not be the same model: {'; '.join(found)}", ())
-    return Migration(text, (*notes, *_order(before, after)), after)
+    return Migration(text, (*migrated.notes, *_order(before, after)), after)
 
 
 def _refuse_wrong_mimics(urdf: Urdf) -> None:
-    """Refuse mimic joints that are errors in version 2, where version 1 ignores them (EU-ONE-009).
-
-    Raises:
-        NotMigratable: There are some.
-    """
+    """Refuse, by `NotMigratable`, mimic joints that are errors in version 2; version 1 ignores them (EU-ONE-009)."""
     diagnostics = Diagnostics()
     reporter = XmlReporter(urdf.document, diagnostics)
     check_mimics(UrdfReader(reporter, reporter), urdf.joints)

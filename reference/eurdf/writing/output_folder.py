@@ -11,32 +11,20 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path, PurePosixPath
 
-from eurdf.writing.atomic_file import (
-    naming,
-    replaceable,
-    scratch_folder,
-    sync_folder,
-    write_to_disk,
-    write_together,
-)
+from eurdf.writing.atomic_file import naming, replaceable, scratch_folder, sync_folder, write_to_disk, write_together
 
 #: Files and folders of others that a folder may contain to be exchanged: each is linked from the new one.
 _MOST_OTHERS = 1000
 
 
 def write_files(folder: str | os.PathLike[str], files: Mapping[str, bytes], *, force: bool = False) -> tuple[Path, ...]:
-    """Write files to a folder, which is made if it does not exist: all of them or none.
+    """Write files, by their path relative to a folder, with ``/``: all of them or none. The folder is made if need be.
 
     A process that is killed leaves all the old files or all the new ones: a folder with the new files, and links to the
     other files of the old one, takes the place of the old one in one step. A program whose working folder it is has to
     enter it again. The step is not possible for the working folder of this process, a mount point, a folder of another
     user, one with more than 1,000 other files, and on Windows: there, the files are replaced one after the other when
     all are on the disk, and a process that is killed in that moment leaves old and new files.
-
-    Args:
-        folder: Where to write.
-        files: Content of each file, by its path relative to the folder, with ``/``.
-        force: Whether to replace files that exist; other files in the folder are kept.
 
     Returns:
         Paths of the files.
@@ -113,11 +101,8 @@ def _replaced(home: Path, targets: Mapping[Path, bytes]) -> bool:
 def _link_others(old: Path, new: Path, own: set[Path]) -> dict[Path, os.stat_result]:
     """Link every file of a folder that is not ``own`` from a new folder, with the folders that contain it.
 
-    Returns:
-        The status of each file that was linked, by its path in the folder.
-
-    Raises:
-        _NotPossible: They cannot be linked, or are too many.
+    The result has the status of each file that was linked, by its path in the folder. `_NotPossible` if they cannot be
+    linked, or are too many.
     """
     count = 0
     folders = []
@@ -149,11 +134,7 @@ def _refuse(error: OSError) -> None:
 
 
 def _exchange(one: Path, other: Path) -> None:
-    """Let two folders change places in one step.
-
-    Raises:
-        _NotPossible: The system, or the file system, cannot do that.
-    """
+    """Let two folders change places in one step; `_NotPossible` if the system, or the file system, cannot do that."""
     ours, theirs = os.fsencode(one), os.fsencode(other)
     try:
         library = ctypes.CDLL(None, use_errno=True)

@@ -43,11 +43,7 @@ class ConfigurationExists(CannotSave):
 
 
 def file_to_save_to(path: RobotSource, read: ReadRobot) -> str:
-    """The file of a description that configurations can be saved to.
-
-    Raises:
-        CannotSave: There is none.
-    """
+    """The file of a description that configurations can be saved to; `CannotSave` if there is none."""
     source = read.description.document.source
     if not source.is_file:
         raise CannotSave(f"saving needs a file, but the description came from {source.file}")

@@ -18,8 +18,6 @@ Color = tuple[float, float, float, float]
 
 NO_MATERIALS: Mapping[Color, str] = MappingProxyType({})
 
-NO_RATES: Mapping[str, float] = MappingProxyType({})
-
 #: What is written where there is no limit, but the file wants a number (EU-FIL-006): rad, m, their rates, N·m or N.
 UNLIMITED = sys.float_info.max
 
@@ -52,15 +50,9 @@ def add_shape(
     texture: str = "",
     materials: Mapping[Color, str] = NO_MATERIALS,
 ) -> None:
-    """Add a shape, with its color if it is visual.
+    """Add a shape as ``visual`` or ``collision``, the former with its color and texture, empty for none.
 
-    Args:
-        link: The link.
-        use: ``visual`` or ``collision``.
-        shape: The shape.
-        filename: URI of the file of a mesh.
-        texture: URI of the file of its texture; empty for none.
-        materials: Names of the materials that the robot declares, by their color.
+    Materials that the robot declares are used by their name.
     """
     element = etree.SubElement(link, use)
     add_origin(element, shape.pose)
@@ -111,16 +103,11 @@ def add_limit(
     position: tuple[float, float] | None,
     effort: float,
     velocity: float,
-    rates: Mapping[str, float] = NO_RATES,
+    rates: Mapping[str, float],
 ) -> None:
-    """Add the limits of a joint, each of which may be infinite.
+    """Add the limits of a joint, which may be infinite: position (rad or m) unless continuous, effort, velocity.
 
-    Args:
-        joint: The element of the joint.
-        position: Lower and upper limit, rad or m; None for a continuous joint.
-        effort: N·m or N.
-        velocity: rad/s or m/s.
-        rates: Finite limits of acceleration, deceleration and jerk, by the name of their attribute.
+    ``rates`` are finite limits of acceleration, deceleration and jerk, by the name of their attribute.
     """
     limit = {}
     if position is not None:

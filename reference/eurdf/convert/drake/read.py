@@ -30,12 +30,7 @@ from eurdf.writing.urdf_elements import UNLIMITED
 _WORLD = "world"
 
 #: Elements of Drake that are read here, and those that have no effect on the robot alone.
-_KNOWN = (
-    "frame",
-    "ball_constraint",
-    "tendon_constraint",
-    "collision_filter_group",
-)
+_KNOWN = ("frame", "ball_constraint", "tendon_constraint", "collision_filter_group")
 
 _LOSSES = {
     "locked-joint": LOCKED,
@@ -94,7 +89,7 @@ def read(given: ImportInput) -> RobotRead:
         lambda joint: without_locks(_as_in_drake(joint, joints), given.losses),
     )
     tree = replace(tree, mechanism=_on_the_world(tree.mechanism))
-    names = tree.names()
+    names = UniqueNames(tree.losses)
     mechanism = replace(
         tree.mechanism, frames=_frames(tree), closures=_closures(tree, names), couplings=_couplings(tree, names)
     )
@@ -202,10 +197,7 @@ def _closures(tree: UrdfDialect, names: UniqueNames) -> tuple[Closure, ...]:
             if missing := {"body_A", "body_B", "p_AP", "p_BQ"} - parts.keys():
                 raise tree.elements.refuse(element, f"<ball_constraint> has no <drake:ball_constraint_{min(missing)}>")
             a, b = (
-                Anchor(
-                    tree.link(element, parts[body].get("name")),
-                    Pose(tree.elements.vector(parts[point], "value")),
-                )
+                Anchor(tree.link(element, parts[body].get("name")), Pose(tree.elements.vector(parts[point], "value")))
                 for body, point in (("body_A", "p_AP"), ("body_B", "p_BQ"))
             )
             if [a.body, b.body] != bodies:
@@ -247,4 +239,4 @@ def _couplings(tree: UrdfDialect, names: UniqueNames) -> tuple[Coupling, ...]:
     return tuple(found)
 
 
-FORMAT = ImportFormat("drake", read, loss_kinds(_LOSSES))
+FORMAT = ImportFormat(read, loss_kinds(_LOSSES))

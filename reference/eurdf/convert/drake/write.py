@@ -10,7 +10,7 @@ no body has becomes that of a ball of water of its mass; one without mass, that 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import PurePosixPath
 
 from lxml import etree
@@ -25,13 +25,13 @@ from eurdf.convert.inertia import accepted_inertia, has_inertia
 from eurdf.convert.losses import Losses
 from eurdf.convert.parts import part_of
 from eurdf.convert.steps import ExportedJoint
-from eurdf.convert.urdf.tree import UrdfTree
+from eurdf.convert.urdf.write import UrdfTree
 from eurdf.mechanism.body import Body, Inertia
 from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism, root_joint
-from eurdf.mechanism.pose import AXES, IDENTITY, ORIGIN, Vector3, direction
+from eurdf.mechanism.pose import AXES, IDENTITY, ORIGIN, direction
 from eurdf.writing.urdf_elements import add_dynamics, add_fixed_joint
 from eurdf.writing.xml_text import file_content, numbers, rpy_of
 
@@ -83,7 +83,7 @@ class _DrakeTree(UrdfTree):
         if _WORLD in self.links and not (mechanism.root == "fixed" and self.base == _WORLD):
             self.links[_WORLD] = self.names.new(_WORLD)
         self.without_mass = _moved_without_mass(mechanism)
-        self.mimics = given.mimics
+        self.mimics = given.mechanism.leaders
 
     def write(self) -> None:
         mechanism = self.mechanism
@@ -179,7 +179,12 @@ class _DrakeTree(UrdfTree):
             points.append((one, other))
         elif isinstance(closure, FrameClosure):
             points += [(point_on(axis), point_on(axis)) for axis in AXES[:2]]
-        self._balls(closure, points)
+        for both in points:
+            ball = etree.SubElement(self.root, _tag("ball_constraint"))
+            for side, end in zip("AB", closure.anchors, strict=True):
+                etree.SubElement(ball, _tag(f"ball_constraint_body_{side}"), name=self.links[end.body])
+            for side, end, point in zip(("AP", "BQ"), closure.anchors, both, strict=True):
+                etree.SubElement(ball, _tag(f"ball_constraint_p_{side}"), value=numbers(end.pose.act(point)))
         a, b = (self.links[end.body] for end in closure.anchors)
         if a != b:
             # Links that a joint connects are apart already.
@@ -187,14 +192,6 @@ class _DrakeTree(UrdfTree):
             for link in (a, b):
                 etree.SubElement(group, _tag("member"), link=link)
             etree.SubElement(group, _tag("ignored_collision_filter_group"), name=closure.name)
-
-    def _balls(self, closure: Closure, points: Iterable[tuple[Vector3, Vector3]]) -> None:
-        for both in points:
-            ball = etree.SubElement(self.root, _tag("ball_constraint"))
-            for side, end in zip("AB", closure.anchors, strict=True):
-                etree.SubElement(ball, _tag(f"ball_constraint_body_{side}"), name=self.links[end.body])
-            for side, end, point in zip(("AP", "BQ"), closure.anchors, both, strict=True):
-                etree.SubElement(ball, _tag(f"ball_constraint_p_{side}"), value=numbers(end.pose.act(point)))
 
     def _coupling(self, coupling: Coupling) -> None:
         tendon = etree.SubElement(self.root, _tag("tendon_constraint"))
@@ -211,4 +208,4 @@ class _DrakeTree(UrdfTree):
             etree.SubElement(tendon, _tag(f"tendon_constraint_{what}"), value=numbers((value,)))
 
 
-FORMAT = Format("drake", "URDF with the joints and constraints of Drake", write, ROWS, EXACT)
+FORMAT = Format(write, ROWS, EXACT)

@@ -40,7 +40,7 @@ def read(given: ImportInput) -> RobotRead:
         CannotImport: It has an error.
     """
     tree = read_tree(given, ("loop_joint", "fixed_frame"))
-    names = tree.names()
+    names = UniqueNames(tree.losses)
     closures, without_axis = [], []
     for element in tree.root.iterchildren("loop_joint"):
         closure = _closure(element, tree, names)
@@ -89,4 +89,4 @@ def _frames(tree: UrdfDialect) -> tuple[Frame, ...]:
     return tuple(found)
 
 
-FORMAT = ImportFormat("loop-joint", read, loss_kinds(_LOSSES))
+FORMAT = ImportFormat(read, loss_kinds(_LOSSES))

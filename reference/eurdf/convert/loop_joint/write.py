@@ -54,10 +54,4 @@ def _loop_joint(robot: etree._Element, closure: Closure, name: str) -> None:
         etree.SubElement(element, "axis", xyz=numbers(X))
 
 
-FORMAT = Format(
-    "loop-joint",
-    "URDF with the loop joints of Isaac Sim",
-    write,
-    ROWS,
-    (*EXACT, *(f"{kind} closure" for kind in CLOSURES)),
-)
+FORMAT = Format(write, ROWS, (*EXACT, *(f"{kind} closure" for kind in CLOSURES)))

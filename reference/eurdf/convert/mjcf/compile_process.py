@@ -21,19 +21,13 @@ from eurdf.sandbox import bound_memory, bound_time, request_and_answers
 #: Of each kind of element: its type, if it has names, and the arrays of the model that the importer needs. The first of
 #: them is in every release of MuJoCo.
 _ELEMENTS: dict[str, tuple[Any, str]] = {
-    "body": (
-        mujoco.mjtObj.mjOBJ_BODY,
-        "parentid pos quat mass ipos iquat inertia mocapid gravcomp",
-    ),
+    "body": (mujoco.mjtObj.mjOBJ_BODY, "parentid pos quat mass ipos iquat inertia mocapid gravcomp"),
     "jnt": (
         mujoco.mjtObj.mjOBJ_JOINT,
         "type bodyid pos axis limited range stiffness qposadr dofadr actfrclimited actfrcrange stiffnesspoly",
     ),
     "dof": (None, "armature damping frictionloss dampingpoly"),
-    "geom": (
-        mujoco.mjtObj.mjOBJ_GEOM,
-        "type bodyid contype conaffinity group size pos quat rgba matid dataid",
-    ),
+    "geom": (mujoco.mjtObj.mjOBJ_GEOM, "type bodyid contype conaffinity group size pos quat rgba matid dataid"),
     "mat": (None, "rgba texid"),
     "mesh": (mujoco.mjtObj.mjOBJ_MESH, "pos quat"),
     "site": (mujoco.mjtObj.mjOBJ_SITE, "bodyid pos quat"),

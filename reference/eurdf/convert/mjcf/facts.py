@@ -52,16 +52,7 @@ CLOSURES = {"3d": "connect", "6d": "weld", "hinge": "connect", "distance": "tend
 #: Joints and closures that are as in the description.
 EXACT = tuple(
     f"{kind} joint"
-    for kind in (
-        "revolute",
-        "continuous",
-        "prismatic",
-        "planar",
-        "floating",
-        "spherical",
-        "universal",
-        "cylindrical",
-    )
+    for kind in ("revolute", "continuous", "prismatic", "planar", "floating", "spherical", "universal", "cylindrical")
 )
 
 # What the tests hold robots to that have these elements.

@@ -27,10 +27,12 @@ from eurdf.convert.mjcf.read_state import (
     NoDirection,
     flat,
     must_have_direction,
+    name_of,
     pose_from,
     usable,
     xyzw,
 )
+from eurdf.convert.names import UniqueNames
 from eurdf.convert.xml_elements import places_of_names
 from eurdf.errors import CannotImport
 from eurdf.linking.configurations import beyond_limits
@@ -126,9 +128,7 @@ _LOSSES = {
     "texture": TEXTURE,
     "frame": dropped("frame", "a site without a name is left out", "give it a name in the file"),
     "configuration": dropped(
-        "configuration",
-        "is left out: a coordinate is beyond its limits",
-        "correct the keyframe or the limits",
+        "configuration", "is left out: a coordinate is beyond its limits", "correct the keyframe or the limits"
     ),
     "simulation": SIMULATION,
 }
@@ -223,7 +223,7 @@ def _frames(reading: MjcfReading) -> tuple[Frame, ...]:
     ends = {end for each in model["eq"] if each.objtype == "site" for end in (each.obj1id, each.obj2id)}
     ends |= {wrap.objid for each in model["tendon"] for wrap in reading.wraps(each.index) if wrap.type == "site"}
     links = [body.name for body in (*reading.bodies.values(), *reading.extra)]
-    names = reading.names("universe", ROOT_JOINT, *links, *reading.joints)
+    names = UniqueNames(reading.losses, "universe", ROOT_JOINT, *links, *reading.joints)
     found = []
     for site in model["site"]:
         if site.bodyid not in reading.bodies or site.index in ends:
@@ -240,7 +240,7 @@ def _configurations(
     reading: MjcfReading, mechanism: Mechanism
 ) -> tuple[dict[str, Mapping[str, tuple[float, ...]]], tuple[str, Mapping[str, tuple[float, ...]]]]:
     """The keyframes that are within limits; and the configuration to assemble from."""
-    names = reading.names()
+    names = UniqueNames(reading.losses)
     found: dict[str, Mapping[str, tuple[float, ...]]] = {}
     keys: dict[str, Mapping[str, tuple[float, ...]]] = {}
     for key in reading.model["key"]:
@@ -291,10 +291,10 @@ def _leave_out_rest(reading: MjcfReading) -> None:
     for tendon in model["tendon"]:
         passive = (tendon.limited, tendon.stiffness, tendon.damping, tendon.frictionloss)
         if tendon.index not in used or any(any(flat(each)) for each in passive):
-            losses.add("import-tendon", tendon.name or f"tendon {tendon.index}")
+            losses.add("import-tendon", name_of(tendon, "tendon"))
     shown = [f"{count} {_COUNTED[name]}" for name, count in model.counts.items() if count]
     if shown:
         losses.add("import-simulation", reading.name, f"left out: {', '.join(shown)}")
 
 
-FORMAT = ImportFormat("mjcf", read, loss_kinds(_LOSSES))
+FORMAT = ImportFormat(read, loss_kinds(_LOSSES))

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from eurdf.convert.mjcf.compiled import Element
 from eurdf.convert.mjcf.read_joints import largest_effort
-from eurdf.convert.mjcf.read_state import MjcfReading
+from eurdf.convert.mjcf.read_state import MjcfReading, name_of
 from eurdf.mechanism.mechanism import Motor
 
 
@@ -23,12 +23,12 @@ def read_actuators(reading: MjcfReading) -> tuple[tuple[str, ...], dict[str, Mot
                 continue
         whole = None if joint is None else reading.whole.get(joint.index)
         if joint is None or whole is None:
-            reading.losses.add("import-actuator", _name_of(actuator))
+            reading.losses.add("import-actuator", name_of(actuator, "actuator"))
             continue
         group = groups.setdefault(whole.name, [])
         is_driven = joint in [each for _, each in group] and joint.type != "ball"
         if (group and whole.type.nv == 1) or is_driven:
-            reading.losses.add("import-second-actuator", _name_of(actuator))
+            reading.losses.add("import-second-actuator", name_of(actuator, "actuator"))
         else:
             group.append((actuator, joint))
     motors: dict[str, Motor] = {}
@@ -36,17 +36,13 @@ def read_actuators(reading: MjcfReading) -> tuple[tuple[str, ...], dict[str, Mot
     for name, group in groups.items():
         if reading.joints[name].type.is_fixed or reading.joints[name].mimic:
             for actuator, _ in group:
-                reading.losses.add("import-actuator", _name_of(actuator))
+                reading.losses.add("import-actuator", name_of(actuator, "actuator"))
             continue
         motor = _motor(reading, name, [actuator for actuator, _ in group])
         if motor is not None:
             motors[name] = motor
         actuated.append(name)
     return tuple(actuated), motors
-
-
-def _name_of(actuator: Element) -> str:
-    return actuator.name or f"actuator {actuator.index}"
 
 
 def _joint_of_tendon(reading: MjcfReading, actuator: Element) -> Element | None:
@@ -56,9 +52,9 @@ def _joint_of_tendon(reading: MjcfReading, actuator: Element) -> Element | None:
     leaders = {_leader(reading, joint) for joint in joints}
     if len(joints) < len(wraps) or len(leaders) != 1:
         message = "is left out: its tendon moves several joints independently"
-        reading.losses.add("import-actuator", _name_of(actuator), message)
+        reading.losses.add("import-actuator", name_of(actuator, "actuator"), message)
         return None
-    reading.losses.add("import-tendon-actuator", _name_of(actuator))
+    reading.losses.add("import-tendon-actuator", name_of(actuator, "actuator"))
     return reading.model["jnt"][leaders.pop()]
 
 

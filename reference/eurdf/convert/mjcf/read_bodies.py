@@ -11,6 +11,7 @@ from eurdf.convert.mjcf.read_state import WORLD, MjcfReading, flat, pose_from, v
 from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.pose import Pose
 from eurdf.mesh_files.reader import RefusedFile
+from eurdf.writing.urdf_elements import Color
 
 _DEFAULT_RGBA = (0.5, 0.5, 0.5, 1.0)
 
@@ -69,9 +70,7 @@ def _shape(reading: MjcfReading, geom: Element) -> Shape | None:
     return None
 
 
-def _mesh(
-    reading: MjcfReading, mesh: Element, pose: Pose, color: tuple[float, float, float, float] | None
-) -> Shape | None:
+def _mesh(reading: MjcfReading, mesh: Element, pose: Pose, color: Color | None) -> Shape | None:
     given, scale = reading.given, tuple(mesh.scale)
     if mesh.obj:
         if mesh.path:
@@ -86,7 +85,7 @@ def _mesh(
     return Shape("mesh", scale, pose * pose_from(mesh.pos, mesh.quat).inverse(), copy, color)
 
 
-def _color(reading: MjcfReading, geom: Element) -> tuple[float, float, float, float] | None:
+def _color(reading: MjcfReading, geom: Element) -> Color | None:
     """The color of a shape; None where the file states none."""
     rgba = tuple(geom.rgba)
     if rgba == _DEFAULT_RGBA:

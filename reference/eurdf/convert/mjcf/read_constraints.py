@@ -9,7 +9,7 @@ from eurdf.closures.distance import DistanceClosure
 from eurdf.closures.frame import FrameClosure
 from eurdf.closures.point import PointClosure
 from eurdf.convert.mjcf.compiled import Element
-from eurdf.convert.mjcf.read_state import MjcfReading, pose_from, vector
+from eurdf.convert.mjcf.read_state import MjcfReading, name_of, pose_from, vector
 from eurdf.convert.steps import turn_type
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Closure, Coupling
@@ -27,7 +27,7 @@ def read_closures(reading: MjcfReading) -> list[Closure]:
         if equality.index in reading.consumed:
             continue
         if not equality.active0:
-            reading.losses.add("import-inactive-equality", _name_of(equality))
+            reading.losses.add("import-inactive-equality", name_of(equality, "equality"))
         elif equality.type in ("connect", "weld"):
             a, b = _anchors(reading, equality)
             name = reading.equalities.new(equality.name or f"{a.body}_{b.body}")
@@ -39,10 +39,6 @@ def read_closures(reading: MjcfReading) -> list[Closure]:
             continue
         reading.consumed.add(equality.index)
     return found
-
-
-def _name_of(equality: Element) -> str:
-    return equality.name or f"equality {equality.index}"
 
 
 def _anchors(reading: MjcfReading, equality: Element) -> tuple[Anchor, Anchor]:
@@ -95,7 +91,7 @@ def read_couplings(reading: MjcfReading) -> tuple[Coupling, ...]:
     for equality in reading.model["eq"]:
         if equality.index in reading.consumed:
             continue
-        stated = _name_of(equality)
+        stated = name_of(equality, "equality")
         terms = _terms(reading, equality)
         if terms is None:
             reading.losses.add("import-equality", stated)

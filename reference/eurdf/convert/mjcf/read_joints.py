@@ -7,6 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import cast
 
+import numpy as np
+
+from eurdf.closures.se3 import quaternion_of
 from eurdf.convert.mjcf.compiled import Element
 from eurdf.convert.mjcf.facts import UNLIMITED
 from eurdf.convert.mjcf.read_state import MjcfReading, WholeJoint, flat, usable, vector, xyzw
@@ -14,7 +17,7 @@ from eurdf.convert.steps import SCREW_SLIDE, suffixes
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.pose import IDENTITY, Pose, Quaternion, Vector3, cross
+from eurdf.mechanism.pose import IDENTITY, Pose, Quaternion, cross
 
 #: Lengths (m), and parts of unit vectors, that differ by no more are equal.
 _SAME = 1e-9
@@ -152,7 +155,8 @@ def _exported(
         x, y, z = axes[:3]
         if math.dist(cross(x, y), z) > _SAME or abs(x[0] * y[0] + x[1] * y[1] + x[2] * y[2]) > _SAME:
             return None
-        turn, axes = _orientation(x, y, z), []
+        turn = Pose(quaternion=cast(Quaternion, tuple(quaternion_of(np.transpose((x, y, z))).tolist())))
+        axes = []
     return WholeJoint(reading.joint_names.new(stem), kind, tuple(joints), anchors[0], tuple(axes), turn, pitch)
 
 
@@ -177,26 +181,6 @@ def _advance(reading: MjcfReading, slide: Element, hinge: Element) -> float:
             reading.consumed.add(each.index)
             return float(each.data[1])
     return 0.0
-
-
-def _orientation(x: Vector3, y: Vector3, z: Vector3) -> Pose:
-    """The orientation of a frame with these axes: the largest component is found first, so that none loses digits."""
-    squares = (1.0 + x[0] - y[1] - z[2], 1.0 - x[0] + y[1] - z[2], 1.0 - x[0] - y[1] + z[2], 1.0 + x[0] + y[1] + z[2])
-    products = {
-        (0, 1): x[1] + y[0],
-        (0, 2): x[2] + z[0],
-        (1, 2): y[2] + z[1],
-        (0, 3): y[2] - z[1],
-        (1, 3): z[0] - x[2],
-        (2, 3): x[1] - y[0],
-    }
-    largest = squares.index(max(squares))
-    found = [
-        squares[largest] if index == largest else products[min(index, largest), max(index, largest)]
-        for index in range(4)
-    ]
-    norm = math.hypot(*found)
-    return Pose(quaternion=(found[0] / norm, found[1] / norm, found[2] / norm, found[3] / norm))
 
 
 # -- limits, losses and springs ---------------------------------------------------------------------------------------

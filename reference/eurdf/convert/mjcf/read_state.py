@@ -65,9 +65,9 @@ class MjcfReading:
 
     def __init__(self, given: ImportInput, model: MjcfModel) -> None:
         self.given, self.losses, self.model = given, given.losses, model
-        self.links = self.names("universe")
-        self.joint_names = self.names("universe", ROOT_JOINT)
-        self.equalities = self.names()
+        self.links = UniqueNames(self.losses, "universe")
+        self.joint_names = UniqueNames(self.losses, "universe", ROOT_JOINT)
+        self.equalities = UniqueNames(self.losses)
         self.children: dict[int, list[int]] = {body.index: [] for body in model["body"]}
         for body in model["body"][1:]:
             self.children[body.parentid].append(body.index)
@@ -81,16 +81,12 @@ class MjcfReading:
         self.whole: dict[int, WholeJoint] = {}
         self.consumed: set[int] = set()
 
-    def names(self, *reserved: str) -> UniqueNames:
-        """Names of elements of one kind."""
-        return UniqueNames(self.losses, *reserved, code="import-name")
-
     def new_name(self, names: UniqueNames, element: Element, kind: str, made: str) -> str:
         """The name of an element that needs one; made if it has none."""
         stated = usable(element.name)
         name = names.new(stated or made)
         if not stated or stated != element.name:
-            self.losses.add("import-name", element.name or f"{kind} {element.index}", f"becomes '{name}'")
+            self.losses.add("import-name", name_of(element, kind), f"becomes '{name}'")
         return name
 
     @property
@@ -164,6 +160,11 @@ def must_have_direction(what: str, values: Sequence[float]) -> float:
         shown = " ".join(f"{value:g}" for value in values)
         raise NoDirection(f"the {what} {shown}; its length must be finite, and not zero")
     return length
+
+
+def name_of(element: Element, kind: str) -> str:
+    """How a loss names an element of a kind."""
+    return element.name or f"{kind} {element.index}"
 
 
 def usable(name: str) -> str:

@@ -64,7 +64,7 @@ class _MjcfWriter:
         self.parts: list[Part] = []
         self.meshes = MeshFiles(given, losses, facts.is_readable)
         self.used_meshes: dict[tuple[str, tuple[float, ...]], str] = {}
-        self.mimics = given.mimics
+        self.mimics = given.mechanism.leaders
 
     def write(self) -> ExportOutput:
         mechanism = self.mechanism
@@ -391,4 +391,4 @@ def _placed(pose: Pose) -> dict[str, str]:
     return attributes
 
 
-FORMAT = Format("mjcf", "MJCF, for MuJoCo and what reads its format", write, facts.ROWS, facts.EXACT)
+FORMAT = Format(write, facts.ROWS, facts.EXACT)

@@ -32,8 +32,7 @@ from eurdf.convert.import_format import (
 )
 from eurdf.convert.losses import dropped, exact
 from eurdf.convert.names import UniqueNames
-from eurdf.convert.sdf.read_bodies import read_body
-from eurdf.convert.sdf.read_model import WORLD, SdfModel, is_true, text_of
+from eurdf.convert.sdf.read_model import WORLD, SdfModel, is_true, read_body, text_of
 from eurdf.convert.steps import continuous_if_unlimited, without_locks
 from eurdf.convert.xml_elements import inside, read_root
 from eurdf.mechanism.body import Anchor, Body, Frame
@@ -71,17 +70,13 @@ _LOSSES = {
         "let another joint of the loop close it",
     ),
     "loop-properties": dropped(
-        "joint",
-        "closes a loop: its limits, springs and losses are left out",
-        "let another joint of the loop close it",
+        "joint", "closes a loop: its limits, springs and losses are left out", "let another joint of the loop close it"
     ),
     "gearbox": dropped(
         "joint", "is a gearbox and is left out", "describe it by a coupling of the joints that it relates"
     ),
     "default-inertia": exact(
-        "inertia",
-        "is not stated: the link has the default of SDFormat, 1 kg and 1 kg·m²",
-        "state the inertia",
+        "inertia", "is not stated: the link has the default of SDFormat, 1 kg and 1 kg·m²", "state the inertia"
     ),
     "ball-properties": dropped(
         "joint",
@@ -90,9 +85,7 @@ _LOSSES = {
     ),
     "locked-joint": LOCKED,
     "mimic": dropped(
-        "mimic joint",
-        "is left out: one of the joints has several axes, or none",
-        "describe the relation by a coupling",
+        "mimic joint", "is left out: one of the joints has several axes, or none", "describe the relation by a coupling"
     ),
     "shape": dropped(
         "shape", "is left out: URDF has no such shape", "replace it by boxes, spheres, capsules, cylinders or a mesh"
@@ -143,7 +136,7 @@ class _SdfReader:
 
     def __init__(self, model: SdfModel) -> None:
         self.model, self.losses = model, model.losses
-        self.names = UniqueNames(self.losses, "universe", ROOT_JOINT, code="import-name")
+        self.names = UniqueNames(self.losses, "universe", ROOT_JOINT)
 
     def read(self) -> RobotRead:
         """Read all parts of the robot."""
@@ -225,11 +218,8 @@ class _SdfReader:
         if to_world:
             (first, *others) = to_world
             placed, _ = self.model.pose(self.model.element)
-            if (
-                first.type == "fixed"
-                and not others
-                and placed * self.model.in_model(first.child, first.element) == IDENTITY
-            ):
+            at = placed * self.model.in_model(first.child, first.element)
+            if first.type == "fixed" and not others and at == IDENTITY:
                 return first.child, "fixed"
             return WORLD, "fixed"
         free = [name for name in self.model.links if name not in hanging]
@@ -368,7 +358,7 @@ class _SdfReader:
     # -- the rest ---------------------------------------------------------------------------------------------------
 
     def _frames(self, *taken: str) -> tuple[Frame, ...]:
-        names, found = UniqueNames(self.losses, *taken, code="import-name"), []
+        names, found = UniqueNames(self.losses, *taken), []
         for name, element in self.model.frames.items():
             link = self.model.link_of(name, element)
             pose = self.model.in_model(link, element).inverse() * self.model.in_model(name, element)
@@ -388,4 +378,4 @@ class _SdfReader:
             self.losses.add("import-simulation", self.model.element.get("name") or "", f"left out: {', '.join(shown)}")
 
 
-FORMAT = ImportFormat("sdf", read, loss_kinds(_LOSSES))
+FORMAT = ImportFormat(read, loss_kinds(_LOSSES))

@@ -1,4 +1,4 @@
-"""An SDFormat model as written: its elements by name, and the poses of links, joints and frames."""
+"""An SDFormat model as written: its elements by name, the poses of links, joints and frames, and what a link has."""
 
 from __future__ import annotations
 
@@ -9,7 +9,10 @@ from lxml import etree
 from eurdf.convert.import_format import ImportInput
 from eurdf.convert.xml_elements import Elements, named
 from eurdf.errors import CannotImport
+from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.pose import IDENTITY, Pose
+from eurdf.mesh_files.reader import RefusedFile
+from eurdf.writing.urdf_elements import Color
 
 WORLD = "world"
 
@@ -84,16 +87,8 @@ class SdfModel:
             raise self.refuse(element, f"the pose of '{seen[0]}' refers to more than {DEPTH_LIMIT} others in turn")
         if name in seen:
             raise self.refuse(element, f"poses refer to each other in a circle: {' -> '.join((*seen, name))}")
-        if name in self.links:
-            found, base = self.pose(self.links[name])
-        elif name in self.joints:
-            joint = self.joints[name]
-            found, base = self.pose(joint, text_of(joint, "child"))
-        elif name in self.frames:
-            frame = self.frames[name]
-            found, base = self.pose(frame, frame.get("attached_to", ""))
-        else:
-            raise self.refuse(element, f"there is no link, joint or frame '{name}'")
+        base = self._base(name, element)
+        found, base = self.pose({**self.frames, **self.joints, **self.links}[name], base)
         pose = self.poses[name] = self.in_model(base, element, (*seen, name)) * found
         return pose
 
@@ -114,10 +109,16 @@ class SdfModel:
             raise self.refuse(element, f"frames are attached in a circle: {' -> '.join((*seen, name))}")
         if name in ("", "__model__"):
             return self.canonical()
-        if name in self.frames:
-            return self.link_of(self.frames[name].get("attached_to", ""), element, (*seen, name))
+        return self.link_of(self._base(name, element), element, (*seen, name))
+
+    def _base(self, name: str, element: etree._Element) -> str:
+        """What a link, joint or frame is attached to, which an element names; empty for the model."""
+        if name in self.links:
+            return ""
         if name in self.joints:
-            return self.link_of(text_of(self.joints[name], "child"), element, (*seen, name))
+            return text_of(self.joints[name], "child")
+        if name in self.frames:
+            return self.frames[name].get("attached_to", "")
         raise self.refuse(element, f"there is no link, joint or frame '{name}'")
 
     def canonical(self) -> str:
@@ -143,3 +144,82 @@ def text_of(element: etree._Element, path: str) -> str:
 def is_true(element: etree._Element, path: str) -> bool:
     """Whether a text says that something is so."""
     return text_of(element, path) in ("true", "1")
+
+
+# -- links ------------------------------------------------------------------------------------------------------------
+
+
+def read_body(model: SdfModel, name: str, link: etree._Element) -> Body:
+    """A link, with its inertia and its shapes."""
+    visuals, collisions = (
+        tuple(shape for element in link.iterchildren(use) if (shape := _shape(model, element, name)) is not None)
+        for use in ("visual", "collision")
+    )
+    return Body(name, _inertia(model, name, link), visuals, collisions)
+
+
+def _inertia(model: SdfModel, name: str, link: etree._Element) -> Inertia:
+    inertial = link.find("inertial")
+    if inertial is None:
+        model.losses.add("import-default-inertia", name)
+        return Inertia(1.0, IDENTITY, (1.0, 0.0, 0.0, 1.0, 0.0, 1.0))
+    pose = model.in_link(name, inertial)
+    xx, yy, zz = (model.number(inertial, f"inertia/{key}", 1.0) for key in ("ixx", "iyy", "izz"))
+    xy, xz, yz = (model.number(inertial, f"inertia/{key}", 0.0) for key in ("ixy", "ixz", "iyz"))
+    return Inertia(model.number(inertial, "mass", 1.0), pose, (xx, xy, xz, yy, yz, zz))
+
+
+def _shape(model: SdfModel, element: etree._Element, link: str) -> Shape | None:
+    pose = model.in_link(link, element)
+    geometry = element.find("geometry")
+    shapes = [] if geometry is None else [child for child in geometry if isinstance(child.tag, str)]
+    color = _color(model, element)
+    shown = f"{element.get('name', element.tag)} of {link}"
+    for shape in shapes:
+        match shape.tag:
+            case "box":
+                size = model.elements.numbers(shape, shape.findtext("size"), 3, "<size>")
+                return Shape("box", size, pose, color=color)
+            case "sphere":
+                return Shape("sphere", (model.number(shape, "radius", 1.0),), pose, color=color)
+            case "cylinder" | "capsule":
+                size = model.number(shape, "radius", 1.0), model.number(shape, "length", 1.0)
+                return Shape("cylinder" if shape.tag == "cylinder" else "capsule", size, pose, color=color)
+            case "mesh":
+                return _mesh(model, shape, pose, color)
+        model.losses.add("import-shape", shown, f"is left out: URDF has no shape of type {shape.tag}")
+    return None
+
+
+def _mesh(model: SdfModel, mesh: etree._Element, pose: Pose, color: Color | None) -> Shape | None:
+    uri = (mesh.findtext("uri") or "").strip()
+    found = model.given.finder.find(uri) if uri else None
+    if found is None:
+        model.losses.add("import-mesh", uri)
+        return None
+    try:
+        copy = model.given.copy(found)
+    except RefusedFile as reason:
+        model.losses.add("import-mesh", uri, f"is left out: {reason}")
+        return None
+    scale = (1.0, 1.0, 1.0)
+    if mesh.find("scale") is not None:
+        x, y, z = model.elements.numbers(mesh, mesh.findtext("scale"), 3, "<scale>")
+        scale = x, y, z
+    return Shape("mesh", scale, pose, copy, color)
+
+
+def _color(model: SdfModel, element: etree._Element) -> Color | None:
+    material = element.find("material")
+    if material is None:
+        return None
+    if material.find("script") is not None or material.find(".//albedo_map") is not None:
+        model.losses.add("import-texture", element.get("name", ""))
+    for tag in ("diffuse", "ambient"):
+        found = material.find(tag)
+        if found is not None:
+            words = (found.text or "").split()
+            text = " ".join([*words, "1"] if len(words) == 3 else words)
+            red, green, blue, alpha = model.elements.numbers(found, text, 4, f"<{tag}>")
+            return red, green, blue, alpha
+    return None

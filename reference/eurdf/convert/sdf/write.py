@@ -70,7 +70,7 @@ class _SdfWriter:
         self.axes: dict[str, etree._Element] = {}
         self.joints: dict[str, str] = {}
         self.parts: list[Part] = []
-        self.mimics = given.mimics
+        self.mimics = given.mechanism.leaders
 
     def write(self) -> ExportOutput:
         mechanism = self.mechanism
@@ -182,10 +182,7 @@ class _SdfWriter:
                 self._link(body, link, parent, pose * joint.offset)
             else:
                 _pose(link, pose, parent)
-                _inertial(
-                    link,
-                    Inertia(LIGHT, IDENTITY, (LIGHT, 0.0, 0.0, LIGHT, 0.0, LIGHT)),
-                )
+                _inertial(link, Inertia(LIGHT, IDENTITY, (LIGHT, 0.0, 0.0, LIGHT, 0.0, LIGHT)))
             kind = step.joint.type
             if kind in ROTARY:
                 kind = turn_type(step.joint)
@@ -275,10 +272,7 @@ def _limits(axis: etree._Element, joint: Joint, index: int, at: float) -> None:
         if (values := getattr(properties, name)) and values[index]
     }
     if properties.stiffness and properties.stiffness[index]:
-        dynamics |= {
-            "spring_reference": properties.rest[index] - at,
-            "spring_stiffness": properties.stiffness[index],
-        }
+        dynamics |= {"spring_reference": properties.rest[index] - at, "spring_stiffness": properties.stiffness[index]}
     if dynamics:
         _numbers(_add(axis, "dynamics"), dynamics)
 
@@ -328,4 +322,4 @@ def _allowed(name: str) -> str:
     return f"_{allowed}_" if allowed.startswith("__") and allowed.endswith("__") else allowed
 
 
-FORMAT = Format("sdf", f"SDFormat {VERSION}, for Gazebo", write, ROWS, EXACT)
+FORMAT = Format(write, ROWS, EXACT)

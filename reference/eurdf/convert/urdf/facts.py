@@ -59,11 +59,7 @@ PLAIN_ROWS = (
         "where it relates two joints, let one of them mimic the other in the URDF",
         code="export-coupling-dropped",
     ),
-    dropped(
-        "floating root",
-        "is left out: in URDF, who reads the file decides",
-        "load the URDF with a floating root",
-    ),
+    dropped("floating root", "is left out: in URDF, who reads the file decides", "load the URDF with a floating root"),
     approximate(
         "spherical joint",
         "becomes three continuous joints about x, y and z",
@@ -82,10 +78,9 @@ PLAIN_ROWS = (
     *_on_axes("friction", "friction"),
     dropped(
         "acceleration limit",
-        "limits of acceleration, deceleration and jerk are left out: the three joints that it becomes have none",
+        "limits of acceleration, deceleration and jerk are left out: joints of one axis alone have them",
         ACCELERATION.hint,
         types=("spherical", "planar", "floating"),
-        only="spherical joints",
     ),
     dropped(
         "position limit",

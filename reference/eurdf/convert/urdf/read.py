@@ -35,9 +35,7 @@ URDF_LOSSES = {
     ),
     "texture": dropped("texture", "its file is not copied; its name is kept", "copy the file"),
     "actuator": dropped(
-        "actuator",
-        "is left out: it names no joint that can be actuated",
-        "name the actuated joint in the description",
+        "actuator", "is left out: it names no joint that can be actuated", "name the actuated joint in the description"
     ),
     "later-version": dropped(
         "element",
@@ -86,13 +84,9 @@ class UrdfDialect:
         """The elements of the robot with a tag, in any namespace."""
         return [element for element in self.root if isinstance(element.tag, str) and local(element) == tag]
 
-    def names(self, *reserved: str) -> UniqueNames:
-        """Names of elements of one kind."""
-        return UniqueNames(self.losses, *reserved, code="import-name")
-
     def frame_names(self) -> UniqueNames:
         """Names of frames."""
-        return self.names(*self.links, *(joint.name for joint in self.mechanism.joints))
+        return UniqueNames(self.losses, *self.links, *(joint.name for joint in self.mechanism.joints))
 
 
 def read_tree(
@@ -201,9 +195,6 @@ def _geared(joint: Joint, actuator: etree._Element, elements: Elements) -> Joint
         return joint
     nv = joint.type.nv
     own = replace(
-        joint.properties,
-        gear_ratio=(ratio,) * nv,
-        rotor_inertia=(rotor,) * nv,
-        armature=(ratio * ratio * rotor,) * nv,
+        joint.properties, gear_ratio=(ratio,) * nv, rotor_inertia=(rotor,) * nv, armature=(ratio * ratio * rotor,) * nv
     )
     return replace(joint, properties=own)

@@ -38,7 +38,7 @@ def read(given: ImportInput) -> RobotRead:
         CannotImport: It has an error.
     """
     tree = read_tree(given, ("loop", "loop_constraint", "coupling"))
-    names = tree.names()
+    names = UniqueNames(tree.losses)
     closures = [
         closure
         for element in tree.root.iterchildren("loop", "loop_constraint")
@@ -104,4 +104,4 @@ def _joints_above(link: str, tree: UrdfDialect) -> list[str]:
     return found
 
 
-FORMAT = ImportFormat("urdf-plus", read, loss_kinds(_LOSSES))
+FORMAT = ImportFormat(read, loss_kinds(_LOSSES))

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from eurdf.closures.se3 import quaternion_of
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.pose import AXES, IDENTITY_QUATERNION, Pose, Quaternion, direction, turn_from_x
+from eurdf.mechanism.pose import AXES, IDENTITY_QUATERNION, Quaternion, cross, direction, turn_from_x
 
 #: Axis tokens of directions that need no turn of the frame.
 _TOKENS = dict(zip(AXES, "XYZ", strict=True))
@@ -50,10 +49,10 @@ class Freedom:
     index: int
     lead: float | None = None
 
-    @property
-    def turns(self) -> bool:
-        """Whether it is a rotation."""
-        return self.axis == "angular" or self.axis.startswith("rot")
+
+def turns(axis: str) -> bool:
+    """Whether an axis of a joint is one of rotation: its numbers are in degrees."""
+    return axis == "angular" or axis.startswith("rot")
 
 
 def axis_and_frame(joint: Joint) -> tuple[str, Quaternion]:
@@ -62,8 +61,8 @@ def axis_and_frame(joint: Joint) -> tuple[str, Quaternion]:
         return "", IDENTITY_QUATERNION
     first, *others = map(direction, joint.axes)
     if others:
-        columns = np.array((first, others[0]))
-        return "", _columns(np.stack((*columns, np.cross(*columns)), axis=1))
+        x, y, z, w = quaternion_of(np.transpose((first, others[0], cross(first, others[0])))).tolist()
+        return "", (x, y, z, w)
     if joint.type.is_axial and first in _TOKENS:
         return _TOKENS[first], IDENTITY_QUATERNION
     return "X" if joint.type.is_axial else "", turn_from_x(first)
@@ -84,11 +83,3 @@ def freedoms(joint: Joint) -> Iterator[Freedom]:
                 yield Freedom(f"trans{letter}", index, motion.advance if motion.turns else None)
             if motion.turns:
                 yield Freedom(f"rot{letter}", index)
-
-
-def _columns(R: npt.NDArray[np.float64]) -> Quaternion:
-    """The quaternion of a rotation matrix."""
-    one = Pose(quaternion=turn_from_x((R[0, 0], R[1, 0], R[2, 0])))
-    y = one.inverse().rotate((R[0, 1], R[1, 1], R[2, 1]))
-    half = math.atan2(y[2], y[1]) / 2.0
-    return (one * Pose(quaternion=(math.sin(half), 0.0, 0.0, math.cos(half)))).quaternion

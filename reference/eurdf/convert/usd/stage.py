@@ -13,13 +13,12 @@ import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
-import numpy.typing as npt
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, UsdShade
 
+from eurdf.array import Matrix
 from eurdf.convert.export_format import Triangles
+from eurdf.convert.usd.joints import turns
 from eurdf.mechanism.pose import IDENTITY, Pose, Quaternion, Vector3
-
-Matrix = npt.NDArray[np.float64]
 
 #: m/s² along -z.
 GRAVITY = 9.81
@@ -153,7 +152,7 @@ class UsdStage:
             limit.CreateLowAttr(lower * scale)
             limit.CreateHighAttr(upper * scale)
             return
-        found = (UsdPhysics.RevoluteJoint if _turns(axis) else UsdPhysics.PrismaticJoint)(self._prim(joint))
+        found = (UsdPhysics.RevoluteJoint if turns(axis) else UsdPhysics.PrismaticJoint)(self._prim(joint))
         if math.isfinite(lower):
             found.CreateLowerLimitAttr(lower * scale)
         if math.isfinite(upper):
@@ -272,10 +271,11 @@ def mesh_file(triangles: Triangles) -> bytes:
     UsdGeom.SetStageMetersPerUnit(stage, 1.0)
     mesh = UsdGeom.Mesh.Define(stage, "/mesh")
     stage.SetDefaultPrim(mesh.GetPrim())
-    points = triangles.vertices.astype(np.float32)
+    vertices, faces = triangles
+    points = vertices.astype(np.float32)
     mesh.CreatePointsAttr(points)
-    mesh.CreateFaceVertexCountsAttr(np.full(len(triangles.triangles), 3, np.int32))
-    mesh.CreateFaceVertexIndicesAttr(triangles.triangles.astype(np.int32).ravel())
+    mesh.CreateFaceVertexCountsAttr(np.full(len(faces), 3, np.int32))
+    mesh.CreateFaceVertexIndicesAttr(faces.astype(np.int32).ravel())
     mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
     mesh.CreateExtentAttr(np.array((points.min(axis=0), points.max(axis=0))))
     with tempfile.TemporaryDirectory(prefix="eurdf-") as folder:
@@ -305,13 +305,8 @@ def _quaternion(quaternion: Quaternion) -> Gf.Quatd:
     return Gf.Quatd(w, x, y, z)
 
 
-def _turns(axis: str) -> bool:
-    """Whether an axis of a joint is one of rotation: its numbers are in degrees."""
-    return axis == "angular" or axis.startswith("rot")
-
-
 def _scale(axis: str) -> float:
-    return 180.0 / math.pi if _turns(axis) else 1.0
+    return 180.0 / math.pi if turns(axis) else 1.0
 
 
 def _linear(value: float) -> float:

@@ -25,7 +25,7 @@ from eurdf.convert.names import UniqueNames
 from eurdf.convert.parts import Part, part_of
 from eurdf.convert.steps import in_series
 from eurdf.convert.usd.facts import CLOSURES, DAMPING_TIME, EXACT, LEAST_MOMENT, ROWS
-from eurdf.convert.usd.joints import KINDS, WHOLE, Freedom, axis_and_frame, freedoms
+from eurdf.convert.usd.joints import KINDS, WHOLE, Freedom, axis_and_frame, freedoms, turns
 from eurdf.diagnostics.extras import install_command
 from eurdf.errors import MissingExtra
 from eurdf.mechanism.body import Body, Shape
@@ -71,7 +71,7 @@ class _UsdWriter:
         self.jointed: set[frozenset[str]] = set()
         self.followers: set[str] = set()
         self.parts: list[Part] = []
-        self.mimics = given.mimics
+        self.mimics = given.mechanism.leaders
         self.meshes = MeshFiles(given, losses, lambda name, content: False, (".usdc", mesh_file))
 
     def write(self) -> ExportOutput:
@@ -186,7 +186,7 @@ class _UsdWriter:
             if not turns_as_ball:
                 position = own[freedom.index] * (freedom.lead or 1.0)
                 self.stage.state(path, freedom.axis, position)
-            is_unlimited = (turns_as_ball and freedom.turns) or freedom.lead is not None
+            is_unlimited = (turns_as_ball and turns(freedom.axis)) or freedom.lead is not None
             lower, upper = (-math.inf, math.inf) if is_unlimited else joint.ranges[freedom.index]
             self.stage.limits(path, freedom.axis, lower, upper)
             if freedom.lead is None:
@@ -233,7 +233,7 @@ class _UsdWriter:
 
         armature, friction, damping = map(mean, (properties.armature, properties.friction, properties.damping))
         velocity = min((properties.velocity[index] for index in mine if properties.velocity), default=math.inf)
-        turning = {freedom.turns for freedom in freedoms} or {True}
+        turning = {turns(freedom.axis) for freedom in freedoms} or {True}
         if len(turning) > 1:
             if any(properties.armature) or any(properties.friction) or math.isfinite(velocity):
                 self.losses.add("export-mixed-axes", name)
@@ -276,11 +276,11 @@ class _UsdWriter:
     # -- constraints ------------------------------------------------------------------------------------------------
 
     def _closure(self, closure: Closure) -> None:
-        axis, turns = "", (IDENTITY_QUATERNION, IDENTITY_QUATERNION)
+        axis, frames = "", (IDENTITY_QUATERNION, IDENTITY_QUATERNION)
         if isinstance(closure, HingeClosure):
-            axis, turns = "X", (turn_from_x(closure.axes[0]), turn_from_x(closure.axes[1]))
+            axis, frames = "X", (turn_from_x(closure.axes[0]), turn_from_x(closure.axes[1]))
         ends = []
-        for anchor, turn in zip(closure.anchors, turns, strict=True):
+        for anchor, turn in zip(closure.anchors, frames, strict=True):
             host, pose = self.hosts[anchor.body]
             ends.append((host, pose * anchor.pose * Pose(quaternion=turn)))
         kind, name = CLOSURES[closure.type], self.closures.new(closure.name)
@@ -349,4 +349,4 @@ def _identifier(name: str) -> str:
     return found if re.match(r"[A-Za-z_]", found) else f"_{found}"
 
 
-FORMAT = Format("usd", "USD with UsdPhysics, for Isaac Sim, Newton and others", write, ROWS, EXACT)
+FORMAT = Format(write, ROWS, EXACT)

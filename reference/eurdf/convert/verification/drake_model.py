@@ -14,7 +14,8 @@ from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import DiscreteContactApproximation, MultibodyPlant
 from pydrake.systems.analysis import Simulator
 
-from eurdf.convert.coordinates import Matrix, Vector, rotation_matrix
+from eurdf.array import Matrix, Vector
+from eurdf.convert.coordinates import rotation_matrix
 from eurdf.convert.verification.read_model import (
     CannotRead,
     Diverged,

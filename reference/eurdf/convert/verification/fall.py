@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eurdf.convert.coordinates import Coordinates, Matrix, Vector
-from eurdf.convert.verification.read_model import Diverged, Finding, Instant, ReadModel
+from eurdf.array import Matrix, Vector
+from eurdf.convert.verification.read_model import Diverged, Exported, Finding, Instant, ReadModel
 from eurdf.diagnostics import enumerated
 from eurdf.kinematics.dynamics import mass_matrix
 from eurdf.kinematics.opening import Opening
@@ -66,21 +66,6 @@ class Fall:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class FallMotion:
-    """What the causes of a simulation's errors are looked for in.
-
-    Attributes:
-        robot: The robot.
-        coordinates: From its vectors to those of the model.
-        start: The configuration at the start (nq,).
-    """
-
-    robot: Robot
-    coordinates: Coordinates
-    start: Vector
-
-
-@dataclass(frozen=True, slots=True, eq=False)
 class _Run:
     """A simulation, and its instants up to the one at which the loops are most open, or the last one if it diverges."""
 
@@ -101,14 +86,14 @@ class _Run:
 
 
 def simulate(
-    model: ReadModel, motion: FallMotion, seconds: float, progress: Callable[[float, float], None] | None
+    model: ReadModel, exported: Exported, seconds: float, progress: Callable[[float, float], None] | None
 ) -> tuple[Fall, Finding | None]:
     """Simulate a model, and say what is wrong with the motion, and why.
 
     Returns:
         The simulation, and what is wrong if a loop opens by more than `OPENS` or the simulation diverges.
     """
-    run = _run(model.fall(motion.start, seconds), seconds, progress)
+    run = _run(model.fall(exported.start, seconds), seconds, progress)
     if not (run.fall.diverged or run.opening > OPENS):
         return run.fall, None
     largest = sorted(
@@ -119,17 +104,17 @@ def simulate(
     what = [f"the simulation diverges at {run.fall.seconds:.3g} s{said}"] if run.fall.diverged else []
     if opened:
         what.append(f"constraints open by more than {_BOUND} in the fall: {listed(opened)}")
-    halved = _run(model.fall(motion.start, seconds, slower=2), seconds, progress)
+    halved = _run(model.fall(exported.start, seconds, slower=2), seconds, progress)
     helps = f"; {model.shorter}" if not halved.fall.diverged and halved.opening <= OPENS else ""
     again = [f"with half the time step, {model.step / 2:g} s, {halved.result}{helps}"]
     if any(each.contact for each in run.worst):
-        free = _run(model.fall(motion.start, seconds, contacts=False), seconds, progress)
+        free = _run(model.fall(exported.start, seconds, contacts=False), seconds, progress)
         closed = not free.fall.diverged and free.opening < run.opening / 2.0
         helps = "; leave out contacts of links that overlap, or simplify their collision shapes" if closed else ""
         again.append(f"without contacts, {free.result}{helps}")
     # Where a simulation has blown up, poses say nothing.
     worst = [each for each in run.worst if np.abs(each.positions).max(initial=0.0) < _BLOWN_UP]
-    causes = _causes(model, motion, worst) if worst else ()
+    causes = _causes(model, exported, worst) if worst else ()
     return run.fall, Finding("; ".join(what), (*causes, *again))
 
 
@@ -173,14 +158,14 @@ def amount(opening: Opening) -> str:
 # -- why: only what the run shows -------------------------------------------------------------------------------------
 
 
-def _causes(model: ReadModel, motion: FallMotion, worst: Sequence[Instant]) -> Iterator[str]:
+def _causes(model: ReadModel, exported: Exported, worst: Sequence[Instant]) -> Iterator[str]:
     yield from _fast(model, worst)
     contact = max((each.contact for each in worst if each.contact), key=lambda contact: contact[2], default=None)
     if contact is not None and contact[2] > _OVERLAP:
         yield f"{enumerated(contact[:2])} collide, and overlap by {contact[2] * 1e3:.3g} mm"
-    yield from _singular(motion, worst)
-    yield from _massless(motion, worst)
-    for body in motion.robot.mechanism.bodies:
+    yield from _singular(exported, worst)
+    yield from _massless(exported, worst)
+    for body in exported.robot.mechanism.bodies:
         if body.inertia is not None and body.inertia.mass > _HEAVY:
             yield f"link '{body.name}' has a mass of {body.inertia.mass:.3g} kg; correct it in the URDF"
 
@@ -197,9 +182,9 @@ def _fast(model: ReadModel, worst: Sequence[Instant]) -> Iterator[str]:
         )
 
 
-def _singular(motion: FallMotion, worst: Sequence[Instant]) -> Iterator[str]:
+def _singular(exported: Exported, worst: Sequence[Instant]) -> Iterator[str]:
     """Whether the passive joints pass a pose at which the actuated ones do not hold them."""
-    robot = motion.robot
+    robot = exported.robot
     columns = {
         at: name for at, name in joint_of_velocity(robot).items() if name not in (ROOT_JOINT, *robot.actuation.joints)
     }
@@ -210,11 +195,11 @@ def _singular(motion: FallMotion, worst: Sequence[Instant]) -> Iterator[str]:
         _, K = residual_and_jacobian(robot, q)
         return np.linalg.svd(K[:, list(columns)])[1:]
 
-    values, _ = decomposed(motion.start)
+    values, _ = decomposed(exported.start)
     rank = int((values > _ZERO * values[0]).sum())
     if not rank:
         return
-    found = [(*decomposed(motion.coordinates.from_q(each.positions)), each.time) for each in worst]
+    found = [(*decomposed(exported.coordinates.from_q(each.positions)), each.time) for each in worst]
     least, directions, time = min(found, key=lambda each: float(each[0][rank - 1]))
     if least[rank - 1] < _NEAR * values[rank - 1]:
         joints = _most(directions[rank - 1], list(columns.values()))
@@ -233,12 +218,12 @@ def _singular(motion: FallMotion, worst: Sequence[Instant]) -> Iterator[str]:
         yield without + "limit the joints so that the loops do not get there, or control the actuated joints"
 
 
-def _massless(motion: FallMotion, worst: Sequence[Instant]) -> Iterator[str]:
+def _massless(exported: Exported, worst: Sequence[Instant]) -> Iterator[str]:
     """Whether joints pass a pose at which they move no mass, as three hinges in gimbal lock."""
-    robot = motion.robot
-    before = float(np.linalg.eigvalsh(mass_matrix(robot, motion.start))[0])
+    robot = exported.robot
+    before = float(np.linalg.eigvalsh(mass_matrix(robot, exported.start))[0])
     found = [
-        (*np.linalg.eigh(mass_matrix(robot, motion.coordinates.from_q(each.positions))), each.time) for each in worst
+        (*np.linalg.eigh(mass_matrix(robot, exported.coordinates.from_q(each.positions))), each.time) for each in worst
     ]
     values, directions, time = min(found, key=lambda each: float(each[0][0]))
     if values[0] < min(_NEAR * before, _LIGHT):

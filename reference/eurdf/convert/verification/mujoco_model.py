@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import mujoco
 import numpy as np
 
-from eurdf.convert.coordinates import Matrix, Vector
+from eurdf.array import Matrix, Vector
 from eurdf.convert.verification.read_model import CannotRead, Diverged, Exported, Instant, Range, ReadModel
 from eurdf.kinematics.opening import Opening
 

@@ -8,7 +8,7 @@ import numpy as np
 import pinocchio as pin
 from lxml import etree
 
-from eurdf.convert.coordinates import Matrix, Vector
+from eurdf.array import Matrix, Vector
 from eurdf.convert.verification.read_model import CannotRead, Exported, Range, ReadModel, opening_between
 from eurdf.kinematics.opening import Opening
 

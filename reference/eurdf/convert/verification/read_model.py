@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-import pinocchio as pin
 
+from eurdf.array import Matrix, Vector
 from eurdf.convert.conventions import opening_of
-from eurdf.convert.coordinates import Coordinates, Matrix, Vector
+from eurdf.convert.coordinates import Coordinates, homogeneous
 from eurdf.kinematics.opening import Opening
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Closure
@@ -55,11 +55,13 @@ class Exported:
         path: The main file.
         robot: The robot, with the closures that were exported.
         coordinates: From the vectors of the robot to those of the model.
+        start: The configuration (nq,) that simulations start from.
     """
 
     path: Path
     robot: Robot
     coordinates: Coordinates
+    start: Vector
 
     def off_mimics(self, positions: Vector) -> Iterator[Opening]:
         """How far each mimic joint is off its leader at positions (`coordinates.nq`,) of the model; m or rad."""
@@ -185,6 +187,4 @@ def opening_between(closure: Closure, a: Matrix, b: Matrix) -> Opening:
 
 def anchored(anchor: Anchor, pose: Callable[[str], Any]) -> Matrix:
     """Pose (4, 4) of an anchor in the world, where `pose` gives that of its body."""
-    x, y, z, w = anchor.pose.quaternion
-    placed = pin.SE3(pin.Quaternion(w, x, y, z).normalized().matrix(), np.array(anchor.pose.xyz))
-    return np.asarray(pose(anchor.body) @ placed.homogeneous)
+    return np.asarray(pose(anchor.body) @ homogeneous(anchor.pose))

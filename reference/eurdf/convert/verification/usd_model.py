@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
+from eurdf.array import Matrix, Vector
 from eurdf.closures.hinge import HingeClosure
-from eurdf.convert.coordinates import Matrix, Vector
 from eurdf.convert.verification.read_model import CannotRead, Exported, Range, ReadModel, opening_between
 from eurdf.kinematics.dynamics import mass_matrix
 from eurdf.kinematics.opening import Opening

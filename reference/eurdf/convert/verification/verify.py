@@ -10,11 +10,12 @@ from importlib.util import find_spec
 
 import numpy as np
 
+from eurdf.array import Matrix, Vector
 from eurdf.convert.common_losses import BEYOND_LIMITS
-from eurdf.convert.coordinates import Coordinates, Matrix, Vector
+from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.inertia import physical
 from eurdf.convert.losses import Effect, Loss
-from eurdf.convert.verification.fall import Fall, FallMotion, joint_of_velocity, listed, simulate, size
+from eurdf.convert.verification.fall import Fall, joint_of_velocity, listed, simulate, size
 from eurdf.convert.verification.read_model import CannotRead, Exported, Finding, Range, ReadModel, without_armature
 from eurdf.diagnostics.extras import install_command
 from eurdf.errors import MissingExtra
@@ -94,25 +95,24 @@ def verify(
     """Read an export back, and simulate it; see `Export.verify`."""
     require_reader(to)
     with tempfile.TemporaryDirectory() as folder:
-        exported = Exported(write_files(folder, files)[0], robot, coordinates)
+        exported = Exported(write_files(folder, files)[0], robot, coordinates, start)
         module, name, *_ = _READERS[to]
         try:
             model: ReadModel = getattr(import_module(f"eurdf.convert.verification.{module}"), name)(exported)
         except CannotRead as refusal:
             finding = Finding(f"{refusal.reader} refuses the file: {refusal}")
             return Verification(refusal.reader, str(refusal), findings=(finding,))
-        return _compare(model, exported, losses, start, seconds, progress)
+        return _compare(model, exported, losses, seconds, progress)
 
 
 def _compare(
     model: ReadModel,
     exported: Exported,
     losses: Sequence[Loss],
-    start: Vector,
     seconds: float,
     progress: Callable[[float, float], None] | None,
 ) -> Verification:
-    robot = exported.robot
+    robot, start = exported.robot, exported.start
     findings: list[Finding] = []
     masses = [body.inertia.mass for body in robot.mechanism.bodies if body.inertia is not None]
     mass = model.mass, sum(masses)
@@ -140,7 +140,7 @@ def _compare(
     if model.step and opened:
         unverified += ("the fall is not simulated, since constraints are open at the start",)
     elif model.step and seconds:
-        fall, moved = simulate(model, FallMotion(robot, exported.coordinates, start), seconds, progress)
+        fall, moved = simulate(model, exported, seconds, progress)
         findings += [moved] if moved else []
     return Verification(model.reader, "", mass, error, openings, beyond, fall, tuple(findings), as_listed, unverified)
 

@@ -11,8 +11,7 @@ from eurdf.mechanism.body import Inertia, Shape
 from eurdf.mechanism.joint import Mimic
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import Pose, Vector3
-from eurdf.reading.reporter import Element
-from eurdf.reading.xml_reader import XmlDocument
+from eurdf.reading.xml_reader import Element, XmlDocument
 
 
 class Limit(NamedTuple):

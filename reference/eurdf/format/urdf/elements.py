@@ -7,12 +7,12 @@ from collections.abc import Iterable, Mapping
 from functools import partial
 from typing import NamedTuple
 
-from eurdf.diagnostics import Hint, did_you_mean
+from eurdf.diagnostics import did_you_mean
 from eurdf.format.conventions import HINT, LARGEST, too_large
 from eurdf.format.wording import near
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
-from eurdf.reading.reporter import Element, XmlReporter
+from eurdf.mechanism.pose import IDENTITY, ORIGIN, Pose
+from eurdf.reading.xml_reader import Element, XmlReporter
 
 #: The types a URDF may give a joint.
 URDF_JOINT_TYPES = {kind.value: kind for kind in JointType if not kind.replaces}
@@ -63,8 +63,6 @@ _LIMITS = dict.fromkeys(_KNOWN_ATTRIBUTES["limit"], 1.0) | {"lower": -1.0}
 #: Name of the world.
 RESERVED = "universe"
 
-_ZERO: Vector3 = (0.0, 0.0, 0.0)
-
 #: White space of XML. A name can consist of other blanks, such as no-break spaces.
 WHITE = " \t\r\n"
 
@@ -92,11 +90,9 @@ def _how_to_add(element: Element, attribute: str) -> str | None:
 
 
 def _floats(text: str, pieces: Iterable[str]) -> tuple[float, ...] | None:
-    """Finite decimal numbers in ASCII. What else `float` accepts (nan, inf, 1_0, other digits) is not URDF.
+    """Finite decimal numbers in ASCII, of a text and its pieces.
 
-    Args:
-        text: All of them.
-        pieces: One each.
+    What else `float` accepts (nan, inf, 1_0, other digits) is not URDF.
     """
     if "_" in text or not text.isascii():
         return None
@@ -114,13 +110,13 @@ class UrdfReader:
     It caches texts that occur often in a file: numbers, poses, and names that URDF does not have.
 
     Attributes:
-        reporter: Gets what is found.
+        reporter: Gets what is found, by its `report`.
         mimic_reporter: Gets what is wrong with mimic joints.
         version: The version of URDF that the robot states, empty if it states none. Versions compare as texts.
     """
 
     def __init__(self, reporter: XmlReporter, mimic_reporter: XmlReporter) -> None:
-        self.reporter = reporter
+        self.reporter, self.report = reporter, reporter.report
         self.mimic_reporter = mimic_reporter
         self.version = ""
         self._later: dict[tuple[str, str], list[tuple[Element, str | None]]] = {}
@@ -128,12 +124,6 @@ class UrdfReader:
         self._joined: dict[str, tuple[float, ...] | None] = {}
         self._poses: dict[tuple[str | None, ...], Pose] = {}
         self._strange: dict[tuple[str, tuple[str, ...]], str | None] = {}
-
-    def report(
-        self, code: str, message: str, element: Element, attribute: str | None = None, hint: Hint = None
-    ) -> None:
-        """Report what is wrong with an element, or with one of its attributes."""
-        self.reporter.report(code, message, element, attribute, hint)
 
     def numbers(self, element: Element, attribute: str, text: str, count: int) -> tuple[float, ...] | None:
         """EU-URD-007, EU-FIL-005: an attribute of numbers has the right number of decimal numbers within bounds."""
@@ -187,14 +177,13 @@ class UrdfReader:
             hint,
         )
 
-    def number(self, element: Element, attribute: str) -> float | None:
-        """A required attribute of one number."""
+    def required(self, element: Element, attribute: str, count: int) -> tuple[float, ...] | None:
+        """EU-URD-005: a required attribute of numbers."""
         text = element.get(attribute)
         if text is None:
             self.missing_attribute(element, attribute)
             return None
-        values = self.numbers(element, attribute, text, 1)
-        return None if values is None else values[0]
+        return self.numbers(element, attribute, text, count)
 
     def single_numbers(
         self, element: Element, attributes: Mapping[str, str | None], optional: tuple[str, ...] | None = None
@@ -283,11 +272,7 @@ class UrdfReader:
             self.report("urdf-unknown-element", f"<{parent.tag}> has an unknown element <{tag}>", child, hint=hint)
 
     def attributes(self, element: Element, optional: tuple[str, ...] | None = None) -> bool:
-        """EU-URD-026: warn of an unknown attribute whose name is near that of an optional one.
-
-        Returns:
-            Whether there is one.
-        """
+        """EU-URD-026: whether an unknown attribute has a name near that of an optional one, which is warned of."""
         tag = str(element.tag)
         known, optional = _KNOWN_ATTRIBUTES[tag], optional or _KNOWN[tag].attributes
         is_misspelt = False
@@ -331,8 +316,8 @@ class UrdfReader:
         text = (xyz_text, rpy_text, quaternion_text)
         pose = self._poses.get(text)
         if pose is None:
-            xyz = _ZERO if xyz_text is None else self.numbers(element, "xyz", xyz_text, 3)
-            rpy = _ZERO if rpy_text is None else self.numbers(element, "rpy", rpy_text, 3)
+            xyz = ORIGIN if xyz_text is None else self.numbers(element, "xyz", xyz_text, 3)
+            rpy = ORIGIN if rpy_text is None else self.numbers(element, "rpy", rpy_text, 3)
             if xyz is None or rpy is None:
                 return IDENTITY
             if quaternion_text is None:

@@ -12,7 +12,7 @@ from eurdf.format.urdf.elements import RATES, RESERVED, URDF_JOINT_TYPES, UrdfRe
 from eurdf.mechanism.joint import Mimic
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import IDENTITY, Vector3
-from eurdf.reading.reporter import Element
+from eurdf.reading.xml_reader import Element
 
 _X: Vector3 = (1.0, 0.0, 0.0)
 
@@ -69,11 +69,7 @@ def _type(reader: UrdfReader, element: Element) -> JointType | None:
 
 def _axis(reader: UrdfReader, name: str | None, kind: JointType, element: Element) -> Vector3 | None:
     """EU-URD-013, EU-URD-035: the axis of a joint that turns about it or slides along it; x if left out."""
-    text = element.get("xyz")
-    if text is None:
-        reader.missing_attribute(element, "xyz")
-        return None
-    axis = reader.numbers(element, "xyz", text, 3)
+    axis = reader.required(element, "xyz", 3)
     if axis is None:
         return None
     x, y, z = axis
@@ -97,8 +93,11 @@ def _axis(reader: UrdfReader, name: str | None, kind: JointType, element: Elemen
 def _limit(
     reader: UrdfReader, name: str | None, kind: JointType, joint: Element, element: Element | None
 ) -> Limit | None:
+    """EU-URD-004, EU-URD-019: a joint with a range of motion has a ``limit``, whose ends are in order."""
     if element is None:
-        _check_needs_no_limit(reader, name, kind, joint)
+        if kind.is_ranged:
+            hint = "use type 'continuous' for a joint that rotates without limits" if kind == "revolute" else None
+            reader.report("urdf-missing-element", f"{kind} joint '{name}' has no <limit>", joint, hint=hint)
         return None
     limit = _limit_1_2(reader, kind, element) if reader.version >= "1.2" else _limit_1_0(reader, element)
     if limit is None:
@@ -106,7 +105,8 @@ def _limit(
     if min(limit[2:]) < 0.0:
         _report_negative(reader, element, **{key: getattr(limit, key) for key in _LIMIT_1_2})
     if limit.lower > limit.upper and (kind.is_ranged or reader.version >= "1.2"):
-        _report_reversed(reader, name, limit.lower, limit.upper, element)
+        message = f"joint '{name}': lower limit {limit.lower:g} is above upper limit {limit.upper:g}"
+        reader.report("urdf-reversed-limits", message, element, "lower", "swap the two limits")
     return limit
 
 
@@ -116,9 +116,7 @@ def _limit_1_0(reader: UrdfReader, element: Element) -> Limit | None:
     for attribute in map(str, element.keys()):
         if attribute in RATES:
             reader.later(element, attribute, "1.2")
-    if values is None:
-        return None
-    return _limits(dict(zip(_LIMIT, values, strict=True)))
+    return None if values is None else _limits(dict(zip(_LIMIT, values, strict=True)))
 
 
 def _limit_1_2(reader: UrdfReader, kind: JointType, element: Element) -> Limit | None:
@@ -133,28 +131,6 @@ def _limits(stated: dict[str, float]) -> Limit:
     """EU-FIL-006: the limits that are stated; those that are left out, or too large to be one, do not limit."""
     lower = lower_limit(stated.pop("lower", -math.inf))
     return Limit(lower, **{**_NO_LIMIT, **{name: upper_limit(value) for name, value in stated.items()}})
-
-
-def _check_needs_no_limit(reader: UrdfReader, name: str | None, kind: JointType, joint: Element) -> None:
-    """EU-URD-004: a joint with a range of motion has a ``limit``."""
-    if kind.is_ranged:
-        reader.report(
-            "urdf-missing-element",
-            f"{kind} joint '{name}' has no <limit>",
-            joint,
-            hint="use type 'continuous' for a joint that rotates without limits" if kind == "revolute" else None,
-        )
-
-
-def _report_reversed(reader: UrdfReader, name: str | None, lower: float, upper: float, element: Element) -> None:
-    """EU-URD-019: the lower limit is not above the upper one."""
-    reader.report(
-        "urdf-reversed-limits",
-        f"joint '{name}': lower limit {lower:g} is above upper limit {upper:g}",
-        element,
-        "lower",
-        "swap the two limits",
-    )
 
 
 def _dynamics(reader: UrdfReader, element: Element) -> tuple[float, ...]:

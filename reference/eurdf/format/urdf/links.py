@@ -10,8 +10,7 @@ from eurdf.format.urdf.elements import RESERVED, UrdfReader
 from eurdf.format.urdf.materials import Look, Materials
 from eurdf.mechanism.body import Inertia, Shape
 from eurdf.mechanism.pose import Pose
-from eurdf.reading.reporter import Element
-from eurdf.reading.xml_reader import written_name
+from eurdf.reading.xml_reader import Element, written_name
 
 _Primitive = Literal["box", "cylinder", "sphere", "capsule"]
 
@@ -58,10 +57,10 @@ def _inertial(reader: UrdfReader, element: Element) -> Inertia | None:
     inertia_element = reader.need(element, found, "inertia")
     if mass_element is None or inertia_element is None:
         return None
-    mass, moments = reader.number(mass_element, "value"), reader.single_numbers(inertia_element, _INERTIA)
+    mass, moments = reader.required(mass_element, "value", 1), reader.single_numbers(inertia_element, _INERTIA)
     if mass is None or moments is None:
         return None
-    return Inertia(mass, pose, moments)  # type: ignore[arg-type]
+    return Inertia(mass[0], pose, moments)  # type: ignore[arg-type]
 
 
 def _shape(reader: UrdfReader, element: Element, materials: Materials) -> Shape | None:
@@ -118,10 +117,9 @@ def _primitive(reader: UrdfReader, element: Element, pose: Pose, look: Look) -> 
     """EU-URD-024: any other shape is a box, cylinder, sphere or capsule of positive size."""
     kind = element.tag
     if kind == "box":
-        size = _size_of_box(reader, element)
+        size = reader.required(element, "size", 3)
     elif kind == "sphere":
-        radius = reader.number(element, "radius")
-        size = None if radius is None else (radius,)
+        size = reader.required(element, "radius", 1)
     else:
         size = reader.single_numbers(element, _CYLINDER)
     if size is None:
@@ -131,11 +129,3 @@ def _primitive(reader: UrdfReader, element: Element, pose: Pose, look: Look) -> 
         return None
     color, texture = look
     return Shape(cast(_Primitive, kind), size, pose, color=color, texture=texture)
-
-
-def _size_of_box(reader: UrdfReader, element: Element) -> tuple[float, ...] | None:
-    text = element.get("size")
-    if text is None:
-        reader.missing_attribute(element, "size")
-        return None
-    return reader.numbers(element, "size", text, 3)

@@ -6,7 +6,7 @@ from functools import partial
 
 from eurdf.diagnostics import did_you_mean
 from eurdf.format.urdf.elements import WHITE, UrdfReader, named
-from eurdf.reading.reporter import Element
+from eurdf.reading.xml_reader import Element
 
 #: Red, green, blue, alpha, or None; and the file name of a texture, or an empty text.
 Look = tuple[tuple[float, float, float, float] | None, str]
@@ -39,11 +39,7 @@ class Materials:
                     return None, ""
                 message = f"material '{name}' is not defined" if name else f"{named(element)} has no name and no color"
                 self._reader.report(
-                    "urdf-unknown-material",
-                    message,
-                    element,
-                    "name",
-                    partial(did_you_mean, name, self._known),
+                    "urdf-unknown-material", message, element, "name", partial(did_you_mean, name, self._known)
                 )
                 return None, ""
             return self._known[name]
@@ -69,11 +65,7 @@ class Materials:
         found = reader.children(element)
         rgba: tuple[float, ...] | None = None
         if "color" in found:
-            text = found["color"].get("rgba")
-            if text is None:
-                reader.missing_attribute(found["color"], "rgba")
-            else:
-                rgba = reader.numbers(found["color"], "rgba", text, 4)
+            rgba = reader.required(found["color"], "rgba", 4)
         texture = self._file(found["texture"]) if "texture" in found else ""
         return rgba, texture  # type: ignore[return-value]
 

@@ -10,18 +10,13 @@ from eurdf.diagnostics import did_you_mean
 from eurdf.format.urdf.data import UrdfJoint
 from eurdf.format.urdf.elements import UrdfReader
 from eurdf.mechanism.joint import Mimic
-from eurdf.reading.reporter import Element
+from eurdf.reading.xml_reader import Element
 
 _Joints = Mapping[str, UrdfJoint]
 
 
 def check_mimics(reader: UrdfReader, joints: _Joints) -> None:
-    """Check what each mimic joint names as its leader.
-
-    Args:
-        reader: Gets what is found.
-        joints: The joints by name, in file order.
-    """
+    """Check what each mimic joint names as its leader; the joints are in file order."""
     done: set[str] = set()
     for joint in joints.values():
         if joint.mimic is None:

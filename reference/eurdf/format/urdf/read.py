@@ -10,8 +10,7 @@ from eurdf.format.urdf.links import read_link
 from eurdf.format.urdf.materials import Materials
 from eurdf.format.urdf.tree import build_tree
 from eurdf.reading.other_formats import of_element, of_root
-from eurdf.reading.reporter import Element, XmlReporter
-from eurdf.reading.xml_reader import XmlDocument, written_name
+from eurdf.reading.xml_reader import Element, XmlDocument, XmlReporter, written_name
 
 #: Elements by which other dialects state a closure or a coupling; a parser of this format would ignore them.
 _CLOSURE_DIALECTS = frozenset({"loop", "loop_joint", "constraint", "coupling"})
@@ -31,17 +30,10 @@ def read_urdf(
     geometry: bool = True,
     mimic_diagnostics: Diagnostics | None = None,
 ) -> Urdf | None:
-    """Read a URDF and check it without the YAML file.
+    """Read a URDF and check it without the YAML file; None if an error was added to ``diagnostics``.
 
-    Args:
-        document: The XML file.
-        diagnostics: Gets what is found.
-        geometry: Whether to read and check visuals and collisions; if not, links have none.
-        mimic_diagnostics: Gets what is wrong with mimic joints, in place of `diagnostics`: for a caller that ignores
-            mimics.
-
-    Returns:
-        The URDF; None if an error was added to `diagnostics`.
+    Without ``geometry``, links have no visuals and collisions, and these are not checked. What is wrong with mimic
+    joints goes to ``mimic_diagnostics``, if given: for a caller that ignores mimics.
     """
     before = diagnostics.error_count
     of_mimics = diagnostics if mimic_diagnostics is None else mimic_diagnostics

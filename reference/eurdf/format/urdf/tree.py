@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import TypeVar
 
@@ -16,18 +16,13 @@ _Named = TypeVar("_Named", UrdfLink, UrdfJoint)
 
 
 def build_tree(reader: UrdfReader, name: str, links: Sequence[UrdfLink], joints: Sequence[UrdfJoint]) -> Urdf | None:
-    """The tree; None if an error was found. What follows from an error is not checked.
+    """The tree of links and joints in file order; None if an error was found.
 
-    Args:
-        reader: Gets what is found.
-        name: Name of the robot.
-        links: In file order.
-        joints: In file order.
+    What follows from an error is not checked.
     """
     diagnostics, document = reader.reporter.diagnostics, reader.reporter.document
     before = diagnostics.error_count
-    link_by_name = _links_by_name(reader, links)
-    joint_by_name = _joints_by_name(reader, joints)
+    link_by_name, joint_by_name = _by_name(reader, "link", links), _by_name(reader, "joint", joints)
     if not links:  # EU-URD-015
         reader.report("urdf-no-link", f"robot '{name}' has no link", document.root)
     _check_links_of_joints(reader, joints, link_by_name)
@@ -49,31 +44,14 @@ def build_tree(reader: UrdfReader, name: str, links: Sequence[UrdfLink], joints:
     return urdf if _is_acyclic(reader, urdf, roots, parent_joint) and _has_one_root(reader, roots) else None
 
 
-def _links_by_name(reader: UrdfReader, links: Sequence[UrdfLink]) -> dict[str, UrdfLink]:
-    """EU-URD-009: the names of links are unique."""
-    by_name = {link.name: link for link in links}
-    if len(by_name) < len(links):
-        for link in _repeated(links):
-            reader.report("urdf-duplicate-link", f"two links are named '{link.name}'", link.element, "name")
-    return by_name
-
-
-def _joints_by_name(reader: UrdfReader, joints: Sequence[UrdfJoint]) -> dict[str, UrdfJoint]:
-    """EU-URD-010: the names of joints are unique."""
-    by_name = {joint.name: joint for joint in joints}
-    if len(by_name) < len(joints):
-        for joint in _repeated(joints):
-            reader.report("urdf-duplicate-joint", f"two joints are named '{joint.name}'", joint.element, "name")
-    return by_name
-
-
-def _repeated(items: Sequence[_Named]) -> Iterator[_Named]:
-    """Those whose name an earlier one has."""
-    seen: set[str] = set()
+def _by_name(reader: UrdfReader, tag: str, items: Sequence[_Named]) -> dict[str, _Named]:
+    """EU-URD-009, EU-URD-010: the names of links are unique, and those of joints."""
+    by_name: dict[str, _Named] = {}
     for item in items:
-        if item.name in seen:
-            yield item
-        seen.add(item.name)
+        if item.name in by_name:
+            reader.report(f"urdf-duplicate-{tag}", f"two {tag}s are named '{item.name}'", item.element, "name")
+        by_name[item.name] = item
+    return by_name
 
 
 def _check_links_of_joints(reader: UrdfReader, joints: Sequence[UrdfJoint], links: Mapping[str, UrdfLink]) -> None:
