@@ -11,7 +11,7 @@ from typing import Literal
 from eurdf.diagnostics.lines import BREAK
 from eurdf.format.closure_model import AXES, CLOSURE, FrameReference, NamedFrame
 from eurdf.format.conventions import VERSION2_0, VERSION2_1, is_own_key
-from eurdf.format.joint_model import JOINT, Overridden, Spherical
+from eurdf.format.joint_model import JOINT, JointEntry, Overridden, Spherical
 from eurdf.format.model import VERSION1, Description
 from eurdf.format.schema import FILES
 from eurdf.format.urdf.data import Urdf
