@@ -36,7 +36,7 @@ setup(
     author=PACKAGE.findtext("author"),
     package_dir={"": "../reference"},
     packages=find_packages("../reference", include=["eurdf", "eurdf.*"]),
-    entry_points={"console_scripts": ["eurdf = eurdf.commands.start:start"]},
+    entry_points={"console_scripts": ["eurdf = eurdf.__main__:start"]},
     data_files=[
         ("share/ament_index/resource_index/packages", ["resource/eurdf"]),
         ("share/eurdf", ["package.xml"]),

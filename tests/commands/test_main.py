@@ -428,7 +428,7 @@ sys.exit(main(["check", *sys.argv[1:]]))
 
 _INTERRUPT_AT_IMPORT = """
 import atexit, os, signal, sys
-from eurdf.commands.start import start
+from eurdf.__main__ import start
 moment = sys.argv.pop(1)
 def interrupt():
     os.kill(os.getpid(), signal.SIGINT)

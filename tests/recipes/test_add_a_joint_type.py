@@ -36,7 +36,7 @@ TYPE = (
         "class _JointRecord(Record):",
         '''\
 @entry
-class Table(Joint):
+class Table(JointEntry):
     """A table that slides in a plane."""
 
     title = "Table"

@@ -37,7 +37,7 @@ WITHOUT_DATA = {"view", "plot_workspace"}
 
 #: Methods that change the object, write files, or return texts; and what is shared by design: the memory of a robot.
 NOT_CALLED = {"reset", "write", "start_at_joints", "start_at_motors", "c_source", "passes", "followed_by", "to_json"}
-NOT_CALLED |= {"on_grid", "nearest", "derived", "data", "tree", "diagnose", "no_geometry", "of"}
+NOT_CALLED |= {"on_grid", "nearest", "cached", "derived", "data", "tree", "diagnose", "no_geometry", "of"}
 
 #: Objects of other libraries, and what a result refers to and does not own.
 NOT_OWNED = ("pinocchio", "coal", "lxml")
@@ -107,12 +107,12 @@ class Case:
 
     def call(self, function: Callable[..., Any], name: str, more: Mapping[str, Any] = MappingProxyType({})) -> Any:
         """The result with the arguments that must be given, and the optional arrays."""
-        given = {**self.arguments, **more, **self.of.get(name, {})}
+        given = {**self.arguments, **self.of.get(name, {}), **more}
         parameters = inspect.signature(function).parameters.values()
         needed = {each.name for each in parameters if each.default is each.empty}
         if "joints" in needed and not given["joints"]:
             return None  # nothing is driven through rods here
-        optional = {each.name for each in parameters} & {"q", "q0", "grid", "ranges", "weights"}
+        optional = {each.name for each in parameters} & {"q", "q0", "grid", "ranges", "weights", *more}
         return function(**{name: given[name] for name in needed | (optional & given.keys())})
 
     def results(self) -> dict[str, Any]:
@@ -206,6 +206,73 @@ def test_results_belong_to_the_caller(robot: tuple[str, Any, tuple[str, ...], st
     assert_equal(before, numbers(after, case))
 
 
+#: Optional vectors of a number for each serial joint.
+OF_SERIAL_JOINTS = ("stiffness", "damping", "torque_ratio", "velocity_ratio")
+
+
+def by_name(case: Case, name: str, value: Any, joints: tuple[str, ...], motors: tuple[str, ...]) -> Any:
+    """The same argument by the names of joints, as files have their coordinates; None if it is no such vector."""
+    robot, rows = case.arguments["robot"], np.ndim(value) == 2
+    if value is None:
+        return None
+    if name in ("q", "q0", "values", "actuated", "q_actuated", "q_free"):
+        whole = np.array(np.broadcast_to(case.arguments["q"], (3, robot.tree.nq)) if rows else case.arguments["q"])
+        actuated, free = robot.actuation.idx_q, np.delete(np.arange(robot.tree.nq), robot.actuation.idx_q)
+        whole[..., {"q": slice(None), "q0": slice(None), "q_free": free}.get(name, actuated)] = value
+        each = [robot.joint_positions(one) for one in whole] if rows else robot.joint_positions(whole)
+        named = {joint: np.squeeze([one[joint] for one in each]) for joint in each[0]} if rows else each
+        mine = {"q": None, "q0": None, "q_free": False}.get(name, True)
+        return {key: one for key, one in named.items() if mine is None or (key in robot.actuation.joints) is mine}
+    if name in ("v", "a", "weights", "u", "v_actuated", "v_free") or (name == "tau" and len(value) == robot.tree.nv):
+        at = {key: slice(slot.idx_v, slot.idx_v + slot.nv) for key, slot in robot.slots.items()}
+        if robot.mechanism.root == "floating":
+            at["root_joint"] = slice(0, 6)
+        indices = np.arange(robot.tree.nv)
+        if name == "v_free":
+            indices = np.delete(indices, robot.actuation.idx_v)
+        elif len(value) != robot.tree.nv or name in ("u", "v_actuated"):
+            indices = robot.actuation.idx_v
+        whole = np.full(robot.tree.nv, np.nan)
+        whole[indices] = value
+        return {key: whole[own] for key, own in at.items() if not np.isnan(whole[own]).any()}
+    if name in (*OF_SERIAL_JOINTS, "positions", "tau", "v_J", "tau_J", "v_m", "tau_m"):
+        return dict(zip(motors if name in ("v_m", "tau_m") else joints, value, strict=True))
+    return None
+
+
+@pytest.mark.parametrize("robot", ROBOTS, ids=[name for name, *_ in ROBOTS])
+def test_vectors_can_be_given_by_name(robot: tuple[str, Any, tuple[str, ...], str], tmp_path: Path) -> None:
+    case, walked = Case(*robot, tmp_path), set()
+    whole, joints, q = (case.arguments[name] for name in ("robot", "joints", "q"))
+    functions = {name: each for name, each in public_functions().items() if name not in WITHOUT_DATA}
+    motors: tuple[str, ...] = ()
+    v, u, tau = (case.arguments[name] for name in ("v", "u", "tau"))
+    case.of["inverse_dynamics"] |= {"tau": tau, "a": eurdf.forward_dynamics(whole, q, v, u, tau=tau).a}
+    if joints:
+        at, prepared = eurdf.transmission(whole, joints, q), eurdf.transmissions.prepare_transmission(whole, joints, q)
+        motors = at.motors
+        case.arguments |= dict.fromkeys(OF_SERIAL_JOINTS, np.arange(1.0, len(joints) + 1.0))
+        case.of["impedance_map"] = {"tau": np.full(len(joints), 0.1)}
+        case.arguments |= {name: case.arguments[name] + 0.1 for name in ("v_J", "tau_J", "v_m", "tau_m")}
+        functions |= {name: getattr(at, name) for name in ("motor_velocity", "joint_torque", "motor_torque", "rate")}
+        functions |= {name: getattr(prepared, name) for name in ("at_joints", "at_motors")}
+        twin = eurdf.transmissions.serial_twin(whole, joints, q, ranges=case.arguments["ranges"], grid=5)
+        functions |= {"motor_positions": twin.map.motor_positions, "G": twin.map.G} if twin.map else {}
+    for path, function in functions.items():
+        name = path.removeprefix("batch.")
+        more = {**(case.batch if path != name else {}), **case.of.get(name, {})}
+        for each in inspect.signature(function).parameters.values():
+            vector = (case.arguments | more).get(each.name)
+            named = by_name(case, each.name, vector, motors if name == "at_motors" else joints, motors)
+            if named is None or ("joints" in inspect.signature(function).parameters and not joints):
+                continue
+            assert re.search("Named|Mapping", str(each.annotation)), f"{path}({each.name})"
+            walked.add(each.name)
+            results = [{"": case.call(function, name, {**more, each.name: one})} for one in (vector, named)]
+            assert_equal(numbers(results[0], case), numbers(results[1], case))
+    assert {"q", "q0", "v", "a", "values", "actuated", "q_free", "v_free", "weights"} <= walked
+
+
 def objects(value: Any, seen: dict[int, Any]) -> Iterator[Any]:
     """The objects of the package in a result."""
     if id(value) in seen or isinstance(value, np.ndarray | str):
@@ -238,7 +305,7 @@ def test_results_print_in_few_lines_with_units(tmp_path: Path) -> None:
             results |= {"transmissions": eurdf.transmission(*several), "boundary": results["workspace"].boundary}
             results["common"] = eurdf.transmissions.serial_limits(*several)
         for each in objects(results, {}):
-            seen.add(type(each))
+            seen.update(type(each).__mro__)
             if type(each) in kinds:
                 text = repr(each)
                 assert text.startswith("<"), text

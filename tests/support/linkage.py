@@ -18,6 +18,7 @@ from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.actuation import Actuation
 from eurdf.pinocchio.configuration import Slot
 from eurdf.pinocchio.constraint import build_constraint_models
+from eurdf.pinocchio.memory import Cached
 from eurdf.pinocchio.tree import Site, Tree
 from support.plain_urdf import inertial, joint_element, link_element
 
@@ -25,7 +26,7 @@ X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
-class Linkage:
+class Linkage(Cached):
     """A robot as the kinematics sees it."""
 
     model: Any

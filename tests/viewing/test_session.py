@@ -14,7 +14,7 @@ from eurdf.kinematics.evaluate import frames
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.mechanism.joint_types import JointType
 from eurdf.pinocchio.robot import build_robot
-from eurdf.viewing.session import Session, Stop
+from eurdf.viewing.session import MotionStop, Session
 from support.described import STRUT, load, strut
 from support.plain_urdf import joint_element, link_element, robot
 
@@ -55,7 +55,7 @@ def test_slider_stops_at_its_limit() -> None:
     knee = index_of(session, "motor_knee")
     upper = session.sliders[knee].upper
     stop = session.move(knee, upper + 1.0)
-    assert stop == Stop("limit", "motor_knee", upper)
+    assert stop == MotionStop("limit", "motor_knee", upper)
     assert session.value(knee) == pytest.approx(upper, abs=1e-12)
     assert session.residual < 1e-12
 

@@ -12,7 +12,7 @@ from eurdf.array import Matrix, Vector
 from eurdf.closures.kind import ClosureKind, RelativeMotions, RelativePoses
 from eurdf.closures.point import PointClosure
 from eurdf.closures.se3 import cross, dot, norm, outer, plane_across, skew, transposed, turned, velocity_of_origin
-from eurdf.mechanism.constraint import Form, Key, Unit, key
+from eurdf.mechanism.constraint import ClosureKey, Form, Unit, key
 from eurdf.mechanism.pose import Vector3
 
 # The sine of θ near half a turn, where the shortest rotation has no derivative, is taken as no less than this.
@@ -63,7 +63,7 @@ class HingeClosure(ClosureKind):
     @classmethod
     def forms(cls) -> tuple[Form, Form]:
         """With ``axis`` where A and B have the same one, else with ``axes``."""
-        axis = Key(
+        axis = ClosureKey(
             "Axis",
             "The axis in frame A and in frame B: a vector of any length but zero, no unit.",
             [0, 1, 0],

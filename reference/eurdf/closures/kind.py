@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, TypeVar
 import numpy as np
 
 from eurdf.closures.se3 import cross, log3, log3_derivative, log6, log6_derivative, transposed, turned
-from eurdf.mechanism.constraint import Closure, Form, Key
+from eurdf.mechanism.constraint import Closure, ClosureKey, Form
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -137,7 +137,7 @@ class ClosureKind(Closure, ABC):
     since: ClassVar[Literal["1", "2.1"]] = "2.1"
 
     @classmethod
-    def keys(cls) -> dict[str, Key]:
+    def keys(cls) -> dict[str, ClosureKey]:
         """What the kind has beside name, frames and compliance, by field."""
         return {
             each.name: each.metadata["key"]._replace(

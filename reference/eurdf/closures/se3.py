@@ -15,9 +15,9 @@ from eurdf.array import Matrix, Vector
 
 _NEXT, _LAST = [1, 2, 0], [2, 0, 1]
 _EACH = np.arange(3)
-_ONE = np.eye(3)
+IDENTITY_ROTATION = np.eye(3)
 # Linear maps are one product with a vector: it is faster than to set entries one by one.
-_SKEW = np.cross(_ONE[:, None], _ONE).transpose(0, 2, 1).reshape(3, 9)
+_SKEW = np.cross(IDENTITY_ROTATION[:, None], IDENTITY_ROTATION).transpose(0, 2, 1).reshape(3, 9)
 _OF_ORIGIN = np.concatenate((np.zeros((3, 3, 3)), -_SKEW.reshape(3, 3, 3)), axis=2).reshape(3, 18)
 _OF_ZERO = np.eye(3, 6).ravel()
 _AD = np.zeros((6, 36))  # of a motion r the matrix of r ×
@@ -75,7 +75,7 @@ def plane_across(a: Vector) -> Matrix:
         return np.array([[1.0, 0.0], [0.0, -1.0], [0.0, 0.0]])
     above = 1.0 + z if z > 0.0 else (x * x + y * y) / (1.0 - z)  # 1 + z, which rounding makes 0 near -z
     turn = skew(np.array([-y, x, 0.0]))
-    return np.asarray((_ONE + turn + turn @ turn / above)[:, :2])
+    return np.asarray((IDENTITY_ROTATION + turn + turn @ turn / above)[:, :2])
 
 
 # -- quaternions x, y, z, w -------------------------------------------------------------------------------------------
@@ -252,7 +252,10 @@ def exp6_derivative(v: Matrix) -> Matrix:
     V, W = skew(v[..., :3]), skew(v[..., 3:])
     (a, b), (a_slope, b_slope) = ([value[..., None] for value in values] for values in _exponential(v[..., 3:]))
     square, along = W @ W, 2.0 * _along(v[..., 3:], v[..., :3])[..., None]
-    return _blocks(_ONE - a * W + b * square, -a * V - along * a_slope * W + b * _both(W, V) + along * b_slope * square)
+    return _blocks(
+        IDENTITY_ROTATION - a * W + b * square,
+        -a * V - along * a_slope * W + b * _both(W, V) + along * b_slope * square,
+    )
 
 
 def _exponential(turn: Matrix) -> tuple[tuple[Vector, Vector], tuple[Vector, Vector]]:
@@ -281,7 +284,7 @@ def _along(a: Matrix, b: Matrix) -> Vector:
 
 def _scalar(s: Vector) -> Matrix:
     """s (…, 1) times the identity."""
-    return np.asarray(s[..., None] * _ONE)
+    return np.asarray(s[..., None] * IDENTITY_ROTATION)
 
 
 def _both(A: Matrix, B: Matrix) -> Matrix:

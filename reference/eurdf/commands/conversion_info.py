@@ -35,7 +35,7 @@ class LossInfo:
 
 
 @dataclass(frozen=True, slots=True)
-class OpeningInfo:
+class ConversionOpening:
     """How far a closure, coupling or mimic joint of the file is open.
 
     Attributes:
@@ -48,7 +48,7 @@ class OpeningInfo:
 
 
 @dataclass(frozen=True, slots=True)
-class LargestOpening(OpeningInfo):
+class LargestOpening(ConversionOpening):
     """The largest opening in a simulation."""
 
     time: float
@@ -61,7 +61,7 @@ class ConstraintInfo:
 
     name: str
     """Its name in the file."""
-    start: OpeningInfo
+    start: ConversionOpening
     """How far it is open at the start."""
     fall: LargestOpening | None
     """How far it opens in the simulation; null if nothing is simulated."""
@@ -177,7 +177,7 @@ def verification_info(found: Verification) -> VerificationInfo:
         constraints=tuple(
             ConstraintInfo(
                 start.name,
-                OpeningInfo(start.position, start.angle),
+                ConversionOpening(start.position, start.angle),
                 None if most is None else LargestOpening(most[0].position, most[0].angle, most[1]),
             )
             for start, most in zip(found.openings, largest or [None] * len(found.openings), strict=True)

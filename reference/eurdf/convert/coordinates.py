@@ -11,8 +11,8 @@ from operator import mul
 import numpy as np
 
 from eurdf.array import Matrix, Vector
-from eurdf.convert.parts import UPRIGHT, OwnVectors, Part
-from eurdf.mechanism.pose import Pose, Quaternion
+from eurdf.convert.parts import OwnVectors, Part
+from eurdf.mechanism.pose import IDENTITY_QUATERNION, Pose, Quaternion
 from eurdf.writing.xml_text import rpy_of
 
 
@@ -167,7 +167,7 @@ class Coordinates:
         turned = (x, y, z, w)
         if part.zero:
             turned = (_pose(part.zero[at:]).inverse() * Pose(quaternion=turned)).quaternion
-        if part.turn != UPRIGHT:
+        if part.turn != IDENTITY_QUATERNION:
             turn = Pose(quaternion=part.turn)
             turned = (turn.inverse() * Pose(quaternion=turned) * turn).quaternion
         if part.rotation == "quaternion":
@@ -196,7 +196,7 @@ class Coordinates:
         else:
             turns = [Pose(quaternion=_about(axis, angle)) for axis, angle in enumerate(orientation)]
             turned = reduce(mul, turns if part.rotation == "xyz" else reversed(turns))
-        if part.turn != UPRIGHT:
+        if part.turn != IDENTITY_QUATERNION:
             turn = Pose(quaternion=part.turn)
             turned = turn * turned * turn.inverse()
         if part.zero:

@@ -149,7 +149,7 @@ def export(
         actuators: What actuators become, in a format that distinguishes: ``motor`` (a force or torque on the joint),
             ``position`` or ``none``.
         closures: ``stated`` keeps the closures of the description; with ``hinge``, each 3d closure whose bodies turn
-            about one axis alone becomes a hinge, for solvers that hold no ball joint in a loop.
+            about one axis alone becomes a hinge, for solvers without ball joints in loops.
         mesh_files: ``copy`` writes them to ``meshes/`` beside the file; with ``reference`` the file names them where
             they are, by their absolute paths.
         strict: Whether to refuse losses that are not exact.

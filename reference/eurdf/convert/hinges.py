@@ -18,13 +18,12 @@ from eurdf.closures.hinge import HingeClosure
 from eurdf.closures.point import PointClosure
 from eurdf.convert.common_losses import COMMON
 from eurdf.convert.losses import Loss, Losses
-from eurdf.convert.steps import AXES
 from eurdf.kinematics.analysis import analyze
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.pose import Vector3
+from eurdf.mechanism.pose import AXES, Vector3
 from eurdf.pinocchio.robot import Robot, build_robot
 
 #: Singular values of an angular velocity, relative to those of the whole motion, that count as none.

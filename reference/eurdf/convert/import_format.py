@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
 
 from eurdf.convert.losses import Losses, LossKind, dropped, exact
 from eurdf.convert.names import FileNames
-from eurdf.mechanism.joint import Joint, JointProperties, is_no_range
-from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mesh_files.reader import MeshReader
 from eurdf.reading.resource import FileFinder
@@ -95,7 +92,7 @@ def loss_kinds(rows: Mapping[str, LossKind]) -> tuple[LossKind, ...]:
     return tuple(replace(kind, code=f"import-{code}") for code, kind in rows.items())
 
 
-#: Of formats in which limits of 0 and 0 lock a joint: see `without_locks`.
+#: Of formats in which limits of 0 and 0 lock a joint: see `eurdf.convert.steps.without_locks`.
 LOCKED = exact(
     "joint",
     "is fixed where its limits are 0 and 0, which would be no range in a description",
@@ -106,30 +103,6 @@ LOCKED = exact(
 #: Of formats whose textures are not copied, and of all that their files have for a simulation.
 TEXTURE = dropped("texture", "is left out; the color is kept", "add it to the URDF")
 SIMULATION = dropped("simulation", "is no part of a description", "keep it in a file of the simulator")
-
-
-def without_locks(joint: Joint, losses: Losses) -> Joint:
-    """The joint, without each coordinate that limits of 0 and 0 lock; only a universal joint has a second one."""
-    properties = joint.properties
-    limits = list(zip(properties.lower, properties.upper, strict=True))
-    free = [index for index, pair in enumerate(limits) if not is_no_range(*pair)]
-    if len(free) == len(limits):
-        return joint
-    losses.add("import-locked-joint", joint.name)
-    if not free:
-        return Joint(joint.name, JointType.FIXED, joint.parent, joint.child, joint.placement, joint.offset)
-    (index,) = free
-    values = {field.name: getattr(properties, field.name)[index : index + 1] for field in fields(properties)}
-    axes, properties = (joint.axes[index],), JointProperties(**values)
-    return replace(joint, type=JointType.REVOLUTE, axes=axes, properties=properties)
-
-
-def continuous_if_unlimited(joint: Joint) -> Joint:
-    """The joint, continuous if it is revolute and has no position limits."""
-    limits = (*joint.properties.lower, *joint.properties.upper)
-    if joint.type is not JointType.REVOLUTE or any(map(math.isfinite, limits)):
-        return joint
-    return replace(joint, type=JointType.CONTINUOUS)
 
 
 def import_format(name: str) -> ImportFormat:

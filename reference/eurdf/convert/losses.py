@@ -36,7 +36,7 @@ class Effect(str, Enum):
 # -- the elements of a mechanism ---------------------------------------------------------------------------------------
 
 
-class Motor(NamedTuple):
+class MotorJoint(NamedTuple):
     """A joint with a motor or a gear, under the name of its actuator."""
 
     name: str
@@ -65,12 +65,12 @@ def _nonzero(number: str) -> Elements:
     return _joints(lambda joint: any(getattr(joint.properties, number)))
 
 
-def _motors(has: Callable[[Joint], bool], mechanism: Mechanism) -> list[Motor]:
+def _motors(has: Callable[[Joint], bool], mechanism: Mechanism) -> list[MotorJoint]:
     found = ((joint, mechanism.motor(joint.name)) for joint in mechanism.joints if has(joint))
-    return [Motor(motor.name, joint, motor.control, joint.name in mechanism.actuators) for joint, motor in found]
+    return [MotorJoint(motor.name, joint, motor.control, joint.name in mechanism.actuators) for joint, motor in found]
 
 
-def _actuators(mechanism: Mechanism) -> list[Motor]:
+def _actuators(mechanism: Mechanism) -> list[MotorJoint]:
     return _motors(lambda joint: joint.name in mechanism.actuators, mechanism)
 
 

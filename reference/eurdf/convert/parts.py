@@ -8,9 +8,7 @@ from typing import Any, Literal
 
 from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.pose import Quaternion
-
-UPRIGHT: Quaternion = (0.0, 0.0, 0.0, 1.0)
+from eurdf.mechanism.pose import IDENTITY_QUATERNION, Quaternion
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +55,7 @@ class Part:
     type: JointType
     ratios: tuple[tuple[int, float, float], ...] = ()
     zero: tuple[float, ...] = ()
-    turn: Quaternion = UPRIGHT
+    turn: Quaternion = IDENTITY_QUATERNION
     mimics: bool = False
     rotation: Literal["quaternion", "xyz", "rpy"] = "quaternion"
     orientation_first: bool = False

@@ -1,4 +1,7 @@
-"""A joint as joints of a format that lacks its type: in series, each with one axis or the rotations of a ball."""
+"""A joint as joints of a format that lacks its type, and the type that remains of one whose limits decide it.
+
+It becomes joints in series, each with one axis or the rotations of a ball.
+"""
 
 from __future__ import annotations
 
@@ -6,12 +9,10 @@ import math
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 
-from eurdf.mechanism.joint import Joint, JointProperties
+from eurdf.convert.losses import Losses
+from eurdf.mechanism.joint import Joint, JointProperties, is_no_range
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.pose import Vector3, direction
-
-#: Directions of x, y and z.
-X, Y, Z = AXES = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+from eurdf.mechanism.pose import AXES, Vector3, direction
 
 #: Largest cosine of the axes of a universal joint that are perpendicular but for rounding.
 _SKEW = 1e-9
@@ -44,6 +45,30 @@ class ExportedJoint:
 def turn_type(joint: Joint, index: int = 0) -> JointType:
     """The type of URDF for a turn of a joint, which a limit of its coordinate decides."""
     return JointType.REVOLUTE if any(map(math.isfinite, joint.ranges[index])) else JointType.CONTINUOUS
+
+
+def without_locks(joint: Joint, losses: Losses) -> Joint:
+    """The joint, without each coordinate that limits of 0 and 0 lock; only a universal joint has a second one."""
+    properties = joint.properties
+    limits = list(zip(properties.lower, properties.upper, strict=True))
+    free = [index for index, pair in enumerate(limits) if not is_no_range(*pair)]
+    if len(free) == len(limits):
+        return joint
+    losses.add("import-locked-joint", joint.name)
+    if not free:
+        return joint.fixed()
+    (index,) = free
+    values = {field.name: getattr(properties, field.name)[index : index + 1] for field in fields(properties)}
+    axes, properties = (joint.axes[index],), JointProperties(**values)
+    return replace(joint, type=JointType.REVOLUTE, axes=axes, properties=properties)
+
+
+def continuous_if_unlimited(joint: Joint) -> Joint:
+    """The joint, continuous if it is revolute and has no position limits."""
+    limits = (*joint.properties.lower, *joint.properties.upper)
+    if joint.type is not JointType.REVOLUTE or any(map(math.isfinite, limits)):
+        return joint
+    return replace(joint, type=JointType.CONTINUOUS)
 
 
 def is_skew(joint: Joint) -> bool:

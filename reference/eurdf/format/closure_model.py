@@ -28,7 +28,7 @@ from eurdf.format.value_types import (
     Schemas,
     ValueType,
 )
-from eurdf.mechanism.constraint import Form, Key
+from eurdf.mechanism.constraint import ClosureKey, Form
 from eurdf.mechanism.pose import ORIGIN, Vector3
 from eurdf.reading.yaml_node import Pointer
 
@@ -50,7 +50,7 @@ class NamedFrame(Entry):
 
 
 @entry
-class Pose(Entry):
+class PoseEntry(Entry):
     """A pose, in the frame of a link or of a joint."""
 
     kind: ClassVar[Literal["frame", "link", "joint"]]
@@ -71,7 +71,7 @@ class Pose(Entry):
 
 
 @entry
-class PoseOnLink(Pose):
+class PoseOnLink(PoseEntry):
     """A pose on a link."""
 
     title = "Pose on a link"
@@ -80,7 +80,7 @@ class PoseOnLink(Pose):
 
 
 @entry
-class PoseOnJoint(Pose):
+class PoseOnJoint(PoseEntry):
     """A pose on a joint's frame."""
 
     title = "Pose on a joint"
@@ -107,7 +107,7 @@ class FrameOnJoint(PoseOnJoint):
     name: str = required(NAME, "Name", _FRAME_NAME, "toe_tip")
 
 
-FrameReference = NamedFrame | Pose
+FrameReference = NamedFrame | PoseEntry
 Frame = FrameOnLink | FrameOnJoint
 
 _LINK_OR_JOINT = "use either 'link' or 'joint', not both"
@@ -126,7 +126,7 @@ FRAME = OneOf(
 
 
 @entry
-class Compliance(Entry):
+class ComplianceEntry(Entry):
     """How much a closure gives way under load: a hint for simulators with soft constraints."""
 
     title = "Compliance"
@@ -141,7 +141,7 @@ class Compliance(Entry):
 
 
 @entry
-class Closure(Entry):
+class ClosureEntry(Entry):
     """Two frames, related by a closure of some type.
 
     What a type has besides is in subclasses, which are made of its kind.
@@ -156,8 +156,8 @@ class Closure(Entry):
         ["rod_tip", "knee_crank"],
         [{"link": "rod", "xyz": [0, 0, 0.31]}, "foot_ball"],
     )
-    compliance: Compliance | None = key(
-        Record(Compliance),
+    compliance: ComplianceEntry | None = key(
+        Record(ComplianceEntry),
         "Compliance",
         "How much the closure gives way under load; it does not change the residual. Rigid if left out.",
         {"linear": 1e-6, "angular": 1e-4},
@@ -167,7 +167,7 @@ class Closure(Entry):
     @property
     def stated(self) -> dict[str, Any]:
         """What its type has besides, by key."""
-        common = {each.name for each in fields(Closure)}
+        common = {each.name for each in fields(ClosureEntry)}
         return {each.name: getattr(self, each.name) for each in fields(self) if each.name not in common}
 
 
@@ -193,7 +193,7 @@ def _meaning(kind: type[ClosureKind]) -> str:
     return f"{kind.type}: {kind.text} ({rows}, {' and '.join(dict.fromkeys(kind.units))})."
 
 
-def _key(stated: Key) -> Any:
+def _key(stated: ClosureKey) -> Any:
     """The field of a model that is what a kind states in a key."""
     values: ValueType = VECTOR if stated.type == "Vector3" else ListOf(VECTOR, 2, 2)
     if stated.type == "float":
@@ -204,12 +204,12 @@ def _key(stated: Key) -> Any:
 
 
 def _record(form: Form, since: Version, own: dict[str, Any]) -> Record:
-    """A mapping that states a closure, by what its kind says; ``own`` fields are in place of those of `Closure`."""
+    """A mapping that states a closure, by what its kind says; ``own`` fields replace those of `ClosureEntry`."""
     keys = own | {name: _key(each) for name, each in form.keys.items()}
     typed = [(name, Any, each) for name, each in keys.items()]
     about = {"title": form.title, "since": since, "__doc__": form.text}
     return Record(
-        make_dataclass(form.name, typed, bases=(Closure,), namespace=about, kw_only=True, eq=False, repr=False)
+        make_dataclass(form.name, typed, bases=(ClosureEntry,), namespace=about, kw_only=True, eq=False, repr=False)
     )
 
 
@@ -224,9 +224,9 @@ def _forms(types: tuple[str, ...]) -> OneOf:
     records = [_record(Form("Closure", "Closure", plain[0].summary, {}), "1", typed)]
     for kind in kinds:
         own = {
-            "name": key_like(Closure, "name", "knee_pin"),
+            "name": key_like(ClosureEntry, "name", "knee_pin"),
             "type": required(Choice(kind.type), "Type", _meaning(kind), kind.type),
-            "frames": key_like(Closure, "frames", ["coupler_tip", "rocker_tip"]),
+            "frames": key_like(ClosureEntry, "frames", ["coupler_tip", "rocker_tip"]),
         }
         records += [_record(form, kind.since, own) for form in kind.forms() if kind not in plain]
     return OneOf("a mapping {name: …, type: …, frames: …}", *records, apart="'{key}' goes with type '{owner}'")
@@ -242,21 +242,21 @@ class AnyClosure(ValueType):
         """A mapping for the types of version 1, and those of each other type."""
         return _forms(tuple(REGISTRY))
 
-    def entry(self, type_: str, stated: Mapping[str, Any], **common: Any) -> Closure:
+    def entry(self, type_: str, stated: Mapping[str, Any], **common: Any) -> ClosureEntry:
         """A closure of a type, with what that has besides, by key."""
         records = (record for record in self.forms.records if type_ in record.values_of_type())
         model = next(record.model for record in records if stated.keys() <= record.all_keys.keys())
-        closure: Closure = model(type=type_, **stated, **common)
+        closure: ClosureEntry = model(type=type_, **stated, **common)
         return closure
 
     def check(self, value: Any, at: Pointer, file: Check) -> None:
         self.forms.check(value, at, file)
 
-    def read(self, value: Any, at: Pointer) -> Closure:
-        closure: Closure = self.forms.read(value, at)
+    def read(self, value: Any, at: Pointer) -> ClosureEntry:
+        closure: ClosureEntry = self.forms.read(value, at)
         return closure
 
-    def write(self, value: Closure) -> Any:
+    def write(self, value: ClosureEntry) -> Any:
         return self.forms.write(value)
 
     def schema(self, schemas: Schemas) -> Schema:
@@ -267,7 +267,7 @@ CLOSURE = AnyClosure()
 
 
 @entry
-class Coupling(Entry):
+class CouplingEntry(Entry):
     """A linear relation of joint coordinates."""
 
     title = "Coupling"

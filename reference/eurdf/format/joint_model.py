@@ -56,7 +56,7 @@ NON_NEGATIVE_PER_VELOCITY = OneOrList("NonNegativePerVelocity", NON_NEGATIVE)
 
 
 @entry
-class Limits(Entry):
+class LimitsEntry(Entry):
     """Limits of a joint; each that is left out stays the URDF's. A number is for all coordinates, a list one each."""
 
     title = "Limits"
@@ -91,15 +91,15 @@ class Limits(Entry):
     )
 
 
-_LIMITS = Record(Limits)
+_LIMITS = Record(LimitsEntry)
 
 
 @entry
-class Joint(Entry):
+class JointEntry(Entry):
     """What a description says of a joint of any type.
 
     Attributes:
-        name: Joint of the URDF; of merged joints, the one that results.
+        name: JointEntry of the URDF; of merged joints, the one that results.
         type: New type, or None to keep the URDF's own.
         merges: Names of three joints of the URDF that become this one; empty where none do.
         axes: Two axes of a universal joint in the joint's frame, as written; empty where none are.
@@ -134,7 +134,7 @@ class Joint(Entry):
         False,
         since=VERSION2_1,
     )
-    limits: Limits | None = key(
+    limits: LimitsEntry | None = key(
         _LIMITS,
         "Joint limits",
         "Position (rad, m), velocity (rad/s, m/s) and effort (N·m, N) limits in place of the URDF's.",
@@ -177,7 +177,7 @@ class Joint(Entry):
 
 
 @entry
-class Overridden(Joint):
+class Overridden(JointEntry):
     """A joint that keeps its type, with some properties in place of the URDF's."""
 
     title = "Joint that keeps its type"
@@ -185,7 +185,7 @@ class Overridden(Joint):
 
 
 @entry
-class Spherical(Joint):
+class Spherical(JointEntry):
     """A ball joint."""
 
     title = "Spherical joint"
@@ -201,7 +201,7 @@ class Spherical(Joint):
 
 
 @entry
-class Universal(Joint):
+class Universal(JointEntry):
     """A cardan joint."""
 
     title = "Universal joint"
@@ -219,7 +219,7 @@ class Universal(Joint):
 
 
 @entry
-class Cylindrical(Joint):
+class Cylindrical(JointEntry):
     """A joint that slides along its axis and turns about it."""
 
     title = "Cylindrical joint"
@@ -229,7 +229,7 @@ class Cylindrical(Joint):
 
 
 @entry
-class Helical(Joint):
+class Helical(JointEntry):
     """A screw."""
 
     title = "Helical joint"
@@ -242,7 +242,7 @@ class Helical(Joint):
 
 
 @entry
-class Fixed(Joint):
+class Fixed(JointEntry):
     """A joint locked at its zero."""
 
     title = "Fixed joint"
@@ -262,7 +262,7 @@ class _JointRecord(Record):
         return {name: written[name] for name in (*needed, *dict(in_order(self.all_keys))) if name in written}
 
 
-_RECORDS = [_JointRecord(model) for model in Joint.__subclasses__()]
+_RECORDS = [_JointRecord(model) for model in JointEntry.__subclasses__()]
 
 #: The types that need no more than their name.
 NAMED = [

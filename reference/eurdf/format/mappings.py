@@ -111,7 +111,7 @@ class Record(ValueType):
 
     def __init__(self, model: type[Entry]) -> None:
         self.model: Any = model
-        self.name = model.__name__
+        self.name = model.__name__.removesuffix("Entry")
         self.since = model.since
         self.all_keys = {
             name: key if key.since >= model.since else key._replace(since=model.since)

@@ -9,7 +9,7 @@ from typing import Any
 from eurdf.diagnostics import Diagnostic, did_you_mean
 from eurdf.format.closure_model import CLOSURE
 from eurdf.format.conventions import HINT, VERSION2_0, VERSION2_1, VERSION_KEY, Version
-from eurdf.format.joint_model import ACTUATOR, JOINT, Limits
+from eurdf.format.joint_model import ACTUATOR, JOINT, LimitsEntry
 from eurdf.format.mappings import OneOf, Record, in_order
 from eurdf.format.model import VERSION1, VERSION2
 from eurdf.format.value_types import Violation
@@ -32,7 +32,7 @@ _JOINT_TYPE_HINTS = {
 _JOINT_KEYS = JOINT.keys(VERSION2_1).keys()
 
 #: Keys that describe a joint or its motor: those of the format, and the words of a URDF and of other formats.
-_OF_JOINTS = {*_JOINT_KEYS, *Record(Limits).all_keys, *ACTUATOR.keys(VERSION2_1)}
+_OF_JOINTS = {*_JOINT_KEYS, *Record(LimitsEntry).all_keys, *ACTUATOR.keys(VERSION2_1)}
 _OF_JOINTS |= {"limit", "dynamics", "actuated", "actuator", "motor"}
 _OF_JOINTS -= {"name", "type", "joint", "axes"}
 

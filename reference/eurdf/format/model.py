@@ -10,9 +10,9 @@ from collections.abc import Mapping
 from dataclasses import field
 from typing import Any, ClassVar, Literal
 
-from eurdf.format.closure_model import CLOSURE, FRAME, Closure, Coupling, Frame, FrameReference
+from eurdf.format.closure_model import CLOSURE, FRAME, ClosureEntry, CouplingEntry, Frame, FrameReference
 from eurdf.format.conventions import VERSION2_0, VERSION2_1, VERSION_KEY, Version
-from eurdf.format.joint_model import ACTUATOR, JOINT, Geared, Joint, OneOrList
+from eurdf.format.joint_model import ACTUATOR, JOINT, Geared, JointEntry, OneOrList
 from eurdf.format.mappings import Entry, Record, entry, key, required
 from eurdf.format.value_types import (
     FRAME_NAME,
@@ -33,7 +33,7 @@ from eurdf.reading.yaml_node import Pointer
 from eurdf.reading.yaml_reader import YamlDocument
 
 
-class Coordinates(OneOrList):
+class CoordinateList(OneOrList):
     """The coordinates of a joint, read as a tuple in any case."""
 
     def read(self, value: Any, at: Pointer) -> tuple[float, ...]:
@@ -59,14 +59,14 @@ class Version2(Entry):
         "floating",
         default="fixed",
     )
-    closures: tuple[Closure, ...] = key(
+    closures: tuple[ClosureEntry, ...] = key(
         ListOf(CLOSURE),
         "Loop closures",
         "Pairs of frames that are held together.",
         [{"name": "knee_rod", "type": "6d", "frames": ["rod_tip", "knee_crank"]}],
         default=(),
     )
-    joints: tuple[Joint, ...] = key(
+    joints: tuple[JointEntry, ...] = key(
         ByName(JOINT, entries=True),
         "Joints",
         "By name, joints of a type that URDF lacks, and properties in place of the URDF's. The name is a joint of the"
@@ -89,7 +89,7 @@ class Version2(Entry):
         default=(),
     )
     configurations: Mapping[str, Mapping[str, tuple[float, ...]]] = key(
-        ByName(ByName(Coordinates("Coordinates", NUMBER, 7))),
+        ByName(ByName(CoordinateList("Coordinates", NUMBER, 7))),
         "Configurations",
         "By name, the coordinates of joints: a number or a list. Angle in rad, length in m; spherical: a unit"
         " quaternion x y z w; universal: two angles; cylindrical: length, angle; planar: x, y, angle; floating: x y z"
@@ -105,8 +105,8 @@ class Version2(Entry):
         {"license": "BSD-3-Clause", "source": "CAD export of 2025-03-01"},
         default={},
     )
-    couplings: tuple[Coupling, ...] = key(
-        ListOf(Record(Coupling)),
+    couplings: tuple[CouplingEntry, ...] = key(
+        ListOf(Record(CouplingEntry)),
         "Couplings",
         "Linear relations of joint coordinates, as gears, belts and differentials make them.",
         [{"name": "knee_gear", "joints": {"motor_1": 0.5, "motor_2": 0.5, "knee": -1}}],
@@ -139,7 +139,7 @@ class Description(Version2):
         return (*(side for closure in self.closures for side in closure.frames), *self.frames)
 
 
-class _Pairs(ListOf):
+class _NamePairs(ListOf):
     """A list of pairs of names; EU-ONE-001: one of names, a pair without brackets, gives one error, not two."""
 
     def check(self, value: Any, at: Pointer, file: Check) -> None:
@@ -160,7 +160,7 @@ class Version1(Entry):
     needs: ClassVar[Mapping[str, str]] = {"joint_name": "joint_type", "joint_type": "joint_name"}
     is_open = True
     closed_loop: tuple[tuple[str, str], ...] = key(
-        _Pairs(ListOf(FRAME_NAME, 2, 2)),
+        _NamePairs(ListOf(FRAME_NAME, 2, 2)),
         "Loop closures",
         "Pairs of frames, A and B, that a closure joins: names of links or joints of the URDF.",
         [["rod_tip", "knee_crank"]],

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import Literal
 
 from eurdf.diagnostics import Diagnostics
-from eurdf.format.closure_model import Closure, NamedFrame
+from eurdf.format.closure_model import ClosureEntry, NamedFrame
 from eurdf.format.conventions import (
     VERSION2_0,
     VERSION2_1,
@@ -16,7 +16,7 @@ from eurdf.format.conventions import (
     may_have_own_keys,
     own_data,
 )
-from eurdf.format.joint_model import Fixed, Geared, Joint, Spherical, Universal
+from eurdf.format.joint_model import Fixed, Geared, JointEntry, Spherical, Universal
 from eurdf.format.model import DESCRIPTION, VERSION1, VERSION2, Description, Version1, violations
 from eurdf.format.wording import described, near, quoted
 from eurdf.reading.other_formats import of_mapping
@@ -72,7 +72,7 @@ def _from_version1(document: YamlDocument) -> Description:
         document=document,
         extended_urdf="1",
         closures=tuple(
-            Closure(
+            ClosureEntry(
                 pointer=("closed_loop", index),
                 name=f"closure_{index + 1}",
                 type=kind.lower(),
@@ -89,7 +89,7 @@ def _from_version1(document: YamlDocument) -> Description:
     )
 
 
-def _joint_of_version1(index: int, name: str, kind: str) -> Joint:
+def _joint_of_version1(index: int, name: str, kind: str) -> JointEntry:
     pointer = ("joint_name", index)
     if kind == "SPHERICAL":
         return Spherical(pointer=pointer, name=name, type="spherical")

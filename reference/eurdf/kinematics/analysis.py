@@ -10,7 +10,6 @@ import numpy as np
 
 from eurdf.array import Mask, Matrix, Vector
 from eurdf.kinematics.assembly import Assembly, assembled, close, start
-from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.finite_mobility import MobilityTest
 from eurdf.kinematics.loop import LoopGroup
 from eurdf.kinematics.loop_analysis import LoopAnalysis, Motion, analyze_group
@@ -18,6 +17,7 @@ from eurdf.kinematics.named import Named
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import norms, null_space
 from eurdf.kinematics.tolerances import SOLVED
+from eurdf.pinocchio.memory import working_memory
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -144,7 +144,7 @@ def analyze(robot: Robot, q: Named | None = None) -> Analysis:
         ValueError: ``q`` is not a configuration.
     """
     at = start(robot, q, "q")
-    with borrowed(robot, Problem) as problem:
+    with working_memory(robot, Problem) as problem:
         return _analysis(robot, problem, assembled(problem, at, SOLVED))
 
 

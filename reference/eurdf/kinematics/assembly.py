@@ -17,7 +17,6 @@ import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.errors import NotClosable
-from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.descend import Descended, descend, evaluated
 from eurdf.kinematics.named import Named, configuration_of
 from eurdf.kinematics.opening import Opening
@@ -26,6 +25,7 @@ from eurdf.kinematics.problem import Group, Problem
 from eurdf.kinematics.rank import norms
 from eurdf.kinematics.tolerances import CLOSED, MOST_STEPS, MOST_WORK, RESTARTS, SOLVED, WELL_CLOSED
 from eurdf.pinocchio.arguments import as_names, checked_array, checked_count, checked_tolerance
+from eurdf.pinocchio.memory import working_memory
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -38,7 +38,7 @@ SPREADS = (0.1, 0.3, 1.0, 2.0, 3.0)
 
 
 #: Why an assembly did not converge: joints at their limits keep the loops open; the loops stay open though no limit
-#: prevents closing; the search reached its limit of work, so that it is not decided whether the loops can close;
+#: prevents closing; the search reached its limit of work, so that it is unknown whether the loops can close;
 #: or the loops close, but rounded numbers in the files make redundant rows contradict each other.
 AssemblyReason = Literal["joint limits", "not closed", "not decided", "rounding"]
 
@@ -122,7 +122,7 @@ def assemble(
     held = tuple(velocity for name in as_names(hold) for velocity in robot.tree.velocities_of(name))
     tolerance, chosen = checked_tolerance(tolerance), chosen_limits(robot, limits)
     restarts = checked_count("restarts", restarts, 0)
-    with borrowed(robot, Problem, *([held] if held else [])) as problem:  # others borrow one that holds none, too
+    with working_memory(robot, Problem, *([held] if held else [])) as problem:  # others use one that holds none, too
         return assembled(problem, q, tolerance, restarts, chosen)
 
 

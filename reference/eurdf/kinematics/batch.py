@@ -1,7 +1,8 @@
 """Kinematics of many elements at once; the public names are those of `eurdf.batch`.
 
 Each function does for arrays of elements, which come first in arguments and results, what the function of the same name
-in `eurdf` does for one. The solvers are the same: they are written for B elements, and one is B = 1.
+in `eurdf` does for one. The solvers are the same: they are written for B elements, and one is B = 1. Where values are
+given by name, those of a joint are an array with its B elements first, or those of one element, which hold for all.
 """
 
 from __future__ import annotations
@@ -18,12 +19,12 @@ from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.errors import NumericalOverflow
 from eurdf.kinematics.assembly import close
 from eurdf.kinematics.blocks import Progress, blocks, checked_configurations, checked_rows, shape_of, starts
-from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.evaluate import Evaluator, evaluator, frames
-from eurdf.kinematics.forward import driving_many, goals, in_equilibrium, moved_many
+from eurdf.kinematics.forward import driving_many, given_many, goals, in_equilibrium, moved_many
 from eurdf.kinematics.frame_jacobian import checked_reference
 from eurdf.kinematics.inverse import checked_targets
 from eurdf.kinematics.inverse_search import InverseKinematicsReason, InverseTask, Target, search
+from eurdf.kinematics.named import Named, NamedRows, configurations_of
 from eurdf.kinematics.position_limit import chosen_limits
 from eurdf.kinematics.problem import Problem, for_many
 from eurdf.kinematics.project import ProjectionTask, nearest_closed
@@ -32,6 +33,7 @@ from eurdf.kinematics.sensitivity import JacobianTask, actuated_jacobians
 from eurdf.kinematics.tangent_space import metric
 from eurdf.kinematics.tolerances import RESTARTS, SOLVED
 from eurdf.pinocchio.arguments import checked_count, checked_tolerance
+from eurdf.pinocchio.memory import working_memory
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -104,8 +106,8 @@ class InverseKinematics(Solutions[InverseKinematicsReason]):
 
 def forward_kinematics(
     robot: Robot,
-    values: Matrix,
-    q0: Matrix | None = None,
+    values: NamedRows,
+    q0: Named | NamedRows | None = None,
     *,
     tolerance: float = SOLVED,
     block: int | None = None,
@@ -121,7 +123,8 @@ def forward_kinematics(
 
     Args:
         robot: The robot.
-        values: The actuated coordinates (B, nu), in each row as `eurdf.split_configuration` returns them.
+        values: The actuated coordinates (B, nu), in each row as `eurdf.split_configuration` returns them; or those of
+            any joints by name, as in files.
         q0: Where to start: one configuration (nq,) for all, or one for each element (B, nq). The default is the
             `assembled` configuration, or the neutral one if there is none. To stay on a branch far from the start, give
             the result for near values.
@@ -137,10 +140,10 @@ def forward_kinematics(
     Raises:
         ValueError: An argument has a wrong shape or is not finite.
     """
-    actuation = robot.actuation
-    values = checked_rows("values", values, len(actuation.idx_q))
+    given = given_many(robot, values)
+    values = given.values
     q, common = starts(robot, q0, len(values))
-    driving = driving_many(robot, checked_tolerance(tolerance))
+    driving = driving_many(robot, given, checked_tolerance(tolerance))
     goal = goals(driving, q, values)
     work = blocks(driving.driven.numbers, block, threads, executor, progress)
     closed = None
@@ -150,7 +153,7 @@ def forward_kinematics(
         goal = goals(driving, q, values)
     found, residual, code, rests = work.map(moved_many, driving, (q, goal) if closed is None else (q, goal, closed))
     if len(robot.tree.springs):
-        with borrowed(robot, Problem, tuple(actuation.idx_v.tolist())) as driven:
+        with working_memory(robot, Problem, tuple(given.velocities.tolist())) as driven:
             alone = driving._replace(driven=driven)
             for each in np.flatnonzero((code == 0) & ~rests).tolist():
                 found[each] = in_equilibrium(robot, found[each], alone)
@@ -160,7 +163,7 @@ def forward_kinematics(
 
 def residual(
     robot: Robot,
-    q: Matrix,
+    q: NamedRows,
     *,
     block: int | None = None,
     threads: int = 1,
@@ -184,8 +187,8 @@ def residual(
         ValueError: An argument has a wrong shape or is not finite.
         NumericalOverflow: A configuration is so large that its residual is not finite; the message names it.
     """
-    rows = checked_rows("q", q, robot.tree.nq)
-    constraints = derived(robot, _constraints)
+    rows = checked_rows("q", configurations_of(robot, q), robot.tree.nq)
+    constraints = robot.cached(_constraints)
     work = blocks(constraints.numbers_of_residual, block, threads, executor, progress)
     (r,) = work.map(_residual, constraints, (rows,))
     _require_finite(r)
@@ -194,7 +197,7 @@ def residual(
 
 def residual_and_jacobian(
     robot: Robot,
-    q: Matrix,
+    q: NamedRows,
     *,
     block: int | None = None,
     threads: int = 1,
@@ -218,8 +221,8 @@ def residual_and_jacobian(
         ValueError: As in `residual`.
         NumericalOverflow: As in `residual`, also of the derivative.
     """
-    rows = checked_rows("q", q, robot.tree.nq)
-    constraints = derived(robot, _constraints)
+    rows = checked_rows("q", configurations_of(robot, q), robot.tree.nq)
+    constraints = robot.cached(_constraints)
     work = blocks(constraints.numbers, block, threads, executor, progress)
     r, K = work.map(_residual_and_jacobian, constraints, (rows,))
     _require_finite(r, K)
@@ -247,9 +250,9 @@ def _require_finite(*results: Matrix) -> None:
 
 def project_configuration(
     robot: Robot,
-    q: Matrix,
+    q: NamedRows,
     *,
-    weights: Vector | Matrix | None = None,
+    weights: Named | Matrix | None = None,
     tolerance: float = SOLVED,
     block: int | None = None,
     threads: int = 1,
@@ -276,7 +279,7 @@ def project_configuration(
         ValueError: An argument has a wrong shape or is not finite, or ``weights`` is not a metric.
     """
     model = for_many(robot)
-    task = ProjectionTask(model, metric(weights, model.tree.nv), checked_tolerance(tolerance))
+    task = ProjectionTask(model, metric(robot, weights), checked_tolerance(tolerance))
     rows = checked_configurations(robot, "q", q)
     numbers = model.numbers + model.tree.nv**2
     found, residual, closed = blocks(numbers, block, threads, executor, progress).map(_projected, task, (rows,))
@@ -314,10 +317,10 @@ class ActuatedJacobian:
 def actuated_jacobian(
     robot: Robot,
     frame: str,
-    q: Matrix,
+    q: NamedRows,
     *,
     reference: Any = LOCAL,
-    weights: Vector | Matrix | None = None,
+    weights: Named | Matrix | None = None,
     block: int | None = None,
     threads: int = 1,
     executor: Executor | None = None,
@@ -344,7 +347,7 @@ def actuated_jacobian(
         ValueError: The frame is unknown or ambiguous, or an argument has a wrong shape or value.
     """
     model = for_many(robot)
-    W = None if weights is None else metric(weights, model.tree.nv)
+    W = None if weights is None else metric(robot, weights)
     driven = Problem(robot, robot.actuation.idx_v.tolist(), few=False)
     task = JacobianTask(model, driven, frames(robot, [frame], few=False), checked_reference(reference), W)
     rows = checked_configurations(robot, "q", q)
@@ -362,7 +365,7 @@ def actuated_jacobian(
 def inverse_kinematics(
     robot: Robot,
     targets: Mapping[str, Any],
-    q0: Matrix | None = None,
+    q0: Named | NamedRows | None = None,
     *,
     limits: bool = True,
     tolerance: float = 1e-8,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -15,6 +15,7 @@ import numpy.typing as npt
 from eurdf.array import Matrix
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.evaluate import many_tree
+from eurdf.kinematics.named import configurations_of
 from eurdf.pinocchio.arguments import checked_array, checked_count
 
 if TYPE_CHECKING:
@@ -157,7 +158,7 @@ def checked_configurations(robot: Robot, name: str, given: Any) -> Matrix:
     Raises:
         ValueError: They have another shape, are not finite, or one of them cannot be normalized.
     """
-    q = checked_rows(name, given, robot.tree.nq)
+    q = checked_rows(name, configurations_of(robot, given, name), robot.tree.nq)
     with np.errstate(all="ignore"):
         normal = many_tree(robot).normalized(q)
     wrong = np.flatnonzero(~np.isfinite(normal).all(axis=1))
@@ -177,6 +178,9 @@ def starts(robot: Robot, q0: Any, count: int) -> tuple[Matrix, bool]:
     Raises:
         ValueError: As in `checked_configurations`, or their number is not B.
     """
+    if isinstance(q0, Mapping):
+        q0 = configurations_of(robot, q0, "q0")
+        q0 = q0[0] if len(q0) == 1 else q0
     if q0 is None or len(shape_of(q0)) == 1:
         q = start(robot, q0)
         return np.broadcast_to(q, (count, len(q))), True

@@ -37,7 +37,7 @@ _MOST_CORRECTIONS = 12
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Point:
+class BranchPoint:
     """A closed configuration on a branch, and K there, dimensionless.
 
     Attributes:
@@ -93,7 +93,7 @@ class Branch:
         self._limits = limits
         self._turns = robot.tree.whole_turns[self.velocities]
 
-    def at(self, q: Vector, correction: float = 0.0) -> Point:
+    def at(self, q: Vector, correction: float = 0.0) -> BranchPoint:
         """The point at the closed configuration q (nq,)."""
         residual, K = 0.0, np.zeros((0, len(self._unit)))
         if self._group is not None:
@@ -105,9 +105,9 @@ class Branch:
         inverse = np.zeros(K.T.shape)
         inverse[self._passive] = (right[:rank].T / values[:rank]) @ left[:, :rank].T
         smallest = float(values[rank - 1]) if rank else math.inf
-        return Point(q, residual, correction, K, rank, smallest, inverse)
+        return BranchPoint(q, residual, correction, K, rank, smallest, inverse)
 
-    def step(self, here: Point, h: float) -> Point | None:
+    def step(self, here: BranchPoint, h: float) -> BranchPoint | None:
         """The point after a step h of the actuator, rad or m; None if the step is too long."""
         step = np.where(self._driven, h / self._unit, 0.0)
         step -= here.inverse @ (here.K @ step)
@@ -131,7 +131,7 @@ class Branch:
         change = float(np.linalg.norm((there.K - here.K)[:, self._passive]))
         return there if change <= here.smallest + there.smallest else None
 
-    def passive_limit(self, here: Point, there: Point) -> tuple[str, float] | None:
+    def passive_limit(self, here: BranchPoint, there: BranchPoint) -> tuple[str, float] | None:
         """The passive joint that first reaches its position limit between two points, and after what part of the step.
 
         A joint that is already beyond its limit, which is possible at the start, can move back, but not farther out.
@@ -154,7 +154,7 @@ class Branch:
         first = int(np.argmax(part))
         return self._limits.joints[self.passive[first]], max(0.0, 1.0 - float(part[first]))
 
-    def same(self, one: Point, other: Point) -> bool:
+    def same(self, one: BranchPoint, other: BranchPoint) -> bool:
         """Whether two points at the same actuator position are equal, except for motions that no actuator controls.
 
         Angles that differ by whole turns are equal.

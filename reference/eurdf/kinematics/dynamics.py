@@ -21,14 +21,14 @@ from eurdf.array import Matrix, Vector, numbers
 from eurdf.errors import UnderactuatedMotion
 from eurdf.kinematics.applied_force import AppliedForce, External
 from eurdf.kinematics.assembly import start
-from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.equation_of_motion import EquationOfMotion, by_joint, per_constraint
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.forward_solver import ForwardSolver
 from eurdf.kinematics.inverse_solver import InverseSolver
-from eurdf.kinematics.named import Named, velocity_of
+from eurdf.kinematics.named import Named, motor_values_of, velocity_of
 from eurdf.kinematics.tolerances import FORCES_SOLVED, MASSLESS
 from eurdf.pinocchio.arguments import checked_array, checked_tolerance
+from eurdf.pinocchio.memory import working_memory
 from eurdf.pinocchio.tree_dynamics import TreeDynamics
 
 if TYPE_CHECKING:
@@ -110,7 +110,7 @@ def forward_dynamics(
         UndeterminedMotion: A joint without inertia can move.
         NumericalOverflow: The result is not finite.
     """
-    with np.errstate(over="ignore", invalid="ignore", divide="ignore"), borrowed(robot, ForwardSolver) as solver:
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"), working_memory(robot, ForwardSolver) as solver:
         q, v = start(robot, q, "q"), velocity_of(robot, v)
         dynamics = solver.dynamics(data)
         force = AppliedForce(robot, external, dissipation).total(q, v, u, tau)
@@ -133,7 +133,7 @@ def inverse_dynamics(
     tau: Named | None = None,
     external: External | None = None,
     dissipation: bool = False,
-    weights: Vector | None = None,
+    weights: Named | None = None,
     tolerance: float = 1e-6,
     data: Any = None,
 ) -> InverseDynamics:
@@ -173,8 +173,8 @@ def inverse_dynamics(
     """
     with (
         overflow_refused("the motor torques"),
-        borrowed(robot, ForwardSolver) as solver,
-        borrowed(robot, InverseSolver) as inverse_solver,
+        working_memory(robot, ForwardSolver) as solver,
+        working_memory(robot, InverseSolver) as inverse_solver,
     ):
         q, v, a, dynamics = _state(robot, q, v, a, solver, data)
         norm, tolerance = _norm(robot, weights), checked_tolerance(tolerance)
@@ -236,7 +236,7 @@ def achievable_acceleration(
         UnderactuatedMotion: A motion without inertia would need a force.
         NumericalOverflow: The result is not finite.
     """
-    with overflow_refused("the acceleration"), borrowed(robot, ForwardSolver) as solver:
+    with overflow_refused("the acceleration"), working_memory(robot, ForwardSolver) as solver:
         q, v, a, dynamics = _state(robot, q, v, a, solver, data)
         motion = EquationOfMotion(robot, q, v, dynamics)
         motion.refuse_open(a, checked_tolerance(tolerance))
@@ -327,12 +327,9 @@ def _refuse_uncontrolled(
         raise UnderactuatedMotion(by_joint(tree, force), float(np.abs(deviation / motion.unit).max()))
 
 
-def _norm(robot: Robot, weights: Vector | None) -> Vector:
+def _norm(robot: Robot, weights: Named | None) -> Vector:
     """1/√w (nu,)."""
-    nu = robot.actuation.selection.shape[1]
-    if weights is None:
-        return np.ones(nu)
-    given = checked_array("weights", weights, (nu,))
+    given = motor_values_of(robot, {} if weights is None else weights, "weights", others=1.0)
     if not (given > 0.0).all():
         raise ValueError(f"weights[{int(np.argmin(given))}] is {given.min()}; expected positive numbers")
     return np.asarray(1.0 / np.sqrt(given))

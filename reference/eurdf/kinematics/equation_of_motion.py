@@ -10,7 +10,6 @@ import numpy as np
 
 from eurdf.array import Matrix, Vector
 from eurdf.errors import InconsistentMotion, UndeterminedMotion
-from eurdf.kinematics.derived import derived
 from eurdf.kinematics.finite import finite
 from eurdf.kinematics.loop import find_loops
 from eurdf.kinematics.rank import numerical_rank
@@ -49,7 +48,7 @@ class EquationOfMotion:
         self.robot, self.q, self.v, self._dynamics = robot, q, v, dynamics
         self.r, self.K = residual_and_jacobian(robot, q)
         self.drift = acceleration_drift(robot, q, v)
-        spaces = derived(robot, TangentSpaces)
+        spaces = robot.cached(TangentSpaces)
         space = spaces.at(self.K)
         self.P, self.unit, self._space = space.inverse, spaces.scale, space
         self.bias = dynamics.inverse_dynamics(q, v, np.zeros(robot.tree.nv))

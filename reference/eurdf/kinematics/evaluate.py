@@ -16,7 +16,6 @@ from eurdf.array import Indices, Matrix
 from eurdf.closures.coupling import Couplings
 from eurdf.closures.kind import ClosureKind, RelativePoses
 from eurdf.closures.se3 import velocity_of_origin
-from eurdf.kinematics.derived import derived
 from eurdf.kinematics.pairs_many import ManyPairs
 from eurdf.kinematics.tree_many import TreeMany
 from eurdf.mechanism.constraint import Constraint, Coupling
@@ -27,7 +26,7 @@ if TYPE_CHECKING:
     from eurdf.pinocchio.tree import Tree
 
 
-class _Group(NamedTuple):
+class _SameKind(NamedTuple):
     """The closures of one kind.
 
     Attributes:
@@ -89,7 +88,7 @@ class Evaluator:
             first.append(self.m)
             self.m += constraint.rows
         self._sites: list[Pair] = []
-        self._groups: list[_Group] = []
+        self._groups: list[_SameKind] = []
         self._couplings: tuple[Couplings, slice | Indices, slice | Indices] | None = None
         for kind, found in members.items():
             own: list[Any] = [constraints[index] for index in found]
@@ -102,14 +101,14 @@ class Evaluator:
                 raise NotImplementedError(f"constraint '{own[0].name}' has the type '{kind.type}', which has no kind")
             pairs = slice(len(self._sites), len(self._sites) + len(own))
             self._sites += [(tree.site(each.a), tree.site(each.b)) for each in own]
-            self._groups.append(_Group(kind, kind.prepare(own), indices, pairs, chosen, len(rows)))
+            self._groups.append(_SameKind(kind, kind.prepare(own), indices, pairs, chosen, len(rows)))
         # The rows of the residual are those of one kind, in order.
         self._is_plain = self._couplings is None and len(self._groups) == 1
         self._tree: Tree | None = tree
         self._key: bytes | None = None  # of the configuration of the last state of one element
         self._last = State(np.empty((1, 0)), None, [])
         if not few:
-            self._pairs = ManyPairs(derived(tree, TreeMany), self._sites, velocities)
+            self._pairs = ManyPairs(tree.cached(TreeMany), self._sites, velocities)
             self._sites, self._tree = [], None  # what is Pinocchio's cannot be sent to another process
 
     @cached_property
@@ -220,7 +219,7 @@ def _few_pairs(tree: Tree, sites: Sequence[Pair], velocities: Indices) -> FewPai
     try:
         return FewPairs(tree.model, tree.parents, sites, velocities)
     except NotImplementedError:
-        return ManyPairs(derived(tree, TreeMany), sites, velocities)
+        return ManyPairs(tree.cached(TreeMany), sites, velocities)
 
 
 class Frames:
@@ -265,7 +264,7 @@ def frames_at(tree: Tree, sites: Sequence[Any], *, few: bool) -> Frames:
     pairs, velocities = [(tree.world, site) for site in sites], np.arange(tree.nv)
     if few:
         return Frames(_few_pairs(tree, pairs, velocities))
-    return Frames(ManyPairs(derived(tree, TreeMany), pairs, velocities))
+    return Frames(ManyPairs(tree.cached(TreeMany), pairs, velocities))
 
 
 class TreeFew:
@@ -312,9 +311,9 @@ def _each(function: Callable[..., Matrix], shape: int | tuple[int, ...], *arrays
 
 def few_tree(robot: Robot) -> TreeFew:
     """The tree for few configurations."""
-    return derived(robot.tree, TreeFew)
+    return robot.tree.cached(TreeFew)
 
 
 def many_tree(robot: Robot) -> TreeMany:
     """The tree for many configurations."""
-    return derived(robot.tree, TreeMany)
+    return robot.tree.cached(TreeMany)

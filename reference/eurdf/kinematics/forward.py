@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
@@ -11,8 +11,8 @@ import numpy as np
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.errors import NotClosable, NumericalOverflow, TooFar
 from eurdf.kinematics.assembly import assembled, close, closed_start, is_closed, start
-from eurdf.kinematics.derived import borrowed
-from eurdf.kinematics.named import ByJoint, Named, unknown_joint
+from eurdf.kinematics.blocks import checked_rows
+from eurdf.kinematics.named import ByJoint, Named, NamedRows, configurations_of, unknown_joint
 from eurdf.kinematics.path import follow_given
 from eurdf.kinematics.problem import Problem, for_many
 from eurdf.kinematics.residual import all_openings
@@ -20,6 +20,7 @@ from eurdf.kinematics.springs import Resting, joints_at_rest, spring_equilibrium
 from eurdf.kinematics.tolerances import RESTARTS, SHORTEST_STEP, SOLVED
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array, checked_tolerance
+from eurdf.pinocchio.memory import working_memory
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -165,14 +166,14 @@ class Driving(NamedTuple):
         return follow_given(self.driven, first, goal, self.coordinates, self.tolerance, shortest, free=self.free)
 
 
-def _with_driving(robot: Robot, given: _Given, tolerance: float, use: Callable[[Driving], _T]) -> _T:
+def _with_driving(robot: Robot, given: Given, tolerance: float, use: Callable[[Driving], _T]) -> _T:
     """What a function makes of a robot with given joints, for one element."""
     velocities = tuple(given.velocities.tolist())
     resting = joints_at_rest(robot, given.velocities) if len(robot.tree.springs.idx_v) else None
-    with borrowed(robot, Problem) as free, borrowed(robot, Problem, velocities) as driven:
+    with working_memory(robot, Problem) as free, working_memory(robot, Problem, velocities) as driven:
         if resting is None:
             return use(Driving(free, driven, given.coordinates, None, None, tolerance))
-        with borrowed(robot, Problem, (*velocities, *resting.velocities.tolist())) as at_rest:
+        with working_memory(robot, Problem, (*velocities, *resting.velocities.tolist())) as at_rest:
             return use(Driving(free, driven, given.coordinates, resting, at_rest, tolerance))
 
 
@@ -198,13 +199,13 @@ def in_equilibrium(robot: Robot, q: Vector, driving: Driving) -> Vector:
     return spring_equilibrium(robot, q, driving.coordinates, driving.driven, driving.tolerance)
 
 
-def driving_many(robot: Robot, tolerance: float) -> Driving:
-    """A robot whose actuators are given, for many elements."""
-    actuation, resting, at_rest = robot.actuation, joints_at_rest(robot, robot.actuation.idx_v), None
+def driving_many(robot: Robot, given: Given, tolerance: float) -> Driving:
+    """A robot some joints of which are given, for many elements."""
+    velocities, resting, at_rest = given.velocities.tolist(), joints_at_rest(robot, given.velocities), None
     if resting is not None:
-        at_rest = Problem(robot, (*actuation.idx_v.tolist(), *resting.velocities.tolist()), few=False)
-    driven = Problem(robot, actuation.idx_v.tolist(), few=False)
-    return Driving(for_many(robot), driven, actuation.idx_q, resting, at_rest, tolerance)
+        at_rest = Problem(robot, (*velocities, *resting.velocities.tolist()), few=False)
+    driven = Problem(robot, velocities, few=False)
+    return Driving(for_many(robot), driven, given.coordinates, resting, at_rest, tolerance)
 
 
 def goals(driving: Driving, q: Matrix, values: Matrix) -> Matrix:
@@ -247,14 +248,14 @@ def moved_many(
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Given:
+class Given:
     """The joints whose coordinates are given.
 
     Attributes:
         joints: Their names.
         coordinates: Indices in q of all their coordinates.
         velocities: Indices in v of all their velocities.
-        values: The given coordinates.
+        values: The given coordinates (n,), or (B, n).
     """
 
     joints: Sequence[str]
@@ -263,17 +264,44 @@ class _Given:
     values: Vector
 
 
-def _given(robot: Robot, values: Named) -> _Given:
+def _given(robot: Robot, values: Named) -> Given:
     if isinstance(values, Mapping):
         return _given_by_name(robot, values)
     actuation = robot.actuation
     values = checked_array("actuated", values, (len(actuation.idx_q),))
-    return _Given(actuation.joints, actuation.idx_q, actuation.idx_v, values)
+    return Given(actuation.joints, actuation.idx_q, actuation.idx_v, values)
 
 
-def _given_by_name(robot: Robot, by_name: ByJoint) -> _Given:
-    # For each joint: index of its first coordinate, their number, index of its first velocity, their number, and the
-    # number of its coordinates in files.
+def _given_by_name(robot: Robot, by_name: ByJoint) -> Given:
+    coordinates, velocities, counts = _places(robot, by_name)
+    as_in_files: dict[str, list[float]] = {}
+    for (name, values), count in zip(by_name.items(), counts, strict=True):
+        shapes = [(1,), ()] if count == 1 else [(count,)]
+        as_in_files[name] = np.atleast_1d(checked_array(f"actuated['{name}']", values, *shapes)).tolist()
+    return Given(tuple(by_name), coordinates, velocities, robot.configuration(as_in_files)[coordinates])
+
+
+def given_many(robot: Robot, values: NamedRows) -> Given:
+    """The joints whose coordinates are given for many elements: those of the actuators (B, nu), or of joints by name.
+
+    Raises:
+        ValueError: They do not fit the robot.
+    """
+    if isinstance(values, Mapping):
+        coordinates, velocities, _ = _places(robot, values)
+        rows = configurations_of(robot, values, "values")[:, coordinates]
+        return Given(tuple(values), coordinates, velocities, rows)
+    actuation = robot.actuation
+    rows = checked_rows("values", values, len(actuation.idx_q))
+    return Given(actuation.joints, actuation.idx_q, actuation.idx_v, rows)
+
+
+def _places(robot: Robot, names: Iterable[str]) -> tuple[Indices, Indices, list[int]]:
+    """Indices in q of the coordinates of joints, in v of their velocities, and how many coordinates files have of each.
+
+    Raises:
+        ValueError: A name is not that of a joint with coordinates of its own.
+    """
     at = {
         name: (slot.idx_q, slot.nq, slot.idx_v, slot.nv, len(slot.joint.type.coordinates))
         for name, slot in robot.slots.items()
@@ -282,18 +310,15 @@ def _given_by_name(robot: Robot, by_name: ByJoint) -> _Given:
         at[ROOT_JOINT] = (0, 7, 0, 6, 7)
     coordinates: list[int] = []
     velocities: list[int] = []
-    as_in_files: dict[str, list[float]] = {}
-    for name, values in by_name.items():
+    counts = []
+    for name in names:
         if name not in at:
             raise unknown_joint(robot, name)
         first_q, nq, first_v, nv, count = at[name]
-        shapes = [(1,), ()] if count == 1 else [(count,)]
-        as_in_files[name] = np.atleast_1d(checked_array(f"actuated['{name}']", values, *shapes)).tolist()
         coordinates += range(first_q, first_q + nq)
         velocities += range(first_v, first_v + nv)
-    q = robot.configuration(as_in_files)
-    indices = np.array(coordinates, dtype=np.intp)
-    return _Given(tuple(by_name), indices, np.array(velocities, dtype=np.intp), q[indices])
+        counts.append(count)
+    return np.array(coordinates, dtype=np.intp), np.array(velocities, dtype=np.intp), counts
 
 
 def _stopped(robot: Robot, driving: Driving, q: Vector, goal: Vector) -> NotClosable:

@@ -6,7 +6,6 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from eurdf.array import Matrix, Vector
-from eurdf.kinematics.derived import derived
 from eurdf.kinematics.equation_of_motion import Acceleration, EquationOfMotion
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.independence import Independence, norm
@@ -39,7 +38,7 @@ class ForwardSolver:
         self._solver: ConstrainedDynamics | None = build_constrained_dynamics(robot)
         self.gains = StatedGains(robot)
         self.rows = tuple(loop.rows for loop in find_loops(robot))
-        spaces = derived(robot, TangentSpaces)
+        spaces = robot.cached(TangentSpaces)
         self._independence = Independence(spaces.row_scale, spaces.scale)
         self._own: TreeDynamics | None = None
 

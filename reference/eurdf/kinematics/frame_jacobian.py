@@ -9,8 +9,8 @@ from pinocchio import LOCAL, LOCAL_WORLD_ALIGNED, WORLD
 
 from eurdf.array import Matrix, Vector
 from eurdf.closures.se3 import skew
-from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.evaluate import Frames, frames
+from eurdf.pinocchio.memory import working_memory
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -33,7 +33,7 @@ def frame_jacobian(robot: Robot, q: Vector, frame: str, reference: Any) -> Matri
     Raises:
         ValueError: The frame is unknown or ambiguous, or ``reference`` is none of the three.
     """
-    with borrowed(robot, frames_of, frame) as found:
+    with working_memory(robot, frames_of, frame) as found:
         J: Matrix = in_reference(found, q[None], checked_reference(reference))[0]
         return J
 

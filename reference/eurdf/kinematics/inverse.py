@@ -11,9 +11,9 @@ import numpy as np
 from pinocchio import SE3
 
 from eurdf.array import Vector
+from eurdf.closures.se3 import IDENTITY_ROTATION
 from eurdf.kinematics.assembly import assembled, measured, start
 from eurdf.kinematics.blocks import checked_rows, shape_of
-from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.frame_jacobian import frames_of
 from eurdf.kinematics.inverse_search import InverseKinematicsReason, InverseTask, Target, search
 from eurdf.kinematics.named import Named
@@ -25,12 +25,10 @@ from eurdf.kinematics.tolerances import (
     SOLVED,
 )
 from eurdf.pinocchio.arguments import checked_array, checked_count, checked_tolerance
+from eurdf.pinocchio.memory import working_memory
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
-
-
-_ONE = np.eye(3)
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -150,7 +148,7 @@ def inverse_kinematics(
         else Target(np.array(target)[None])
         for is_pose, target in zip(poses, checked.values(), strict=True)
     ]
-    with borrowed(robot, Problem) as problem, borrowed(robot, frames_of, *checked) as frames:
+    with working_memory(robot, Problem) as problem, working_memory(robot, frames_of, *checked) as frames:
         task = InverseTask(problem, frames, poses, chosen, tolerance, restarts)
         found = search(task, goals, q[None])
         at_limits = found.at_limits[0]
@@ -174,7 +172,7 @@ def _target(name: str, target: Any) -> Any:
     """A target, checked: a pose, or a position (3,)."""
     if isinstance(target, SE3):
         R = target.rotation
-        if np.isfinite(target.translation).all() and np.abs(R.T.dot(R) - _ONE).max() <= 1e-6:
+        if np.isfinite(target.translation).all() and np.abs(R.T.dot(R) - IDENTITY_ROTATION).max() <= 1e-6:
             x, y, z = R.tolist()
             volume = sum(x[i] * (y[i - 2] * z[i - 1] - y[i - 1] * z[i - 2]) for i in range(3))
             if volume > 0.0:  # no reflection
@@ -203,7 +201,7 @@ def checked_targets(name: str, target: Any) -> Target:
             raise ValueError(f"{error}, or poses: (B, 4, 4), or a list of pin.SE3") from None
     poses = checked_array(argument, target, shape)
     R = poses[:, :3, :3]
-    wrong = np.abs(np.swapaxes(R, 1, 2) @ R - _ONE).max(axis=(1, 2), initial=0.0) > 1e-6
+    wrong = np.abs(np.swapaxes(R, 1, 2) @ R - IDENTITY_ROTATION).max(axis=(1, 2), initial=0.0) > 1e-6
     wrong |= (np.linalg.det(R) < 0.0) | (np.abs(poses[:, 3] - (0.0, 0.0, 0.0, 1.0)).max(axis=1, initial=0.0) > 1e-9)
     if wrong.any():
         raise ValueError(f"{argument}[{int(np.argmax(wrong))}] is not a pose: its rotation is not orthonormal")

@@ -53,7 +53,7 @@ from eurdf.kinematics.tolerances import (
 from eurdf.mechanism.joint import LIMIT_TOLERANCE
 
 #: Why inverse kinematics did not converge: closures stay open; joints at their limits keep the frames off target; the
-#: configuration is singular, at the edge of the workspace; no motion of the mechanism brings the frames nearer; or the
+#: configuration is singular, at the edge of the workspace; the target is out of reach; or the
 #: maximum number of steps was reached.
 InverseKinematicsReason = Literal["closures open", "joint limits", "singular", "out of reach", "steps"]
 
@@ -100,7 +100,7 @@ class InverseTask(NamedTuple):
     restarts: int
 
 
-class Found(NamedTuple):
+class SearchResult(NamedTuple):
     """The result of `search`; B elements.
 
     Attributes:
@@ -121,7 +121,7 @@ class Found(NamedTuple):
 
 
 @np.errstate(all="ignore")
-def search(task: InverseTask, goals: Sequence[Target], q: Matrix) -> Found:
+def search(task: InverseTask, goals: Sequence[Target], q: Matrix) -> SearchResult:
     """The configurations nearest to the targets, from q (B, nq)."""
     return _Search(task, goals, len(q)).run(q)
 
@@ -149,7 +149,7 @@ class _Search:
         self._farthest: dict[int, tuple[int, int, float]] = {}
         self._may_be_certain = True
 
-    def run(self, start: Matrix) -> Found:
+    def run(self, start: Matrix) -> SearchResult:
         """The configurations found from start (B, nq)."""
         task, B = self._task, len(start)
         reason: list[InverseKinematicsReason | None] = [None] * B
@@ -161,7 +161,7 @@ class _Search:
             done[done] = self._problem.closes(start[done], CLOSED)
         going = np.flatnonzero(~done)
         if not len(going):
-            return Found(best, *self._distances(errors), self._iterations, reason, at_limits)
+            return SearchResult(best, *self._distances(errors), self._iterations, reason, at_limits)
         first = self._close(clipped[going], RESTARTS)
         best[going] = first.q
         is_open = going[~first.closes]
@@ -188,7 +188,7 @@ class _Search:
             best[off], errors[off] = self._descend(best[off], off, _IDLE_AT_LAST)
             for element in off[~self._reached(errors[off])].tolist():
                 reason[element], at_limits[element] = self._why_off_target(best[[element]], element)
-        return Found(best, *self._distances(errors), self._iterations, reason, at_limits)
+        return SearchResult(best, *self._distances(errors), self._iterations, reason, at_limits)
 
     def _close(self, q: Matrix, restarts: int = 0) -> Closed:
         return close(self._problem, q, SOLVED, restarts, self._task.limits)

@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eurdf.array import Vector
-from eurdf.kinematics.derived import derived
 from eurdf.kinematics.forward_solver import ForwardSolver
 from eurdf.kinematics.independence import norm
 from eurdf.kinematics.rank import certain_inverse
@@ -37,7 +36,7 @@ class InverseSolver:
 
     def __init__(self, robot: Robot) -> None:
         # No reference to the robot: the cache would keep it alive.
-        nv, spaces = robot.tree.nv, derived(robot, TangentSpaces)
+        nv, spaces = robot.tree.nv, robot.cached(TangentSpaces)
         self._scale, self._row_scale, self._dimensionless = spaces.scale, spaces.row_scale, spaces.dimensionless
         self._driven = robot.actuation.idx_v
         self._others = np.setdiff1d(np.arange(nv), self._driven)

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from eurdf.array import Indices
-from eurdf.kinematics.derived import derived
 from eurdf.mechanism.constraint import Constraint
 from eurdf.pinocchio.ancestry import Ancestry
 from eurdf.pinocchio.tree import Tree
@@ -43,7 +42,7 @@ class Loop(NamedTuple):
 
 def find_loops(robot: Robot) -> tuple[Loop, ...]:
     """Loops of the robot's constraints, in their order."""
-    return derived(robot, _trace)
+    return robot.cached(_trace)
 
 
 def _trace(robot: Robot) -> tuple[Loop, ...]:

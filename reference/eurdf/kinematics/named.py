@@ -1,14 +1,15 @@
-"""Vectors given as the values of joints, by their names."""
+"""Vectors given as the values of joints, by their names: for one configuration, or for many."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eurdf.array import Vector
+from eurdf.array import Matrix, Vector
 from eurdf.diagnostics.wording import enumerated, meant
+from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array
 
 if TYPE_CHECKING:
@@ -19,6 +20,9 @@ ByJoint = Mapping[str, float | Sequence[float]]
 
 #: A vector, or the values of joints by their names.
 Named = Vector | ByJoint
+
+#: Vectors (B, n), or the values of joints by their names: for each joint those of all B elements, or one for all.
+NamedRows = Matrix | Mapping[str, Any]
 
 
 def configuration_of(robot: Robot, given: Named, argument: str = "q") -> Vector:
@@ -35,8 +39,36 @@ def configuration_of(robot: Robot, given: Named, argument: str = "q") -> Vector:
     return checked_array(argument, given, (robot.tree.nq,))
 
 
-def velocity_of(robot: Robot, given: Named, argument: str = "v") -> Vector:
-    """Velocities, accelerations or generalized forces (nv,); zero for joints that are not named.
+def configurations_of(robot: Robot, given: Any, argument: str = "q") -> Any:
+    """Configurations (B, nq) where coordinates are given by name; else what is given.
+
+    Raises:
+        ValueError: They do not fit the robot, or the joints have values of different numbers of elements.
+    """
+    if not isinstance(given, Mapping):
+        return given
+    each = {name: _values_of_each(robot, name, values, argument) for name, values in given.items()}
+    counts = {len(rows) for rows in each.values()} - {1}
+    if len(counts) > 1:
+        raise ValueError(f"{argument} has values of {' and '.join(map(str, sorted(counts)))} elements")
+    count = counts.pop() if counts else 1
+    every = ({name: rows[index % len(rows)] for name, rows in each.items()} for index in range(count))
+    rows = [configuration_of(robot, one, f"{argument}[{index}]") for index, one in enumerate(every)]
+    return np.array(rows).reshape(count, robot.tree.nq)
+
+
+def _values_of_each(robot: Robot, name: str, values: Any, argument: str) -> Any:
+    """The values of a joint for each element; for one alone if they are those of all."""
+    try:
+        depth = np.ndim(values)
+    except ValueError:
+        raise ValueError(f"{argument}['{name}'] has elements of different lengths") from None
+    several = name == ROOT_JOINT or (name in robot.slots and len(robot.slots[name].joint.type.coordinates) > 1)
+    return np.asarray(values) if depth > several else [values]
+
+
+def velocity_of(robot: Robot, given: Named, argument: str = "v", others: float = 0.0) -> Vector:
+    """Velocities, accelerations, generalized forces or weights (nv,); ``others`` for joints that are not named.
 
     Raises:
         ValueError: It does not fit the robot, or is not finite.
@@ -47,11 +79,11 @@ def velocity_of(robot: Robot, given: Named, argument: str = "v") -> Vector:
     for name in given:
         if name not in names:
             raise ValueError(f"{argument}: {unknown_joint(robot, name)}")
-    return vector_of(given, names, argument)
+    return vector_of(given, names, argument, others)
 
 
-def motor_values_of(robot: Robot, given: Named, argument: str = "u") -> Vector:
-    """Values (nu,) of the actuated velocities, in the order of the actuation; zero for joints that are not named.
+def motor_values_of(robot: Robot, given: Named, argument: str = "u", others: float = 0.0) -> Vector:
+    """Values (nu,) of the actuated velocities, in their order; ``others`` for joints that are not named.
 
     Raises:
         ValueError: It does not fit the robot, or is not finite.
@@ -59,29 +91,40 @@ def motor_values_of(robot: Robot, given: Named, argument: str = "u") -> Vector:
     actuation = robot.actuation
     if not isinstance(given, Mapping):
         return checked_array(argument, given, actuation.idx_v.shape)
-    return vector_of(given, [name for name in actuation.joints for _ in range(robot.slots[name].nv)], argument)
+    return vector_of(given, [name for name in actuation.joints for _ in range(robot.slots[name].nv)], argument, others)
 
 
-def vector_of(given: Named, names: Sequence[str], argument: str) -> Vector:
-    """A vector with an element for each name; zero for those that are not named.
+def vector_of(given: Named, names: Sequence[str], argument: str, others: float = 0.0) -> Vector:
+    """A vector with an element for each name.
 
     Args:
         given: The vector, or values by name.
         names: The names; one that occurs several times has as many values.
         argument: Name of the argument.
+        others: The element of a name that is not given.
 
     Raises:
         ValueError: A name is unknown, or the numbers of values differ, or something is no finite number.
     """
     if not isinstance(given, Mapping):
         return checked_array(argument, given, (len(names),))
-    vector = np.zeros(len(names))
+    vector = np.full(len(names), others)
+    require_names(given, names, argument)
     for name, values in given.items():
         at = [index for index, each in enumerate(names) if each == name]
-        if not at:
-            raise ValueError(f"{argument}: there is no '{name}' among {enumerated(names)}{meant(name, names)}")
         vector[at] = checked_array(f"{argument}['{name}']", values, (len(at),), *([()] if len(at) == 1 else []))
     return vector
+
+
+def require_names(given: Iterable[str], names: Sequence[str], argument: str) -> None:
+    """Refuse names that are not among those that an argument has.
+
+    Raises:
+        ValueError: A name is another one.
+    """
+    for name in given:
+        if name not in names:
+            raise ValueError(f"{argument}: there is no '{name}' among {enumerated(names)}{meant(name, names)}")
 
 
 def unknown_joint(robot: Robot, name: str) -> ValueError:

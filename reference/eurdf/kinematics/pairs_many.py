@@ -20,7 +20,7 @@ from eurdf.kinematics.tree_many import IDENTITY, Node, TreeMany
 from eurdf.pinocchio.ancestry import between, nodes_between
 
 
-class _Chain:
+class _Subtree:
     """Some nodes of a tree, level by level; a parent that is not among them is at rest at the origin.
 
     Row 0 of what it computes is of the origin.
@@ -247,7 +247,7 @@ class ManyPairs:
         self.count, self.n = len(pairs), len(velocities)
         self._parents, self._ends = tree.parents, [(a.joint, b.joint) for a, b in pairs]
         joint_of = {number: joint for joint in nodes_between(tree.parents, self._ends) for number in tree.own[joint]}
-        self._chain = chain = _Chain(tree, joint_of)
+        self._chain = chain = _Subtree(tree, joint_of)
         self._rows = np.array(
             [chain.row.get(tree.node_of(end.joint), 0) for pair in zip(*pairs, strict=True) for end in pair],
             dtype=np.intp,

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
-from eurdf.kinematics.derived import derived
 from eurdf.mechanism.joint import LIMIT_TOLERANCE, is_no_range
 
 if TYPE_CHECKING:
@@ -108,7 +107,7 @@ def position_limits(robot: Robot) -> PositionLimits:
     kept: tuple[bytes, PositionLimits] | None = robot.derived.get(position_limits)
     if kept is not None and kept[0] == stated:
         return kept[1]
-    driven, coordinates = derived(robot, driven_coordinates)
+    driven, coordinates = robot.cached(driven_coordinates)
     lower, upper = np.full(robot.tree.nv, -np.inf), np.full(robot.tree.nv, np.inf)
     lower[driven], upper[driven] = lowest[coordinates[driven]], highest[coordinates[driven]]
     none = list(map(is_no_range, lower.tolist(), upper.tolist()))

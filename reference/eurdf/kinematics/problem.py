@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
-from eurdf.kinematics.derived import derived
 from eurdf.kinematics.evaluate import evaluator, few_tree, many_tree
 from eurdf.kinematics.loop import LoopGroup, independent_groups, merged, moving_velocities
 from eurdf.kinematics.rank import least_solution, norms, product
@@ -96,7 +95,7 @@ class Problem:
     """A robot, some velocities of which may be given: then only the others close the loops.
 
     For many elements at once it is plain data, which threads share and other processes can be sent. For few it has
-    working memory, which one thread uses at a time: `borrowed` lends it.
+    working memory, which one thread uses at a time: `working_memory` lends it.
 
     Attributes:
         tree: Its spanning tree.
@@ -114,7 +113,7 @@ class Problem:
         """Take a robot and the indices in v of the given velocities."""
         # No reference to the robot: the cache would keep it alive.
         self.tree = few_tree(robot) if few else many_tree(robot)
-        self.spaces = derived(robot, TangentSpaces)
+        self.spaces = robot.cached(TangentSpaces)
         self.names = tuple(constraint.name for constraint in robot.constraints)
         self.given = np.array(given, dtype=np.intp)
         self._place = np.zeros(self.tree.nv, dtype=np.intp)  # of each velocity where it is among the given ones
@@ -240,7 +239,7 @@ class Problem:
 
 def for_many(robot: Robot) -> Problem:
     """A robot for many elements at once, with no velocity held; made once."""
-    return derived(robot, _for_many)
+    return robot.cached(_for_many)
 
 
 def _for_many(robot: Robot) -> Problem:

@@ -13,7 +13,6 @@ import numpy as np
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.errors import NotClosable
 from eurdf.kinematics.assembly import assembled, close, start
-from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.named import Named, velocity_of
 from eurdf.kinematics.problem import Problem
@@ -22,6 +21,7 @@ from eurdf.kinematics.residual import acceleration_drift, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpace, TangentSpaces, metric, nearest
 from eurdf.kinematics.tolerances import RESTARTS, SOLVED
 from eurdf.pinocchio.arguments import checked_tolerance
+from eurdf.pinocchio.memory import working_memory
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -35,7 +35,7 @@ _DIFFERENCE = 1e-6
 
 @overflow_refused("the configuration")
 def project_configuration(
-    robot: Robot, q: Named, *, weights: Vector | Matrix | None = None, tolerance: float = SOLVED
+    robot: Robot, q: Named, *, weights: Named | Matrix | None = None, tolerance: float = SOLVED
 ) -> Vector:
     """The closed configuration nearest to q.
 
@@ -59,9 +59,9 @@ def project_configuration(
         NotClosable: No closed configuration was found; the error lists the closures that stay open.
         ValueError: ``q`` is not a configuration, or ``weights`` is not a metric.
     """
-    W, tolerance = metric(weights, robot.tree.nv), checked_tolerance(tolerance)
+    W, tolerance = metric(robot, weights), checked_tolerance(tolerance)
     q = start(robot, q, "q")
-    with borrowed(robot, Problem) as problem:
+    with working_memory(robot, Problem) as problem:
         found, closed = nearest_closed(ProjectionTask(problem, W, tolerance), q[None])
         if not closed[0]:
             finite("the residual", problem.residual(q[None]))
@@ -161,7 +161,7 @@ def _second_derivatives(
 
 
 @overflow_refused("the velocity")
-def project_velocity(robot: Robot, q: Named, v: Named, *, weights: Vector | Matrix | None = None) -> Vector:
+def project_velocity(robot: Robot, q: Named, v: Named, *, weights: Named | Matrix | None = None) -> Vector:
     """The velocity nearest to v that keeps the loops closed.
 
     The orthogonal projection onto ker K(q): v' = Z (Zᵀ W Z)⁻¹ Zᵀ W v with K Z = 0, which minimises (v' - v)ᵀ W (v' - v)
@@ -179,17 +179,17 @@ def project_velocity(robot: Robot, q: Named, v: Named, *, weights: Vector | Matr
     Raises:
         ValueError: ``q`` or ``v`` has another shape or is not finite, or ``weights`` is not a metric.
     """
-    W = metric(weights, robot.tree.nv)
+    W = metric(robot, weights)
     v = velocity_of(robot, v)
     _, K = residual_and_jacobian(robot, start(robot, q, "q"))
-    projected = nearest(derived(robot, TangentSpaces).at(K).basis, W, v)
+    projected = nearest(robot.cached(TangentSpaces).at(K).basis, W, v)
     finite("the velocity", projected)
     return projected
 
 
 @overflow_refused("the acceleration")
 def project_acceleration(
-    robot: Robot, q: Named, v: Named, a: Named, *, weights: Vector | Matrix | None = None
+    robot: Robot, q: Named, v: Named, a: Named, *, weights: Named | Matrix | None = None
 ) -> Vector:
     """The acceleration nearest to a that keeps the loops closed.
 
@@ -211,10 +211,10 @@ def project_acceleration(
     Raises:
         ValueError: ``q``, ``v`` or ``a`` has another shape or is not finite, or ``weights`` is not a metric.
     """
-    W = metric(weights, robot.tree.nv)
+    W = metric(robot, weights)
     v, a, q = velocity_of(robot, v), velocity_of(robot, a, "a"), start(robot, q, "q")
     _, K = residual_and_jacobian(robot, q)
-    space = derived(robot, TangentSpaces).at(K)
+    space = robot.cached(TangentSpaces).at(K)
     forced = -space.inverse @ acceleration_drift(robot, q, v)
     projected = forced + nearest(space.basis, W, a - forced)
     finite("the acceleration", projected)

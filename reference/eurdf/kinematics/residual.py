@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eurdf.array import Matrix, Vector
-from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.evaluate import Evaluator, State, evaluator
 from eurdf.kinematics.finite import finite
 from eurdf.kinematics.named import Named, configuration_of, velocity_of
 from eurdf.kinematics.opening import Opening
+from eurdf.pinocchio.memory import working_memory
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -37,7 +37,7 @@ def residual(robot: Robot, q: Named) -> Vector:
         NumericalOverflow: Coordinates or lengths are so large that the residual is not finite.
     """
     q = configuration_of(robot, q)
-    with borrowed(robot, _constraints) as constraints:
+    with working_memory(robot, _constraints) as constraints:
         r = np.array(constraints.residual(constraints.at(q[None]))[0])
     finite("the residual", r)
     return r
@@ -58,7 +58,7 @@ def residual_and_jacobian(robot: Robot, q: Named) -> tuple[Vector, Matrix]:
         NumericalOverflow: As in `residual`, also of the derivative.
     """
     q = configuration_of(robot, q)
-    with borrowed(robot, _constraints) as constraints:
+    with working_memory(robot, _constraints) as constraints:
         at = constraints.at(q[None])
         r, K = np.array(constraints.residual(at)[0]), constraints.jacobian(at)[0]
     finite("the residual and its derivative", r, K)
@@ -82,7 +82,7 @@ def acceleration_drift(robot: Robot, q: Vector, v: Vector) -> Vector:
         ValueError: As in `residual`, also for ``v``.
     """
     q, v = configuration_of(robot, q), velocity_of(robot, v)
-    with borrowed(robot, _constraints) as constraints:
+    with working_memory(robot, _constraints) as constraints:
         return np.asarray(constraints.drift(q[None], v[None])[0])
 
 
@@ -117,7 +117,7 @@ def closure_openings(robot: Robot, q: Named) -> tuple[Opening, ...]:
 def all_openings(robot: Robot, q: Named) -> tuple[Opening, ...]:
     """As `closure_openings`, also where they are not finite: such a constraint is open."""
     q = configuration_of(robot, q)
-    with borrowed(robot, _constraints) as constraints:
+    with working_memory(robot, _constraints) as constraints:
         return _named(robot, constraints, constraints.at(q[None]))
 
 

@@ -11,7 +11,6 @@ from pinocchio import LOCAL
 from eurdf.array import Indices, Mask, Matrix, Vector, numbers
 from eurdf.errors import DependentActuators
 from eurdf.kinematics.assembly import start
-from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.frame_jacobian import checked_reference, frame_jacobian, frames_of, in_reference
 from eurdf.kinematics.named import Named
@@ -20,6 +19,7 @@ from eurdf.kinematics.rank import numerical_rank, numerical_ranks
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces, metric, orthonormal
 from eurdf.pinocchio.arguments import checked_array
+from eurdf.pinocchio.memory import working_memory
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -29,7 +29,7 @@ _PART = 1e-6
 
 
 @overflow_refused("the derivative")
-def dq_dq_actuated(robot: Robot, q: Named, *, weights: Vector | Matrix | None = None) -> Matrix:
+def dq_dq_actuated(robot: Robot, q: Named, *, weights: Named | Matrix | None = None) -> Matrix:
     """Derivative of the closed configuration with respect to the actuated coordinates: v = D u.
 
     D solves K D = 0, Sᵀ D = 1. Of all solutions, each column of D is the one with the least norm in the metric W, so
@@ -53,9 +53,9 @@ def dq_dq_actuated(robot: Robot, q: Named, *, weights: Vector | Matrix | None = 
         ValueError: ``q`` is not a configuration, or ``weights`` is not a metric.
     """
     q = start(robot, q, "q")
-    W = None if weights is None else metric(weights, robot.tree.nv)
+    W = None if weights is None else metric(robot, weights)
     velocities = robot.actuation.idx_v
-    with borrowed(robot, Problem) as free, borrowed(robot, Problem, tuple(velocities.tolist())) as driven:
+    with working_memory(robot, Problem) as free, working_memory(robot, Problem, tuple(velocities.tolist())) as driven:
         (D,), (dependent,) = _derivatives(free, driven, W, q[None])
         if dependent:
             _refuse_dependent(robot, free, q)
@@ -65,7 +65,7 @@ def dq_dq_actuated(robot: Robot, q: Named, *, weights: Vector | Matrix | None = 
 
 @overflow_refused("the Jacobian")
 def actuated_jacobian(
-    robot: Robot, frame: str, q: Named, *, reference: Any = LOCAL, weights: Vector | Matrix | None = None
+    robot: Robot, frame: str, q: Named, *, reference: Any = LOCAL, weights: Named | Matrix | None = None
 ) -> Matrix:
     """Jacobian of a frame with respect to the actuated velocities: its twist is J D u.
 
@@ -89,10 +89,10 @@ def actuated_jacobian(
         DependentActuators: As in `dq_dq_actuated`.
         ValueError: The frame is unknown or ambiguous, ``q`` is not a configuration, or ``weights`` is not a metric.
     """
-    q, W = start(robot, q, "q"), None if weights is None else metric(weights, robot.tree.nv)
+    q, W = start(robot, q, "q"), None if weights is None else metric(robot, weights)
     velocities = tuple(robot.actuation.idx_v.tolist())
-    with borrowed(robot, Problem) as free, borrowed(robot, Problem, velocities) as driven:
-        with borrowed(robot, frames_of, frame) as frames:
+    with working_memory(robot, Problem) as free, working_memory(robot, Problem, velocities) as driven:
+        with working_memory(robot, frames_of, frame) as frames:
             (J,), (dependent,) = actuated_jacobians(
                 JacobianTask(free, driven, frames, checked_reference(reference), W), q[None]
             )
@@ -225,7 +225,7 @@ def differential_inverse_kinematics(
     if not 0.0 < singular < 1.0:
         raise ValueError(f"singular is {singular!r}; give a number between 0 and 1")
     q = start(robot, q, "q")
-    spaces = derived(robot, TangentSpaces)
+    spaces = robot.cached(TangentSpaces)
     C = _actuated_motions(robot, q, spaces)
     J = frame_jacobian(robot, q, frame, reference)
     scale = np.array((1.0 / spaces.length,) * 3 + (1.0,) * 3)

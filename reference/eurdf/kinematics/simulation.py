@@ -13,13 +13,13 @@ from eurdf.array import Matrix, Vector
 from eurdf.errors import NotClosable, SimulationDiverged, StepTooLongWarning
 from eurdf.kinematics.applied_force import AppliedForce, External
 from eurdf.kinematics.assembly import assemble, start
-from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.finite import overflow_refused
 from eurdf.kinematics.forward_solver import ForwardSolver
 from eurdf.kinematics.independence import norm
 from eurdf.kinematics.named import Named, velocity_of
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.kinematics.tolerances import DIVERGED
+from eurdf.pinocchio.memory import working_memory
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -123,8 +123,8 @@ def simulate(
     if not assembly.closes:
         raise NotClosable("the simulation cannot start from an open configuration", assembly.open, assembly.q)
     callers = np.geterr()
-    with borrowed(robot, ForwardSolver) as solver, np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        motion = _Motion(robot, solver, control, callers, AppliedForce(robot, external, dissipation), step)
+    with working_memory(robot, ForwardSolver) as solver, np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        motion = _Integration(robot, solver, control, callers, AppliedForce(robot, external, dissipation), step)
         initial = velocity_of(robot, {} if v is None else v)
         qs[0], vs[0] = motion.closed(0.0, assembly.q, initial, 0)
         kinetic[0], potential[0] = motion.energies(qs[0], vs[0])
@@ -137,7 +137,7 @@ def simulate(
     return simulation
 
 
-class _Motion:
+class _Integration:
     """The motion of a robot, step by step."""
 
     def __init__(
@@ -153,7 +153,7 @@ class _Motion:
         self._robot, self._tree, self._solver = robot, robot.tree, solver
         self._control, self._callers, self._applied, self._step = control, callers, applied, step
         self._gains = solver.gains.now()
-        self._spaces = derived(robot, TangentSpaces)
+        self._spaces = robot.cached(TangentSpaces)
 
     def advanced(self, t: float, q: Vector, v: Vector) -> tuple[Vector, Vector, float]:
         """Configuration and velocity after a step from time t, and the work done meanwhile."""

@@ -5,12 +5,14 @@ Source: `qmot`, `qfree`, `mergeq`, `vmot`, `vfree` and `mergev` of the toolbox o
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from eurdf.array import Indices, Vector
-from eurdf.kinematics.named import Named, configuration_of, velocity_of
+from eurdf.kinematics.named import Named, configuration_of, require_names, velocity_of
+from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array
 
 if TYPE_CHECKING:
@@ -33,7 +35,7 @@ def split_configuration(robot: Robot, q: Named) -> tuple[Vector, Vector]:
     return _split(configuration_of(robot, q), robot.actuation.idx_q)
 
 
-def merge_configuration(robot: Robot, q_actuated: Vector, q_free: Vector) -> Vector:
+def merge_configuration(robot: Robot, q_actuated: Named, q_free: Named) -> Vector:
     """The inverse of `split_configuration`: the configuration (nq,).
 
     Args:
@@ -44,7 +46,7 @@ def merge_configuration(robot: Robot, q_actuated: Vector, q_free: Vector) -> Vec
     Raises:
         ValueError: One of the parts has a wrong shape or is not finite.
     """
-    return _merge("q", q_actuated, q_free, robot.actuation.idx_q, robot.tree.nq)
+    return _merge(robot, "q", q_actuated, q_free, robot.actuation.idx_q)
 
 
 def split_velocity(robot: Robot, v: Named) -> tuple[Vector, Vector]:
@@ -63,7 +65,7 @@ def split_velocity(robot: Robot, v: Named) -> tuple[Vector, Vector]:
     return _split(velocity_of(robot, v), robot.actuation.idx_v)
 
 
-def merge_velocity(robot: Robot, v_actuated: Vector, v_free: Vector) -> Vector:
+def merge_velocity(robot: Robot, v_actuated: Named, v_free: Named) -> Vector:
     """The inverse of `split_velocity`: the velocity (nv,).
 
     Args:
@@ -74,16 +76,29 @@ def merge_velocity(robot: Robot, v_actuated: Vector, v_free: Vector) -> Vector:
     Raises:
         ValueError: One of the parts has a wrong shape or is not finite.
     """
-    return _merge("v", v_actuated, v_free, robot.actuation.idx_v, robot.tree.nv)
+    return _merge(robot, "v", v_actuated, v_free, robot.actuation.idx_v)
 
 
 def _split(whole: Vector, actuated: Indices) -> tuple[Vector, Vector]:
     return whole[actuated], np.delete(whole, actuated)
 
 
-def _merge(name: str, of_actuated: Vector, of_others: Vector, actuated: Indices, size: int) -> Vector:
-    whole = np.empty(size)
-    whole[actuated] = checked_array(f"{name}_actuated", of_actuated, (len(actuated),))
-    others = np.delete(np.arange(size), actuated)
-    whole[others] = checked_array(f"{name}_free", of_others, (len(others),))
+def _merge(robot: Robot, name: Literal["q", "v"], of_actuated: Named, of_others: Named, actuated: Indices) -> Vector:
+    read = configuration_of if name == "q" else velocity_of
+    whole = np.empty(robot.tree.nq if name == "q" else robot.tree.nv)
+    joints = robot.actuation.joints
+    others = tuple(joint for joint in (*_root_joint(robot), *robot.slots) if joint not in joints)
+    parts = (
+        (f"{name}_actuated", of_actuated, joints, actuated),
+        (f"{name}_free", of_others, others, np.delete(np.arange(len(whole)), actuated)),
+    )
+    for argument, given, names, indices in parts:
+        if isinstance(given, Mapping):
+            require_names(given, names, argument)
+            given = read(robot, given, argument)[indices]
+        whole[indices] = checked_array(argument, given, (len(indices),))
     return whole
+
+
+def _root_joint(robot: Robot) -> tuple[str, ...]:
+    return (ROOT_JOINT,) if robot.mechanism.root == "floating" else ()

@@ -12,7 +12,6 @@ import numpy as np
 
 from eurdf.array import Indices, Matrix, Vector
 from eurdf.kinematics.assembly import close
-from eurdf.kinematics.derived import derived
 from eurdf.kinematics.named import Named, configuration_of
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import numerical_rank
@@ -85,7 +84,7 @@ def joints_at_rest(robot: Robot, given: Indices) -> Resting | None:
     None if there are none, if a joint has springs on some of its coordinates only, or if two springs act on one.
     """
     held = set(given.tolist())
-    free = [each for each in derived(robot, _sprung) or () if each[2][0] not in held]
+    free = [each for each in robot.cached(_sprung) or () if each[2][0] not in held]
     if not free:
         return None
     names, coordinates, velocities, values = zip(*free, strict=True)

@@ -11,7 +11,7 @@ import numpy as np
 from eurdf.array import Matrix, Vector
 from eurdf.errors import NotClosable
 from eurdf.kinematics.assembly import assemble
-from eurdf.kinematics.branch import Branch, Point
+from eurdf.kinematics.branch import Branch, BranchPoint
 from eurdf.kinematics.named import Named
 from eurdf.kinematics.path import Elements, follow
 from eurdf.kinematics.position_limit import PositionLimits, chosen_limits
@@ -131,7 +131,7 @@ def sweep(
     return Sweep(actuator, drive.bounds, lower, upper, periodic)
 
 
-class _Drive(NamedTuple):
+class _MovedActuator(NamedTuple):
     """The actuator that is moved.
 
     Attributes:
@@ -147,7 +147,7 @@ class _Drive(NamedTuple):
     ends: tuple[End, End]
 
 
-def _drive(robot: Robot, actuator: str, q: Vector, limits: PositionLimits | None) -> _Drive:
+def _drive(robot: Robot, actuator: str, q: Vector, limits: PositionLimits | None) -> _MovedActuator:
     if actuator not in robot.actuation.joints:
         raise ValueError(f"'{actuator}' is not an actuated joint of this robot")
     velocities = robot.tree.velocities_of(actuator)
@@ -165,7 +165,7 @@ def _drive(robot: Robot, actuator: str, q: Vector, limits: PositionLimits | None
         lower, ends[0] = float(limits.lower[velocity]), "limit"
     if limits is not None and math.isfinite(limits.upper[velocity]):
         upper, ends[1] = float(limits.upper[velocity]), "limit"
-    return _Drive(velocity, at, (lower, upper), (ends[0], ends[1]))
+    return _MovedActuator(velocity, at, (lower, upper), (ends[0], ends[1]))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -180,7 +180,7 @@ class _Trail:
         joint: The passive joint that ended it, else None.
     """
 
-    points: list[Point]
+    points: list[BranchPoint]
     configurations: list[Vector]
     moved: float
     end: End | None
@@ -191,7 +191,7 @@ class _Trail:
         """The largest of the smallest singular values of K_p on it."""
         return max(point.smallest for point in self.points)
 
-    def path(self, drive: _Drive, end: End, largest: float) -> MotionPath:
+    def path(self, drive: _MovedActuator, end: End, largest: float) -> MotionPath:
         """The public form of the path; ``end`` is what ends it at its bound, ``largest`` is that of both paths."""
         smallest = min(point.smallest for point in self.points)
         return MotionPath(
@@ -205,7 +205,7 @@ class _Trail:
         )
 
 
-def _follow(branch: Branch, start: Point, reach: float, steps: int, largest: float) -> _Trail:
+def _follow(branch: Branch, start: BranchPoint, reach: float, steps: int, largest: float) -> _Trail:
     """Move the actuator by at most ``reach`` (rad or m); ``largest`` is that of the points met before."""
     points, configurations = [start], [start.q]
     end: End | None = None

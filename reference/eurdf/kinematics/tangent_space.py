@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -12,6 +12,7 @@ import numpy as np
 from eurdf.array import Indices, Matrix, Vector
 from eurdf.kinematics.finite import finite
 from eurdf.kinematics.loop import LoopGroup, independent_groups
+from eurdf.kinematics.named import Named, velocity_of
 from eurdf.kinematics.rank import are_finite, inverses, least_solution, numerical_ranks
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
 from eurdf.kinematics.tolerances import CERTAIN
@@ -212,19 +213,22 @@ def _decomposed(A: Matrix) -> _Decomposed:
     return _Decomposed(right, (right[:, :, :k] * reciprocal[:, None]) @ np.swapaxes(left[:, :, :k], 1, 2), rank)
 
 
-def metric(weights: Vector | Matrix | None, nv: int) -> Matrix:
+def metric(robot: Robot, weights: Named | Matrix | None) -> Matrix:
     """The matrix W (nv, nv) of the norm |v|² = vᵀ W v.
 
     Args:
-        weights: W itself, such as the mass matrix; its diagonal (nv,); or None for the identity, in which
-            1 rad/s and 1 m/s have the same norm.
-        nv: Number of velocities.
+        robot: The robot.
+        weights: W itself, such as the mass matrix; its diagonal (nv,), also by joint, where one that is not named has
+            the weight 1; or None for the identity, in which 1 rad/s and 1 m/s have the same norm.
 
     Raises:
         ValueError: The weights have a wrong shape, or W is not symmetric and positive definite.
     """
+    nv = robot.tree.nv
     if weights is None:
         return np.eye(nv)
+    if isinstance(weights, Mapping):
+        weights = velocity_of(robot, weights, "weights", others=1.0)
     given = checked_array("weights", weights, (nv,), (nv, nv))
     W = np.diag(given) if given.ndim == 1 else given
     if np.abs(W - W.T).max(initial=0.0) > 1e-9 * np.abs(W).max(initial=0.0):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from eurdf.closures import REGISTRY
-from eurdf.format.closure_model import Closure as ClosureEntry
+from eurdf.format.closure_model import ClosureEntry
 from eurdf.linking.frame_names import FrameNames
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import RIGID, Closure, Compliance

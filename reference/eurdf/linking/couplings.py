@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from eurdf.diagnostics import Hint
-from eurdf.format.closure_model import Coupling as CouplingEntry
+from eurdf.format.closure_model import CouplingEntry
 from eurdf.linking.joints import Joints
 from eurdf.mechanism.constraint import Coupling
 from eurdf.mechanism.joint import drivers

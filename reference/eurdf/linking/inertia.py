@@ -12,7 +12,7 @@ from eurdf.format.urdf.data import Urdf, UrdfLink
 from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.mechanism import Mechanism, root_joint
-from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, cross
+from eurdf.mechanism.pose import AXES, IDENTITY, Pose, Vector3, cross
 from eurdf.mechanism.spanning_tree import rigid_roots
 
 #: A moment may be negative, and a sum of two below the third, by this part of the largest (rounding in files).
@@ -159,7 +159,7 @@ def _positive(members: Sequence[Member], bound: float) -> bool:
     total = np.zeros((3, 3))
     for (pose, inertia), moments in zip(members, _matrices([inertia for _, inertia in members]), strict=True):
         at = pose * inertia.pose
-        R = np.array([at.rotate(axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))]).T
+        R = np.array([at.rotate(axis) for axis in AXES]).T
         c = np.array(at.xyz)
         total += R @ moments @ R.T + inertia.mass * (c @ c * np.eye(3) - np.outer(c, c))
     return bool(np.linalg.eigvalsh(total)[0] > bound)

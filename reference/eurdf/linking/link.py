@@ -48,7 +48,7 @@ def link(
     EU-ONE-009: with a description of version 1, no joint mimics another.
 
     Args:
-        urdf: The URDF, sound by itself.
+        urdf: The URDF, valid by itself.
         description: The description; None for a bare URDF.
         diagnostics: Gets what is found.
         root: In place of the root that the description states.

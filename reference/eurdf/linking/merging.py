@@ -40,7 +40,7 @@ class NotMergeable(Exception):  # noqa: N818 - a finding, which one of the two c
         self.message = message
 
 
-class Chain(NamedTuple):
+class BallChain(NamedTuple):
     """Three joints that can be merged, from the root outwards.
 
     Attributes:
@@ -58,7 +58,7 @@ class Chain(NamedTuple):
 
 def check_chain(
     chain: tuple[Joint, Joint, Joint], urdf: Urdf, closure_links: Collection[str], *, rotary: Collection[str] = ROTARY
-) -> Chain:
+) -> BallChain:
     """EU-JNT-011 to -014: the joints follow one another, nothing else hangs or weighs between them, their axes meet.
 
     `NotMergeable` says which of these does not hold.
@@ -83,10 +83,10 @@ def check_chain(
         if link.name in closure_links:
             raise NotMergeable("merge-closure-frame", f"link '{link.name}' between them has a frame of a closure")
     zero, lines = _lines(chain)
-    return Chain(chain, zero, tuple(along for _, along in lines), _meeting_point(lines))
+    return BallChain(chain, zero, tuple(along for _, along in lines), _meeting_point(lines))
 
 
-def merge(chain: Chain, name: str) -> tuple[Joint, Joint, Joint]:
+def merge(chain: BallChain, name: str) -> tuple[Joint, Joint, Joint]:
     """EU-JNT-022 to -024, and -028: the first two joints, fixed at their zero, and the ball that the three become.
 
     The links in between stay where they are at zero, fixed to the body before. The spherical joint turns about the
@@ -116,7 +116,7 @@ def merge(chain: Chain, name: str) -> tuple[Joint, Joint, Joint]:
 
 def find_chains(
     urdf: Urdf, joints: Mapping[str, Joint], excluded: Collection[str], closure_links: Collection[str]
-) -> list[Chain]:
+) -> list[BallChain]:
     """EU-ONE-007: the chains that version 1 merges by itself, greedily from the root outwards."""
     revolute = (JointType.REVOLUTE,)
     taken: set[str] = set()
@@ -175,7 +175,7 @@ def _meeting_point(lines: list[tuple[Vector3, Vector3]]) -> Vector3:
     return x, y, z
 
 
-def _nearest_axes(chain: Chain) -> tuple[Joint, ...]:
+def _nearest_axes(chain: BallChain) -> tuple[Joint, ...]:
     """For x, y, z of the last joint's frame at zero, the joint whose axis is nearest; each joint once."""
     back = replace(chain.zero, xyz=ORIGIN).inverse()
     near = [tuple(map(abs, back.rotate(axis))) for axis in chain.directions]

@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 from eurdf.diagnostics import Diagnostics
 from eurdf.format.conventions import HINT, LARGEST, is_too_small, too_large, too_small
-from eurdf.format.joint_model import Joint
+from eurdf.format.joint_model import JointEntry
 from eurdf.format.urdf.data import Urdf
 from eurdf.linking.joints import report_of_joints
 from eurdf.mechanism.joint import Mimic, drivers
@@ -15,7 +15,7 @@ from eurdf.mechanism.mechanism import Mechanism
 from eurdf.reading.yaml_reader import YamlReporter
 
 
-def freed_joints(entries: Iterable[Joint], urdf: Urdf, reporter: YamlReporter) -> set[str]:
+def freed_joints(entries: Iterable[JointEntry], urdf: Urdf, reporter: YamlReporter) -> set[str]:
     """EU-JNT-033, EU-JNT-034: the joints whose ``<mimic>`` has no effect, because their entry states ``mimic: false``.
 
     An entry that merges joints frees those of them that mimic.

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from eurdf.diagnostics import Hint
 from eurdf.format.closure_model import AXES
 from eurdf.format.conventions import HINT, is_too_small, too_small
-from eurdf.format.joint_model import Joint as JointEntry
+from eurdf.format.joint_model import JointEntry
 from eurdf.linking.joints import Joints
 from eurdf.linking.merging import PARALLEL, NotMergeable, check_chain, find_chains, merge
 from eurdf.mechanism.body import Body

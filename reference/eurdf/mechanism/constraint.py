@@ -49,7 +49,7 @@ class Constraint:
         return self
 
 
-class Key(NamedTuple):
+class ClosureKey(NamedTuple):
     """What a file states of a closure in one of its keys, beside the frames.
 
     Attributes:
@@ -82,12 +82,12 @@ class Form(NamedTuple):
     name: str
     title: str
     text: str
-    keys: Mapping[str, Key]
+    keys: Mapping[str, ClosureKey]
 
 
 def key(title: str, text: str, *, example: Any, least: float | None = None, **options: Any) -> Any:
     """A field of a kind that a file states in a key; ``options`` are those of `dataclasses.field`."""
-    return field(metadata={"key": Key(title, text, example, least=least)}, **options)
+    return field(metadata={"key": ClosureKey(title, text, example, least=least)}, **options)
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from functools import cache
 from typing import NamedTuple
 
@@ -17,7 +17,7 @@ LIMIT_TOLERANCE = 1e-9
 _NO_RANGE = (-math.inf, math.inf)
 
 
-class Motion(NamedTuple):
+class ElementaryMotion(NamedTuple):
     """What a coordinate of a joint does, or the four of a quaternion.
 
     Attributes:
@@ -31,7 +31,7 @@ class Motion(NamedTuple):
     advance: float
 
 
-_BALL = Motion(None, turns=True, advance=0.0)
+_BALL = ElementaryMotion(None, turns=True, advance=0.0)
 
 
 class Mimic(NamedTuple):
@@ -143,13 +143,31 @@ class Joint:
             self.mimic,
         )
 
+    @staticmethod
+    def floating(name: str, child: str) -> Joint:
+        """A joint by which a body moves freely in the world."""
+        return Joint(name, JointType.FLOATING, "", child)
+
+    def universal(self, second: Joint, name: str) -> Joint:
+        """The universal joint that turns as this joint, then as a second one that is fixed to its child."""
+        both, names = (self.properties, second.properties), [each.name for each in fields(JointProperties)]
+        return replace(
+            second,
+            name=name,
+            type=JointType.UNIVERSAL,
+            parent=self.parent,
+            placement=self.placement,
+            axes=self.axes + second.axes,
+            properties=JointProperties(*(sum((getattr(each, name) for each in both), ()) for name in names)),
+        )
+
     def fixed(self, placement: Pose | None = None) -> Joint:
         """The joint locked at its zero (EU-JNT-019), or with its child at a pose in the parent."""
         at = (self.placement, self.offset) if placement is None else (placement, IDENTITY)
         return Joint(self.name, JointType.FIXED, self.parent, self.child, *at)
 
     @property
-    def motions(self) -> tuple[Motion, ...]:
+    def motions(self) -> tuple[ElementaryMotion, ...]:
         """EU-JNT-015 to -018, EU-JNT-025: the steps of its type, with its axes and its pitch."""
         found = []
         for kind, at in self.type.steps:
@@ -157,7 +175,9 @@ class Joint:
                 found.append(_BALL)
                 continue
             lead = self.pitch / (2.0 * math.pi) if kind == "screw" else float(kind == "slide")
-            found.append(Motion(direction(self.axes[at]) if isinstance(at, int) else at, kind != "slide", lead))
+            found.append(
+                ElementaryMotion(direction(self.axes[at]) if isinstance(at, int) else at, kind != "slide", lead)
+            )
         return tuple(found)
 
     def transform(self, coordinates: Sequence[float]) -> Pose:

@@ -120,6 +120,11 @@ class JointType(str, Enum):
         return self.is_axial and self.limited
 
     @property
+    def is_ball(self) -> bool:
+        """Whether it is the rotations of a ball, and nothing else."""
+        return self.steps == (_BALL,)
+
+    @property
     def slides(self) -> bool:
         """Whether it has a slide of its own; that of a screw comes with its turn."""
         return any(step.kind == "slide" for step in self.steps)

@@ -16,7 +16,6 @@ from typing import Any, Literal, NamedTuple
 from eurdf.mechanism.body import Body, Frame
 from eurdf.mechanism.constraint import Closure, Constraint, Coupling
 from eurdf.mechanism.joint import Joint, Mimic, drivers
-from eurdf.mechanism.joint_types import JointType
 
 Root = Literal["fixed", "floating"]
 
@@ -26,7 +25,7 @@ ROOT_JOINT = "root_joint"
 
 def root_joint(root: str) -> Joint:
     """The joint by which a floating root moves in the world."""
-    return Joint(ROOT_JOINT, JointType.FLOATING, "", root)
+    return Joint.floating(ROOT_JOINT, root)
 
 
 def _read_only(content: dict[Any, Any]) -> MappingProxyType[Any, Any]:

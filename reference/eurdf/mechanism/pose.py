@@ -8,6 +8,11 @@ from dataclasses import dataclass, field
 Vector3 = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 
+ORIGIN: Vector3 = (0.0, 0.0, 0.0)
+#: Unit vectors along the axes.
+X, Y, Z = AXES = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+IDENTITY_QUATERNION: Quaternion = (0.0, 0.0, 0.0, 1.0)
+
 
 @dataclass(frozen=True, slots=True)
 class Pose:
@@ -20,8 +25,8 @@ class Pose:
             same quaternion to the last bit; None for other quaternions.
     """
 
-    xyz: Vector3 = (0.0, 0.0, 0.0)
-    quaternion: Quaternion = (0.0, 0.0, 0.0, 1.0)
+    xyz: Vector3 = ORIGIN
+    quaternion: Quaternion = IDENTITY_QUATERNION
     rpy: Vector3 | None = field(default=None, compare=False, repr=False)
 
     def __reduce__(self) -> str | tuple[type[Pose], tuple[Vector3, Quaternion, Vector3 | None]]:
@@ -97,11 +102,6 @@ class Pose:
 
 
 IDENTITY = Pose()
-
-ORIGIN: Vector3 = (0.0, 0.0, 0.0)
-X: Vector3 = (1.0, 0.0, 0.0)
-Y: Vector3 = (0.0, 1.0, 0.0)
-Z: Vector3 = (0.0, 0.0, 1.0)
 
 
 def squarable(axis: Vector3) -> Vector3:

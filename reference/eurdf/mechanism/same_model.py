@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import TypeVar
 
 from eurdf.mechanism.body import Anchor, Body, Frame
 from eurdf.mechanism.constraint import Constraint
-from eurdf.mechanism.joint import Joint, JointProperties
-from eurdf.mechanism.joint_types import JointType
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.mechanism import Mechanism
 
 _Named = TypeVar("_Named", Body, Joint, Frame, Constraint)
@@ -56,7 +55,7 @@ def with_universal_joints(mechanism: Mechanism) -> Mechanism:
             continue
         if joint.parent in virtual:
             first = carried[joint.parent]
-            universal = _joined(first, joint)
+            universal = first.universal(joint, first.name[: -len("_X")])
             halves[first.name] = halves[joint.name] = universal.name
             joints.append(universal)
         else:
@@ -88,23 +87,6 @@ def _other(name: str, halves: Mapping[str, str], mechanism: Mechanism) -> str | 
     """The first half of a universal joint, given the second."""
     first, second = (joint.name for joint in mechanism.joints if halves.get(joint.name) == halves[name])
     return first if name == second else None
-
-
-def _joined(first: Joint, second: Joint) -> Joint:
-    return replace(
-        second,
-        name=first.name[: -len("_X")],
-        type=JointType.UNIVERSAL,
-        parent=first.parent,
-        placement=first.placement,
-        axes=first.axes + second.axes,
-        properties=JointProperties(
-            *(
-                getattr(first.properties, each.name) + getattr(second.properties, each.name)
-                for each in fields(JointProperties)
-            )
-        ),
-    )
 
 
 def _by_name(items: Iterable[_Named]) -> dict[str, _Named]:

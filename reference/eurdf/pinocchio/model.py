@@ -50,7 +50,7 @@ def build_model(mechanism: Mechanism) -> pin.Model:
     (EU-INR-005), and armatures are part of the mass matrix (EU-INR-006).
 
     Args:
-        mechanism: A sound mechanism.
+        mechanism: A valid mechanism.
 
     Returns:
         The model. Frames that the description adds are OP_FRAME; the frame of a joint that was split in two is

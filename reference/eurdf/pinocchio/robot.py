@@ -18,13 +18,14 @@ from eurdf.pinocchio.actuation import Actuation, build_actuation
 from eurdf.pinocchio.configuration import Slot, configuration_vector, joint_coordinates, slots
 from eurdf.pinocchio.constraint import build_constraint_models
 from eurdf.pinocchio.geometry import Geometry, Resolve, build_geometry
+from eurdf.pinocchio.memory import Cached
 from eurdf.pinocchio.meshes import Mesh
 from eurdf.pinocchio.model import build_model
 from eurdf.pinocchio.tree import Tree, build_tree
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Robot:
+class Robot(Cached):
     """A robot with closed kinematic chains, in Pinocchio's terms.
 
     It unpacks as ``model, constraint_models, actuation, visual_model, collision_model = robot``, which raises
@@ -156,11 +157,13 @@ class Robot:
         """
         return configuration_vector(self.mechanism, self.model, positions, self.slots)
 
-    def joint_positions(self, q: Vector, *, mimic: bool = False) -> dict[str, tuple[float, ...]]:
+    def joint_positions(
+        self, q: Vector | Mapping[str, float | Sequence[float]], *, mimic: bool = False
+    ) -> dict[str, tuple[float, ...]]:
         """The positions of the joints at a configuration, as a file states them: the inverse of `configuration`.
 
         Args:
-            q: Configuration, of shape (nq,).
+            q: Configuration (nq,), or positions by name as `configuration` takes them.
             mimic: Whether to return also those of joints that mimic another, which follow from that one's.
 
         Returns:
@@ -173,6 +176,7 @@ class Robot:
         Raises:
             ValueError: q does not have the shape (nq,), or is not finite.
         """
+        q = self.configuration(q) if isinstance(q, Mapping) else q
         every = joint_coordinates(self.mechanism, self.model, q)
         own = (name for name in every if mimic or name in self.slots or name == ROOT_JOINT)
         return {name: every[name] for name in own}
@@ -215,7 +219,7 @@ def build_robot(
     """Build the robot of a mechanism.
 
     Args:
-        mechanism: A sound mechanism.
+        mechanism: A valid mechanism.
         geometry: Whether to build the visual and collision geometry.
         resolve: Path of the file that a URI of the URDF means; needed for geometry with meshes.
         meshes: The meshes by path, where they were read already.

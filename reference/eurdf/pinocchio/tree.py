@@ -18,6 +18,7 @@ from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.pinocchio.arguments import checked_data
 from eurdf.pinocchio.configuration import Slot
 from eurdf.pinocchio.frames import body_frame_ids, frame_index, placement_of
+from eurdf.pinocchio.memory import Cached
 from eurdf.pinocchio.springs import NO_SPRINGS, Springs, build_springs
 from eurdf.pinocchio.tree_dynamics import MOST_VELOCITIES_WITH_DATA, TreeDynamics, TreeRecursion
 from eurdf.pinocchio.tree_few import Site
@@ -45,7 +46,7 @@ class MovingJoint(NamedTuple):
     idx_v: tuple[int, ...]
 
 
-class Tree:
+class Tree(Cached):
     """A spanning tree.
 
     Its joints are those of the model, numbered from the root, number 0, to the leaves: a parent has a lower number.

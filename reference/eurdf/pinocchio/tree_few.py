@@ -77,12 +77,10 @@ class FewPoses(RelativePoses):
         return np.array([pin.Jlog6(aMb.inverse()) for aMb in self._each()]).reshape(*self._shape, 6, 6)
 
     def turn_from(self, rotation: Matrix) -> Matrix:
-        """See `RelativePoses.turn_from`."""
         turns = rotation.swapaxes(2, 3) @ self.rotation
         return np.array([pin.log3(R) for R in turns.reshape(-1, 3, 3)]).reshape(*self._shape, 3)
 
     def turn_by_omega(self, turn: Matrix) -> Matrix:
-        """See `RelativePoses.turn_by_omega`."""
         found = np.array([pin.Jlog3(pin.exp3(each)) for each in turn.reshape(-1, 3)])
         return found.reshape(*self._shape, 3, 3) @ self.rotation.swapaxes(2, 3)
 

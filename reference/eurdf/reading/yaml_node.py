@@ -13,7 +13,7 @@ Pointer = tuple[str | int, ...]
 Span = tuple[int, int | None]
 
 
-class Collection:
+class YamlCollection:
     """A mapping or a list.
 
     Attributes:
@@ -59,13 +59,13 @@ class Alias:
 
     __slots__ = ("span", "target")
 
-    def __init__(self, span: Span, target: Collection) -> None:
+    def __init__(self, span: Span, target: YamlCollection) -> None:
         self.span = span
         self.target = target
 
 
 #: For a scalar, or an alias of one, only its place is kept.
-Node = Span | Collection | Alias
+Node = Span | YamlCollection | Alias
 
 
 def json_pointer(steps: Sequence[str | int]) -> str:

@@ -20,7 +20,7 @@ from eurdf.diagnostics import Diagnostics, FileError, Hint, Place
 from eurdf.reading.core_schema import TAG_PREFIX, resolve, resolve_tagged
 from eurdf.reading.other_formats import of_text, other_format
 from eurdf.reading.source import FILE_LIMIT, Source, short, too_large
-from eurdf.reading.yaml_node import Alias, Collection, Node, Pointer, Span, json_pointer
+from eurdf.reading.yaml_node import Alias, Node, Pointer, Span, YamlCollection, json_pointer
 from eurdf.reading.yaml_syntax import stray_mark, syntax_error, unusual_name
 
 #: Maximum depth of nested mappings and lists, aliases expanded.
@@ -51,7 +51,7 @@ class YamlDocument:
             value with several aliases is one object in several places.
     """
 
-    def __init__(self, source: Source, root: Collection) -> None:
+    def __init__(self, source: Source, root: YamlCollection) -> None:
         self.source, self.root = source, root
         self.data: dict[str, Any] = root.data
 
@@ -69,7 +69,7 @@ class YamlDocument:
         key_span: Span | None = None
         for step in pointer:
             collection = node.target if isinstance(node, Alias) else node
-            if not isinstance(collection, Collection) or step not in collection.nodes:
+            if not isinstance(collection, YamlCollection) or step not in collection.nodes:
                 break
             node, key_span = collection.nodes[step], collection.keys.get(step)
         if key and key_span is not None:
@@ -114,7 +114,7 @@ def plain_data(text: str) -> dict[str, Any] | None:
         return None
 
 
-def _read_nodes(source: Source) -> Collection:
+def _read_nodes(source: Source) -> YamlCollection:
     """The top level of a file, or its first error."""
     if len(source.data) > FILE_LIMIT:
         raise too_large(source.file, f"{FILE_LIMIT:,} bytes")
@@ -163,14 +163,14 @@ class _NodeReader:
         self._source, self._text = source, source.text
         self._next_event = next_event
         self._original = original
-        self._anchors: dict[str, tuple[Any, Span | Collection]] = {}
+        self._anchors: dict[str, tuple[Any, Span | YamlCollection]] = {}
         self._count = 0  # of nodes, of which an alias is one
         self._copies = 0  # of nodes that aliases refer to
         self._expansion = 0  # by how many nodes that is more than the aliases themselves
-        self._file = Collection([], _span(next_event()), 0)  # whose one item is the top level
+        self._file = YamlCollection([], _span(next_event()), 0)  # whose one item is the top level
         self._open = [self._file]  # from the outermost to the innermost
 
-    def read(self) -> Collection:
+    def read(self) -> YamlCollection:
         """The top level, a mapping."""
         document = self._next_event()
         if type(document) is StreamEndEvent:
@@ -196,7 +196,7 @@ class _NodeReader:
                 self._end(event)
         self._expect_end()
         top = self._file.nodes[0]
-        if isinstance(top, Collection) and top.is_mapping:
+        if isinstance(top, YamlCollection) and top.is_mapping:
             return top
         value = top_level[0]
         message = "the document is empty" if value is None else f"the top level is {_kind(value)}"
@@ -246,7 +246,7 @@ class _NodeReader:
             raise self._error("yaml-too-deep", message, event)
         if event.tag not in (None, "!", TAG_PREFIX + tag):
             raise self._tag_error(event, _kind(data))
-        collection = Collection(data, (start, end if event.flow_style else None), self._count + self._expansion)
+        collection = YamlCollection(data, (start, end if event.flow_style else None), self._count + self._expansion)
         self._next_node()
         if event.anchor is not None:
             self._check_name(event, "&")
@@ -272,7 +272,7 @@ class _NodeReader:
         if name not in self._anchors:
             raise self._error("yaml-alias", f"the alias '*{shown}' has no anchor '&{shown}' before it", event)
         value, target = self._anchors[name]
-        collection = target if isinstance(target, Collection) else None
+        collection = target if isinstance(target, YamlCollection) else None
         if collection is not None and collection.is_open:
             raise self._error("yaml-alias", f"the alias '*{shown}' refers to a node that contains it", event)
         self._next_node()

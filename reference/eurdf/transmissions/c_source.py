@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 from eurdf.array import Vector
 from eurdf.closures import MODULES
 from eurdf.kinematics.assembly import SPREADS
-from eurdf.kinematics.derived import derived
 from eurdf.kinematics.loop import find_loops
 from eurdf.kinematics.scale import row_scale
 from eurdf.kinematics.tangent_space import TangentSpaces
@@ -121,7 +120,7 @@ class _Tables:
         needed = {name if mimic is None else mimic.joint for name, mimic in own.items()} | alone
         first: dict[str, tuple[int, int]] = {}
         values = robot.joint_positions(q)
-        scale = derived(robot, TangentSpaces).scale
+        scale = robot.cached(TangentSpaces).scale
         for name, slot in robot.slots.items():
             if name not in needed:
                 continue
@@ -241,7 +240,7 @@ def _file(name: str) -> str:
 
 def _source(tables: _Tables, name: str, drives: Sequence[Drive], steps: int, substeps: int) -> str:
     robot = tables.robot
-    scale = row_scale(robot, derived(robot, TangentSpaces).length)
+    scale = row_scale(robot, robot.cached(TangentSpaces).length)
     rows = [loop.rows for loop in find_loops(robot)]
     path: list[str] = []
     constraints: list[str] = []

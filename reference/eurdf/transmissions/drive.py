@@ -10,7 +10,6 @@ import numpy as np
 from eurdf.array import Indices, Matrix, Vector
 from eurdf.errors import NotClosable, NoTransmission, TooFar, shown
 from eurdf.kinematics.assembly import assemble, closed_start, start
-from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.evaluate import evaluator
 from eurdf.kinematics.loop import independent_groups, merged, moving_velocities
 from eurdf.kinematics.named import Named
@@ -27,7 +26,7 @@ from eurdf.kinematics.tolerances import (
     MOST_CORRECTION,
     MOVES,
 )
-from eurdf.pinocchio.arguments import checked_array
+from eurdf.pinocchio.memory import working_memory
 from eurdf.transmissions.selection import Selection, listed
 from eurdf.transmissions.transmission import Transmission, at_one
 
@@ -72,7 +71,7 @@ class Drive:
         robot = self._robot = at.robot
         self._tree = robot.tree
         self._held = tuple(dict.fromkeys(at.held))
-        spaces = derived(robot, TangentSpaces)
+        spaces = robot.cached(TangentSpaces)
         self.closures: tuple[int, ...] = ()
         self.own: Indices = np.zeros(0, np.intp)
         self._evaluator: Any = None
@@ -116,7 +115,6 @@ class Drive:
             NoTransmission: The given joints do not determine the others there.
             ValueError: ``positions`` does not fit.
         """
-        positions = checked_array("positions", positions, (len(self.given),))
         there, D = self._followed(q, positions)
         if D is None:
             D, _ = self._decomposed(there)
@@ -256,5 +254,5 @@ def closed_pose(robot: Robot, q: Named | None) -> Vector:
         ValueError: It is not a configuration.
     """
     first = start(robot, q, "q")
-    with borrowed(robot, Problem) as problem:
+    with working_memory(robot, Problem) as problem:
         return closed_start(problem, first, _AT_FIRST, "q")

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from eurdf.array import Matrix, Vector, numbers
 from eurdf.kinematics.assembly import start
@@ -72,9 +71,9 @@ def impedance_map(
     robot: Robot,
     joints: str | Iterable[str],
     q: Named | None,
-    stiffness: ArrayLike,
+    stiffness: Named | Matrix,
     *,
-    damping: ArrayLike | None = None,
+    damping: Named | Matrix | None = None,
     tau: Named | None = None,
     side: Side = "joints",
     motors: str | Iterable[str] | None = None,
@@ -93,7 +92,7 @@ def impedance_map(
         robot: The robot.
         joints: As in `transmission`.
         q: A closed configuration (nq,); None for the `assembled` configuration, or the neutral one if there is none.
-        stiffness: The given stiffness: its diagonal (n,), or a symmetric matrix (n, n).
+        stiffness: The given stiffness: its diagonal (n,), also by name, or a symmetric matrix (n, n).
         damping: The given damping, likewise; zero by default.
         tau: The torques (n,) at the configuration, N·m or N; zero by default. At the joints, the motors balance them.
         side: Whether stiffness, damping and ``tau`` are those of the joints or those of the motors.
@@ -108,9 +107,9 @@ def impedance_map(
         raise ValueError(f"side is {side!r}; use 'joints' or 'motors'")
     chosen, by = sides(robot, joints, motors)
     at = at_one(robot, chosen, start(robot, q, "q"), by)
-    n = len(at.joints if side == "joints" else at.motors)
-    K, C = _symmetric("stiffness", stiffness, n), _symmetric("damping", np.zeros(n) if damping is None else damping, n)
-    torque = np.zeros(n) if tau is None else vector_of(tau, at.joints if side == "joints" else at.motors, "tau")
+    names = at.joints if side == "joints" else at.motors
+    K, C = _symmetric("stiffness", stiffness, names), _symmetric("damping", {} if damping is None else damping, names)
+    torque = vector_of({} if tau is None else tau, names, "tau")
     G, B = require(at, "G", "B_J")
     tau_m = at.motor_torque(torque) if side == "joints" else torque
     geometric = -np.tensordot(tau_m, at.hessian, axes=1)
@@ -125,8 +124,9 @@ def impedance_map(
     return Impedance(at.joints, at.motors, K_J, C_J, K_m, C_m, tau_m, geometric, stiff, damped, *made)
 
 
-def _symmetric(name: str, given: ArrayLike, n: int) -> Matrix:
-    values = checked_array(name, given, (n,), (n, n))
+def _symmetric(name: str, given: Named | Matrix, names: Sequence[str]) -> Matrix:
+    n = len(names)
+    values = checked_array(name, vector_of(given, names, name) if isinstance(given, Mapping) else given, (n,), (n, n))
     matrix = np.diag(values) if values.ndim == 1 else values
     if np.abs(matrix - matrix.T).max(initial=0.0) > 1e-9 * np.abs(matrix).max(initial=0.0):
         raise ValueError(f"{name} is not a symmetric matrix")

@@ -10,7 +10,6 @@ import numpy as np
 
 from eurdf.array import Matrix, Vector, numbers
 from eurdf.errors import NoTransmission
-from eurdf.kinematics.derived import derived
 from eurdf.kinematics.dynamics import mass_matrix
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.named import Named
@@ -106,7 +105,7 @@ def reflected_inertia(
     """
     chosen, by = sides(robot, joints, motors)
     rotors = _rotors(robot, by, armature)
-    bodies, linkage = derived(robot, _linkage, chosen.joints, by.joints)
+    bodies, linkage = robot.cached(_linkage, chosen.joints, by.joints)
     each, single = configurations(robot, q)
     rows = [_terms(robot, linkage, at_one(robot, chosen, own, by), rotors) for own in each]
     terms = np.array(rows).reshape(-1, 4, len(chosen), len(chosen))

@@ -9,13 +9,11 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from eurdf.array import Indices, Matrix, Vector, numbers
 from eurdf.errors import NoTransmission
-from eurdf.kinematics.named import Named
+from eurdf.kinematics.named import Named, vector_of
 from eurdf.loading import of_any_robot
-from eurdf.pinocchio.arguments import checked_array
 from eurdf.transmissions.motors import finite_ranges, sides
 from eurdf.transmissions.polytope import Polytope, box_along, image_of_box, largest_box, preimage_of_box
 from eurdf.transmissions.reachable_set import Workspace
@@ -126,8 +124,8 @@ def serial_limits(
     q: Named | Matrix | Workspace | None = None,
     *,
     motors: str | Iterable[str] | None = None,
-    torque_ratio: ArrayLike | None = None,
-    velocity_ratio: ArrayLike | None = None,
+    torque_ratio: Named | None = None,
+    velocity_ratio: Named | None = None,
 ) -> SerialLimits | CommonLimits:
     """The torques and velocities of joints that the limits of their motors allow.
 
@@ -168,7 +166,7 @@ def serial_limits(
 
 
 @dataclass(frozen=True, eq=False)
-class _Task:
+class _LimitsTask:
     """What is the same at all configurations: names, the ranges of the motors, and the ratios of the boxes."""
 
     joints: tuple[str, ...]
@@ -197,16 +195,18 @@ def _task(
     robot: Robot,
     at: Transmission | Transmissions,
     motors: Selection,
-    torque_ratio: ArrayLike | None,
-    velocity_ratio: ArrayLike | None,
-) -> _Task:
-    n = len(at.joints)
-    ratios = _checked_ratio("torque_ratio", torque_ratio, n), _checked_ratio("velocity_ratio", velocity_ratio, n)
+    torque_ratio: Named | None,
+    velocity_ratio: Named | None,
+) -> _LimitsTask:
+    given = {"torque_ratio": torque_ratio, "velocity_ratio": velocity_ratio}
+    ratios = [_checked_ratio(name, ratio, at.joints) for name, ratio in given.items()]
     _complete(at, "q") if isinstance(at, Transmission) else _all_complete(at)
-    return _Task(at.joints, at.motors, *finite_ranges(robot, motors.names, motors.velocities), *ratios)
+    return _LimitsTask(at.joints, at.motors, *finite_ranges(robot, motors.names, motors.velocities), *ratios)
 
 
-def _common(task: _Task, at: Transmissions, margins: tuple[float | None, float | None] = (None, None)) -> CommonLimits:
+def _common(
+    task: _LimitsTask, at: Transmissions, margins: tuple[float | None, float | None] = (None, None)
+) -> CommonLimits:
     """The limits at several configurations; boxes are made smaller by the margins."""
     found = [task.limits(G) for G in _all_complete(at)]
     torque, torque_bounded = _common_box([each.torque for each in found], task.torque_ratio)
@@ -237,7 +237,7 @@ def _used(polytope: Polytope, box: Vector) -> float:
     return float((np.abs(polytope.A) @ box / polytope.b).max())
 
 
-def _everywhere(space: Workspace, torque_ratio: ArrayLike | None, velocity_ratio: ArrayLike | None) -> CommonLimits:
+def _everywhere(space: Workspace, torque_ratio: Named | None, velocity_ratio: Named | None) -> CommonLimits:
     """The limits in a workspace."""
     edge = [point for point in space.boundary if point.stop.kind in ("range", "joint", "motor", "passive")]
     positions = np.vstack([space.positions, *(point.position[None] for point in edge)])
@@ -297,10 +297,10 @@ def _complete(at: Transmission, place: str) -> Matrix:
     return G
 
 
-def _checked_ratio(name: str, ratio: ArrayLike | None, n: int) -> Vector | None:
+def _checked_ratio(name: str, ratio: Named | None, joints: Sequence[str]) -> Vector | None:
     if ratio is None:
         return None
-    given = checked_array(name, ratio, (n,))
+    given = vector_of(ratio, joints, name)
     if not (given > 0.0).all():
         raise ValueError(f"{name} is {given.tolist()}; expected positive numbers")
     return given

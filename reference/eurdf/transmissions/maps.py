@@ -18,7 +18,6 @@ import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.errors import NotClosable
-from eurdf.kinematics.derived import derived
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import numerical_ranks
 from eurdf.kinematics.residual import all_openings, drift_of_pairs, residual_and_jacobian
@@ -34,7 +33,7 @@ _REDUNDANT = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Task:
+class MapsTask:
     """What is the same at all configurations.
 
     Attributes:
@@ -76,7 +75,7 @@ class Maps(NamedTuple):
     blocked: Mask
 
 
-def maps(task: Task, q: Matrix) -> Maps:
+def maps(task: MapsTask, q: Matrix) -> Maps:
     """The maps at closed configurations (b, nq)."""
     problem, b, nm, nJ = task.problem, len(q), len(task.motors), len(task.joints)
     closed = (np.abs(problem.residual(q)) <= CLOSED).all(axis=1)
@@ -94,7 +93,7 @@ def maps(task: Task, q: Matrix) -> Maps:
     return found
 
 
-def maps_at(robot: Robot, task: Task, q: Vector) -> tuple[Maps, Matrix]:
+def maps_at(robot: Robot, task: MapsTask, q: Vector) -> tuple[Maps, Matrix]:
     """The maps at one configuration (nq,), and its motions (nv, m), orthonormal and dimensionless.
 
     Raises:
@@ -103,12 +102,12 @@ def maps_at(robot: Robot, task: Task, q: Vector) -> tuple[Maps, Matrix]:
     r, K = residual_and_jacobian(robot, q)
     if not (np.abs(r) <= CLOSED).all():
         raise NotClosable("q does not close the loops; call eurdf.assemble first", all_openings(robot, q), q)
-    spaces = derived(robot, TangentSpaces)
+    spaces = robot.cached(TangentSpaces)
     found, motions = _maps(task, (spaces.at(K).free / spaces.scale[:, None])[None])
     return found, motions[0]
 
 
-def _maps(task: Task, Z: Matrix) -> tuple[Maps, Matrix]:
+def _maps(task: MapsTask, Z: Matrix) -> tuple[Maps, Matrix]:
     """The maps of orthonormal motions (c, nv, m), and these without what springs hold; with springs, c is 1."""
     c, scale = len(Z), task.problem.spaces.scale
     held, blocked = np.zeros((c, len(task.springs)), dtype=bool), np.zeros(c, dtype=bool)
@@ -139,7 +138,7 @@ def pseudoinverse(A: Matrix) -> tuple[Matrix, Indices]:
     return np.swapaxes(left * inverse[:, None, :] @ right, 1, 2), ranks
 
 
-def _with_springs_held(task: Task, Z: Matrix) -> tuple[Matrix, Mask, bool]:
+def _with_springs_held(task: MapsTask, Z: Matrix) -> tuple[Matrix, Mask, bool]:
     """The motions (nv, m) that keep the springs, which springs hold, and whether they block actuators."""
     driven = Z[task.driven]
     own = Z @ _null_space(driven)
@@ -277,7 +276,7 @@ def second_derivative(robot: Robot, q: Vector, Z: Matrix, joints: Indices, motor
     """
     N = Z @ np.linalg.pinv(Z[joints])
     _, K = residual_and_jacobian(robot, q)
-    space = derived(robot, TangentSpaces).at(K)
+    space = robot.cached(TangentSpaces).at(K)
     still = np.concatenate((joints, held))
     back = space.free @ np.linalg.pinv(space.free[still], rcond=_REDUNDANT)
 

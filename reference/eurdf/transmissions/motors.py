@@ -10,12 +10,12 @@ import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import assembled, close, start
-from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.loop import independent_groups, moving_velocities
 from eurdf.kinematics.problem import Problem, for_many
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.kinematics.tolerances import MOVES, SOLVED
-from eurdf.transmissions.maps import Task, maps_at, pseudoinverse
+from eurdf.pinocchio.memory import working_memory
+from eurdf.transmissions.maps import MapsTask, maps_at, pseudoinverse
 from eurdf.transmissions.selection import Selection, listed, selection
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def motors_of(robot: Robot, joints: Selection) -> Selection:
     An actuated joint that is among the joints is its own motor. Others are moved by the actuators of their loops,
     except those that do not move them anywhere near the `assembled` configuration. The error is that of `sides`.
     """
-    return derived(robot, _motors_of, joints.joints)
+    return robot.cached(_motors_of, joints.joints)
 
 
 def _motors_of(robot: Robot, names: tuple[str, ...]) -> Selection:
@@ -183,11 +183,11 @@ def unlimited_motors(robot: Robot, motors: Selection) -> tuple[str, ...]:
 
 def _moved(robot: Robot, velocities: Indices) -> Mask:
     """Which actuated velocities (nu,) move these velocities at some configurations; all if the loops do not close."""
-    actuated, scale = robot.actuation.idx_v, derived(robot, TangentSpaces).scale
-    task = Task(for_many(robot), actuated, velocities, actuated, springs_of(robot))
+    actuated, scale = robot.actuation.idx_v, robot.cached(TangentSpaces).scale
+    task = MapsTask(for_many(robot), actuated, velocities, actuated, springs_of(robot))
     random = np.random.default_rng(0)
     found = np.zeros(len(actuated), dtype=bool)
-    with borrowed(robot, Problem) as problem:
+    with working_memory(robot, Problem) as problem:
         assembly = assembled(problem, start(robot), SOLVED)
         if not assembly.closes:
             return ~found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Annotated
 
@@ -10,6 +11,7 @@ from numpy.polynomial import chebyshev
 
 from eurdf.array import Matrix, Vector
 from eurdf.json_schema import HIDDEN, LISTS, ROW, ROWS
+from eurdf.kinematics.named import NamedRows, require_names
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.transmissions.reachable_set import Workspace
 
@@ -46,13 +48,13 @@ class PolynomialMap:
         """Degree in each joint."""
         return int(self.coefficients.shape[-1]) - 1
 
-    def motor_positions(self, positions: Matrix) -> Matrix:
+    def motor_positions(self, positions: NamedRows) -> Matrix:
         """Positions (..., nm) of the motors at positions (..., nJ) of the joints, inside their ranges."""
         x = self._scaled(positions)
         basis = design(x.reshape(-1, x.shape[-1]), self.degree)
         return np.asarray((basis @ self.coefficients.reshape(len(self.motors), -1).T).reshape(*x.shape[:-1], -1))
 
-    def G(self, positions: Matrix) -> Matrix:  # noqa: N802 - the field's own symbol
+    def G(self, positions: NamedRows) -> Matrix:  # noqa: N802 - the field's own symbol
         """Derivative (..., nm, nJ) of the motor positions."""
         x = self._scaled(positions)
         columns, basis = [], design(x.reshape(-1, x.shape[-1]), self.degree)
@@ -64,7 +66,11 @@ class PolynomialMap:
             columns.append((basis @ flat.T).reshape(*x.shape[:-1], -1) / half)
         return np.stack(columns, axis=-1)
 
-    def _scaled(self, positions: Matrix) -> Matrix:
+    def _scaled(self, positions: NamedRows) -> Matrix:
+        if isinstance(positions, Mapping):
+            require_names(positions, self.joints, "positions")
+            each = np.broadcast_arrays(*(positions.get(name, 0.0) for name in self.joints))
+            positions = np.stack(each, axis=-1)
         given = np.asarray(positions, dtype=np.float64)
         given = checked_array("positions", given, (*given.shape[:-1], len(self.joints)))
         return scaled(given, self.lower, self.upper)

@@ -11,7 +11,6 @@ from eurdf.array import Vector
 from eurdf.diagnostics.wording import enumerated
 from eurdf.errors import NoTransmission, OutOfReach
 from eurdf.kinematics.assembly import assemble, closed_start, start
-from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.forward import farthest
 from eurdf.kinematics.named import Named
 from eurdf.kinematics.position_limit import position_limits
@@ -20,6 +19,7 @@ from eurdf.kinematics.tolerances import SOLVED
 from eurdf.loading import of_any_robot
 from eurdf.mechanism.joint import LIMIT_TOLERANCE
 from eurdf.pinocchio.arguments import checked_array
+from eurdf.pinocchio.memory import working_memory
 from eurdf.transmissions.motors import motors_of, passive_joints_of
 from eurdf.transmissions.selection import Selection, selection
 from eurdf.transmissions.transmission import at_one, require
@@ -132,7 +132,7 @@ def _all_motors(robot: Robot) -> Selection:
 def _moved(robot: Robot, chosen: Selection, motors: Selection, values: Mapping[str, float], q0: Named | None) -> Vector:
     """The configuration (nq,) with these values, and the actuators that are not ``motors`` where they are at q0."""
     wanted = {name: checked_array(f"the value of '{name}'", values[name], (), (1,)).item() for name in chosen.joints}
-    with borrowed(robot, Problem) as problem:
+    with working_memory(robot, Problem) as problem:
         first = closed_start(problem, start(robot, q0), SOLVED)
     at = robot.joint_positions(first)
     moved = {*motors.joints, *wanted}

@@ -9,7 +9,7 @@ import numpy as np
 
 from eurdf.array import Matrix, Vector
 from eurdf.errors import NoTransmission
-from eurdf.kinematics.named import Named
+from eurdf.kinematics.named import Named, vector_of
 from eurdf.loading import of_any_robot
 from eurdf.transmissions.c_source import CSource, c_source
 from eurdf.transmissions.drive import STEPS, Drive, closed_pose
@@ -80,7 +80,7 @@ class PreparedTransmission:
         """The last pose (nq,), closed. Joints that the transmission does not move are as at the beginning."""
         return np.array(self._q)
 
-    def reset(self, q: Vector) -> None:
+    def reset(self, q: Named) -> None:
         """Start from another closed pose (nq,), which can be on another branch. It is the first pose from here on.
 
         Raises:
@@ -90,22 +90,22 @@ class PreparedTransmission:
         self._first = self._q = closed_pose(self._at.robot, q)
         self._angles.clear()
 
-    def start_at_joints(self, positions: Vector) -> None:
+    def start_at_joints(self, positions: Named) -> None:
         """Start at positions (nJ,) of the serial joints, reached from the first pose instead of the last one.
 
         Turns are counted from here. The errors are those of `at_joints`.
         """
         self._start_at(self._by_joints, positions)
 
-    def start_at_motors(self, positions: Vector) -> None:
+    def start_at_motors(self, positions: Named) -> None:
         """Start at positions (nm,) of the motors, reached from the first pose instead of the last one.
 
         Turns are counted from here. The errors are those of `at_motors`.
         """
         self._start_at(self._drive_of_motors, positions)
 
-    def at_joints(self, positions: Vector) -> MotorSide:
-        """The motors at positions (nJ,) of the serial joints, rad or m.
+    def at_joints(self, positions: Named) -> MotorSide:
+        """The motors at positions (nJ,) of the serial joints, rad or m; zero for joints that are not named.
 
         An angle without limits counts turns: it is within half a turn of that of the call before.
 
@@ -117,7 +117,7 @@ class PreparedTransmission:
         """
         return MotorSide(*self._move(self._by_joints, positions))
 
-    def at_motors(self, positions: Vector) -> SerialSide:
+    def at_motors(self, positions: Named) -> SerialSide:
         """The serial joints at positions (nm,) of the motors, rad or m.
 
         Turns are counted, and errors raised, as by `at_joints`; here the motors have to determine the joints.
@@ -157,9 +157,9 @@ class PreparedTransmission:
             self._by_motors = Drive(self._at, self._motors, self._joints)
         return self._by_motors
 
-    def _move(self, drive: Drive, positions: Vector) -> tuple[Vector, Matrix]:
+    def _move(self, drive: Drive, positions: Named) -> tuple[Vector, Matrix]:
         asked = drive.asked
-        q, derivative = drive.move(self._q, positions)
+        q, derivative = drive.move(self._q, vector_of(positions, drive.given.names, "positions"))
         found = asked.read(q)
         if asked.circular.any():
             before = self._angles.get(asked, asked.read(self._q))
@@ -167,11 +167,12 @@ class PreparedTransmission:
         self._q = q
         return found, derivative
 
-    def _start_at(self, drive: Drive, positions: Vector) -> None:
+    def _start_at(self, drive: Drive, positions: Named) -> None:
         given, asked = drive.given, drive.asked
+        positions = vector_of(positions, given.names, "positions")
         q, _ = drive.move(self._first, positions)
         self._angles = {
-            given: np.array(positions, dtype=np.float64),
+            given: np.array(positions),
             asked: asked.nearest(asked.read(q), asked.read(self._first)),
         }
         self._q = q

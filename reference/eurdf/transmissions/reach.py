@@ -10,7 +10,6 @@ import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.batch import forward_kinematics
-from eurdf.kinematics.derived import derived
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.mechanism.joint import LIMIT_TOLERANCE
@@ -82,7 +81,7 @@ class Reach:
         driven = replace(robot.mechanism, actuators=joints.joints, motors={})
         self._driven = build_robot(driven, geometry=False)
         self._limits = position_limits(robot)
-        self._unit = derived(robot, TangentSpaces).scale[joints.velocities]
+        self._unit = robot.cached(TangentSpaces).scale[joints.velocities]
         nv = robot.tree.nv
         self.stops = [self._at_limit(v, side) for side in _SIDES for v in range(nv)]
         self.stops += [Stop("singular"), Stop("not closed")]

@@ -17,7 +17,7 @@ from eurdf.kinematics.finite import overflow_refused
 from eurdf.kinematics.named import Named, vector_of
 from eurdf.kinematics.problem import for_many
 from eurdf.loading import of_any_robot
-from eurdf.transmissions.maps import Maps, Task, maps, maps_at, pseudoinverse, reasons, second_derivative
+from eurdf.transmissions.maps import Maps, MapsTask, maps, maps_at, pseudoinverse, reasons, second_derivative
 from eurdf.transmissions.motors import sides, springs_of
 from eurdf.transmissions.selection import Selection
 
@@ -222,8 +222,8 @@ def transmission(
     answer without the other: at a dead point of the joints there is no G, and still v_J = B_J v_m and τ_m = B_Jᵀ τ_J.
 
     Joints with springs can move while the motors are still. Springs that such a motion would deflect are held where
-    they are in q; `forward_kinematics` leaves them at rest. Springs beside the motors, such as one on an ankle that
-    motors drive, hold nothing; add their torque (`eurdf.springs.spring_force`) to τ_J.
+    they are in q; `forward_kinematics` leaves them at rest. Springs in parallel with motors, such as one on an ankle
+    that motors drive, are not held; add their torque (`eurdf.springs.spring_force`) to τ_J.
 
     Args:
         robot: The robot.
@@ -314,9 +314,9 @@ def at_many(robot: Robot, joints: Selection, q: Matrix, motors: Selection) -> Tr
     )
 
 
-def _task(robot: Robot, motors: Selection, joints: Selection) -> Task:
+def _task(robot: Robot, motors: Selection, joints: Selection) -> MapsTask:
     driven = np.union1d(robot.actuation.idx_v, motors.velocities)
-    return Task(for_many(robot), motors.velocities, joints.velocities, driven, springs_of(robot))
+    return MapsTask(for_many(robot), motors.velocities, joints.velocities, driven, springs_of(robot))
 
 
 def _codes(at: Maps, own: Indices, count: int) -> tuple[Reason | None, ...]:

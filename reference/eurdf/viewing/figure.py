@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eurdf.array import Indices, Matrix, Vector
-from eurdf.viewing.scene import Placed, Scene, wxyz
+from eurdf.viewing.scene import PlacedRobot, Scene, wxyz
 
 if TYPE_CHECKING:
     import viser
@@ -42,7 +42,7 @@ class Figure:
         shown: Whether each layer is shown.
     """
 
-    def __init__(self, server: viser.ViserServer, scene: Scene, placed: Placed, root: str, origin: Vector) -> None:
+    def __init__(self, server: viser.ViserServer, scene: Scene, placed: PlacedRobot, root: str, origin: Vector) -> None:
         """Add the nodes where they are, since pages show what is sent bit by bit: below a node of their own.
 
         Its name is ``root``, and the world of the robot has its origin (3,), m, there.
@@ -59,7 +59,7 @@ class Figure:
         ]
         self._place_bodies(np.arange(len(self._bodies)))  # before they have anything to show
         self._nodes: dict[str, list[Any]] = {layer: [] for layer in LAYERS}
-        self._lines: dict[str, tuple[Any, Callable[[Placed], Matrix]]] = {}
+        self._lines: dict[str, tuple[Any, Callable[[PlacedRobot], Matrix]]] = {}
         for number, part in enumerate(scene.parts):
             self._add(
                 _LAYER_OF[part.kind],
@@ -116,7 +116,7 @@ class Figure:
         """Whether there is anything in a layer."""
         return bool(self._nodes[layer])
 
-    def place(self, placed: Placed) -> None:
+    def place(self, placed: PlacedRobot) -> None:
         """Move everything to where it is now."""
         moved = (self._placed.poses != placed.poses).any(axis=1)
         self._placed = placed
@@ -151,7 +151,7 @@ class Figure:
         self._nodes[layer].append(node)
 
     def _add_lines(
-        self, name: str, layer: str, colors: list[_Color], pixels: float, at: Callable[[Placed], Matrix]
+        self, name: str, layer: str, colors: list[_Color], pixels: float, at: Callable[[PlacedRobot], Matrix]
     ) -> None:
         if not colors:
             return
@@ -173,7 +173,7 @@ class Figure:
             node.position[:], node.wxyz[:] = np.nan, np.nan
             node.position, node.wxyz = origins[number], wxyzs[number]
 
-    def _closure_lines(self, placed: Placed) -> Matrix:
+    def _closure_lines(self, placed: PlacedRobot) -> Matrix:
         return self.scene.closure_lines(placed).reshape(-1, 2, 3)
 
     def _place_shared(self) -> None:
@@ -188,7 +188,7 @@ class Figure:
         if self.shown["link frames"]:
             self._axes.batched_positions, self._axes.batched_wxyzs = placed.origins, placed.wxyzs
 
-    def _color_closures(self, placed: Placed) -> None:
+    def _color_closures(self, placed: PlacedRobot) -> None:
         """Show the line from A to B of an open closure in its own colour; a closed distance closure has a line too."""
         of = {opening.name: opening.is_open for opening in placed.openings}
         are_open = np.array([of[link.name] for link in self.scene.links], dtype=bool)

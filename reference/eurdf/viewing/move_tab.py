@@ -11,7 +11,7 @@ import pinocchio as pin
 
 from eurdf.diagnostics.wording import visible
 from eurdf.kinematics.assembly import Assembly
-from eurdf.viewing.scene import Placed, wxyz
+from eurdf.viewing.scene import PlacedRobot, wxyz
 from eurdf.viewing.shown import Page
 from eurdf.writing.saved_configuration import CannotSave, ConfigurationExists
 
@@ -56,7 +56,7 @@ class MoveTab:
         """Remove what is not in the container."""
         self._gizmo.remove()
 
-    def refresh(self, placed: Placed) -> None:
+    def refresh(self, placed: PlacedRobot) -> None:
         """Bring the sliders and the handle to the state of the session."""
         self._gizmo.refresh(placed)
         session = self._page.shown.session
@@ -160,7 +160,7 @@ class _Gizmo:
         """Whether the orientation is dragged too."""
         return bool(self._turn.value)
 
-    def refresh(self, placed: Placed) -> None:
+    def refresh(self, placed: PlacedRobot) -> None:
         """Bring the handle to its frame, unless the user holds it."""
         if self._handle is None or self._held:
             return

@@ -16,7 +16,7 @@ from eurdf.viewing.graph import graph_svg
 from eurdf.viewing.move_tab import MoveTab
 from eurdf.viewing.play_tab import PlayTab
 from eurdf.viewing.playback import Trajectory
-from eurdf.viewing.scene import Placed
+from eurdf.viewing.scene import PlacedRobot
 from eurdf.viewing.shown import Page
 
 # Time between looks at the files, s.
@@ -99,7 +99,7 @@ class Panel:
         wanted = bool(event.target.value)
         self._page.worker.ask(("layer", layer), lambda: self._page.shown.figure.toggle(layer, wanted))
 
-    def _refresh(self, placed: Placed) -> None:
+    def _refresh(self, placed: PlacedRobot) -> None:
         """Bring sliders and texts to the state of the session."""
         self._move.refresh(placed)
         self._play.refresh()

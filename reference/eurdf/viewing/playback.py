@@ -190,7 +190,7 @@ def gravity_frames(session: Session, show: Show, *, dissipation: bool, held: boo
         ValueError: The motion is too fast for the time step.
     """
     q: Vector = np.full(session.robot.tree.nq, np.nan)
-    fall = _Fall(session.robot, held)
+    fall = _GravityMotion(session.robot, held)
     thread, count = ThreadPoolExecutor(1, "eurdf viewer gravity"), 1  # the time of a step is not known yet
     try:
         while True:
@@ -234,7 +234,7 @@ def steps_with_room(steps: int, seconds: float) -> int:
     return int(min(max(room, 1.0), 2.0 * steps, _STEPS))
 
 
-class _Fall:
+class _GravityMotion:
     """A motion under gravity, computed part by part.
 
     Where the motion is fast, as near a singularity, the time step gets shorter, so that the loops stay closed.

@@ -15,7 +15,6 @@ import pinocchio as pin
 from eurdf.array import Matrix, Vector
 from eurdf.closures.se3 import quaternion_of
 from eurdf.convert.inertia import along_principal_axes
-from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.evaluate import Frames, frames_at
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.residual import all_openings
@@ -23,6 +22,7 @@ from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.pose import X, Y, Z, direction
 from eurdf.pinocchio.frames import body_frame_ids, placement_of
+from eurdf.pinocchio.memory import working_memory
 from eurdf.viewing.surface import Surface, sphere, surface_of
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ INERTIA: Color = (0.25, 0.45, 0.9, 0.5)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Part:
+class BodySurface:
     """A surface fixed to a body.
 
     Attributes:
@@ -54,7 +54,7 @@ class Part:
     surface: Surface
     color: Color
 
-    def vertices_at(self, placed: Placed) -> Matrix:
+    def vertices_at(self, placed: PlacedRobot) -> Matrix:
         """The vertices (n, 3) in the world, m."""
         oMp = placed.pose(self.body) * self.pose
         return np.asarray(self.surface.vertices @ oMp.rotation.T + oMp.translation)
@@ -95,7 +95,7 @@ class Link:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Placed:
+class PlacedRobot:
     """A robot at a configuration.
 
     Attributes:
@@ -175,19 +175,19 @@ class Scene:
         """Whether there is a visual shape."""
         return any(part.kind == "visual" for part in self.parts)
 
-    def at(self, q: Vector) -> Placed:
+    def at(self, q: Vector) -> PlacedRobot:
         """Where everything is at a configuration (nq,)."""
-        with borrowed(self.robot, _body_frames) as memory:
+        with working_memory(self.robot, _body_frames) as memory:
             (rotations,), (origins,) = memory.poses(memory.at(q[None]))
             poses = np.concatenate((origins, quaternion_of(rotations)), axis=1)
-            return Placed(poses, all_openings(self.robot, q))
+            return PlacedRobot(poses, all_openings(self.robot, q))
 
-    def skeleton(self, placed: Placed) -> Matrix:
+    def skeleton(self, placed: PlacedRobot) -> Matrix:
         """Lines (n, 2, 3) from the origin of each body to that of its parent, in the world, m."""
         pairs = [(parent, child) for child, parent in enumerate(self.parents) if parent >= 0]
         return placed.origins[np.array(pairs, dtype=np.intp).reshape(-1, 2)]
 
-    def axis_lines(self, placed: Placed) -> Matrix:
+    def axis_lines(self, placed: PlacedRobot) -> Matrix:
         """The axes (n, 2, 3) as lines in the world, m."""
         half = 0.05 * self.size
         lines = [
@@ -196,7 +196,7 @@ class Scene:
         ]
         return np.array(lines).reshape(-1, 2, 3)
 
-    def closure_lines(self, placed: Placed) -> Matrix:
+    def closure_lines(self, placed: PlacedRobot) -> Matrix:
         """For each closure three lines, (n, 3, 2, 3), in the world, m.
 
         They lead from the origin of the body of A to A, from A to B, and from B to the origin of its body.
@@ -208,7 +208,7 @@ class Scene:
             lines.append([points[:2], points[1:3], points[2:]])
         return np.array(lines).reshape(-1, 3, 2, 3)
 
-    def _points(self, placed: Placed) -> Matrix:
+    def _points(self, placed: PlacedRobot) -> Matrix:
         clouds = [placed.origins]
         for part in self.parts:
             if part.kind != "inertia" and len(part.surface.vertices):
@@ -221,7 +221,7 @@ def _body_frames(robot: Robot) -> Frames:
     return frames_at(tree, [tree.site(Anchor(body.name)) for body in robot.mechanism.bodies], few=True)
 
 
-def _shapes(robot: Robot, kind: Literal["visual", "collision"]) -> list[Part]:
+def _shapes(robot: Robot, kind: Literal["visual", "collision"]) -> list[BodySurface]:
     if robot.geometry is None:
         return []
     geometry_model = robot.geometry.visual if kind == "visual" else robot.geometry.collision
@@ -239,11 +239,13 @@ def _shapes(robot: Robot, kind: Literal["visual", "collision"]) -> list[Part]:
             surface = surface_of(shape.geometry)
         red, green, blue, alpha = np.clip(shape.meshColor, 0.0, 1.0).tolist()
         color = (red, green, blue, alpha) if kind == "visual" else COLLISION
-        parts.append(Part(kind, numbers[shape.parentFrame], frame.placement.actInv(shape.placement), surface, color))
+        parts.append(
+            BodySurface(kind, numbers[shape.parentFrame], frame.placement.actInv(shape.placement), surface, color)
+        )
     return parts
 
 
-def _ellipsoids(robot: Robot) -> list[Part]:
+def _ellipsoids(robot: Robot) -> list[BodySurface]:
     """For each body with mass the ellipsoid of constant density with the same mass and moments of inertia."""
     parts = []
     for number, body in enumerate(robot.mechanism.bodies):
@@ -254,7 +256,7 @@ def _ellipsoids(robot: Robot) -> list[Part]:
         # Of half axes a, b, c: a² = 5/2 (I_b + I_c - I_a) / m. Moments that no body can have, which a diagnostic
         # reports, make a half axis of 0.
         half_axes = np.sqrt(np.maximum(2.5 * (moments.sum() - 2.0 * moments) / found.mass, 0.0))
-        parts.append(Part("inertia", number, placement_of(found.pose), sphere().scaled(half_axes), INERTIA))
+        parts.append(BodySurface("inertia", number, placement_of(found.pose), sphere().scaled(half_axes), INERTIA))
     return parts
 
 

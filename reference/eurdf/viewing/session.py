@@ -14,7 +14,7 @@ import numpy as np
 from eurdf.array import Vector
 from eurdf.kinematics.analysis import Analysis, analyze
 from eurdf.kinematics.assembly import Assembly, assemble, start
-from eurdf.kinematics.branch import Branch, Point
+from eurdf.kinematics.branch import Branch, BranchPoint
 from eurdf.kinematics.inverse import inverse_kinematics
 from eurdf.kinematics.named import Named, configuration_of
 from eurdf.kinematics.path import Elements, follow
@@ -46,7 +46,7 @@ _POSE_STEP = 1.0 / 40.0
 
 
 @dataclass(frozen=True, slots=True)
-class Stop:
+class MotionStop:
     """Why a motion did not reach where it was to go.
 
     Attributes:
@@ -118,7 +118,7 @@ class Session:
         )
         return float(values[slider.number])
 
-    def move(self, index: int, value: float) -> Stop | None:
+    def move(self, index: int, value: float) -> MotionStop | None:
         """Move a coordinate; the passive joints follow on the same branch.
 
         If the loops are open, the coordinate moves alone.
@@ -139,14 +139,14 @@ class Session:
         at, stop = self.value(index), None
         goal = min(max(value, slider.lower), slider.upper)
         if goal != value:
-            stop = Stop("limit", slider.joint, goal)
+            stop = MotionStop("limit", slider.joint, goal)
         if slider.velocity is not None:
             self.q, stopped = self._moved(self.q, slider, slider.velocity, at, goal - at)
             return stopped or stop
         longest = self._longest(slider)
         if abs(goal) > longest:
             goal = math.copysign(longest, goal)
-            stop = Stop("half turn", slider.joint, goal)
+            stop = MotionStop("half turn", slider.joint, goal)
         stopped = self._move_pose(slider, at, goal)
         if stopped and stopped.joint == slider.joint:
             stopped = replace(stopped, value=self.value(index))
@@ -229,7 +229,7 @@ class Session:
         others = [pose[number] for number, name in enumerate(names) if name in ROTATION and number != slider.number]
         return math.sqrt(max(0.0, LONGEST**2 - sum(value**2 for value in others)))
 
-    def _move_pose(self, slider: Slider, at: float, goal: float) -> Stop | None:
+    def _move_pose(self, slider: Slider, at: float, goal: float) -> MotionStop | None:
         """Move a coordinate of a pose, the others held, in steps of several velocities one after the other."""
         slot = self.robot.slots[slider.joint]
         longest, pose = _POSE_STEP * (slider.upper - slider.lower), self._pose(slider, self.q)
@@ -253,7 +253,7 @@ class Session:
 
     def _moved(
         self, q: Vector, slider: Slider, velocity: int, begin: float, distance: float
-    ) -> tuple[Vector, Stop | None]:
+    ) -> tuple[Vector, MotionStop | None]:
         """Move one velocity by a distance, rad or m; where it ends, and why.
 
         Args:
@@ -272,7 +272,7 @@ class Session:
 
     def _follow(
         self, q: Vector, slider: Slider, velocity: int, begin: float, distance: float
-    ) -> tuple[Vector, Stop | None]:
+    ) -> tuple[Vector, MotionStop | None]:
         """As `_moved`, from a closed configuration."""
         branch = self._branch(slider, velocity)
         here = branch.at(q)
@@ -302,11 +302,11 @@ class Session:
         self._largest[velocity] = largest if math.isfinite(largest) else 0.0
         return here.q, stop
 
-    def _dead_point(self, slider: Slider, at: float, at_once: bool) -> Stop:
+    def _dead_point(self, slider: Slider, at: float, at_once: bool) -> MotionStop:
         blocked = at_once and any(slider.joint in each for each in self.analysis.dependent_actuators)
-        return Stop("blocked" if blocked else "dead point", slider.joint, at)
+        return MotionStop("blocked" if blocked else "dead point", slider.joint, at)
 
-    def _to_limit(self, branch: Branch, here: Point, part: float) -> tuple[Point, Stop]:
+    def _to_limit(self, branch: Branch, here: BranchPoint, part: float) -> tuple[BranchPoint, MotionStop]:
         """The last point before a passive joint exceeds its limit, on a step that does."""
         joint = ""
         for _ in range(_TO_LIMIT):
@@ -322,15 +322,17 @@ class Session:
                 part *= until
         return here, self._at_limit(self._limits.joints.index(joint), here.q)
 
-    def _at_limit(self, index: int, q: Vector) -> Stop:
+    def _at_limit(self, index: int, q: Vector) -> MotionStop:
         """The stop at the limit of the joint with this velocity."""
         at = float(q[self._limits.coordinates[index]])
         lower, upper = float(self._limits.lower[index]), float(self._limits.upper[index])
-        return Stop("passive limit", self._limits.joints[index], lower if abs(at - lower) < abs(at - upper) else upper)
+        return MotionStop(
+            "passive limit", self._limits.joints[index], lower if abs(at - lower) < abs(at - upper) else upper
+        )
 
     def _follow_at_rest(
         self, q: Vector, slider: Slider, velocity: int, begin: float, distance: float
-    ) -> tuple[Vector, Stop | None]:
+    ) -> tuple[Vector, MotionStop | None]:
         """As `_follow`, for a robot whose springs decide what the actuators do not: it is at rest after each step."""
         tree = self.robot.tree
         rest = SpringRest(self.robot, self._branch(slider, velocity).passive)
@@ -352,7 +354,7 @@ class Session:
         done = follow(advance, shortest=min(_SHORTEST_REST_STEP * longest, 1.0))[0] if distance else 1.0
         if done == 1.0:
             return q, None
-        return q, self._at_limit(met[0], q) if met else Stop("dead point", slider.joint, begin + done * distance)
+        return q, self._at_limit(met[0], q) if met else MotionStop("dead point", slider.joint, begin + done * distance)
 
     def _branch(self, slider: Slider, velocity: int) -> Branch:
         if velocity not in self._branches:

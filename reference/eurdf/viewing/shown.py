@@ -13,7 +13,7 @@ from eurdf.array import Vector
 from eurdf.kinematics.named import Named
 from eurdf.viewing.figure import Figure
 from eurdf.viewing.files import RobotOnDisk
-from eurdf.viewing.scene import Placed, Scene
+from eurdf.viewing.scene import PlacedRobot, Scene
 from eurdf.viewing.session import Session
 from eurdf.viewing.worker import Worker
 
@@ -37,7 +37,7 @@ class ShownRobot:
     ) -> None:
         self._server, self._worker = server, worker
         self._node, self._origin, self._versions = node, origin, 0
-        self.on_place: Callable[[Placed], None] = lambda placed: None
+        self.on_place: Callable[[PlacedRobot], None] = lambda placed: None
         self.session = Session(robot, q)
         self.figure = self._drawn()
 

@@ -17,7 +17,6 @@ import pinocchio as pin
 from eurdf.array import Matrix, Vector
 from eurdf.closures.se3 import quaternion_log
 from eurdf.kinematics.analysis import Analysis
-from eurdf.kinematics.derived import derived
 from eurdf.kinematics.position_limit import driven_coordinates, position_limits
 from eurdf.kinematics.scale import characteristic_length
 from eurdf.mechanism.joint_types import JointType
@@ -76,7 +75,7 @@ def sliders_of(robot: Robot, q: Vector, analysis: Analysis) -> Iterator[Slider]:
     """The sliders of a robot that starts at q (nq,): of its actuators, or of all joints if there are none."""
     tree, limits = robot.tree, position_limits(robot)
     length = characteristic_length(robot)
-    driven, coordinates = derived(robot, driven_coordinates)
+    driven, coordinates = robot.cached(driven_coordinates)
     for name in robot.actuation.joints or robot.slots:
         slot, actuated = robot.slots[name], name in robot.actuation.joints
         kind = slot.joint.type

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eurdf.array import Indices, Vector
-from eurdf.kinematics.derived import derived
 from eurdf.kinematics.position_limit import driven_coordinates, position_limits
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.residual import residual, residual_and_jacobian
@@ -52,7 +51,7 @@ class SpringRest:
         self._rows = row_scale(robot, length)
         self._free = passive
         self._unit = velocity_scale(robot, length)[self._free]
-        driven, coordinates = derived(robot, driven_coordinates)
+        driven, coordinates = robot.cached(driven_coordinates)
         self._bounded = np.flatnonzero(np.isin(self._free, driven))  # columns that drive one coordinate each
         self._coordinates = coordinates[self._free]
         limits, springs = position_limits(robot), robot.tree.springs

@@ -19,7 +19,7 @@ _MOST_CLOSURES = 12
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class ChosenTypes:
     """The types that were chosen, by the name of the closure.
 
     The notes say why, one sentence for each group of loops that share joints.
@@ -57,7 +57,7 @@ class _Candidate:
         return sum(map(len, self.dependent)) + self.locked
 
 
-def choose_types(mechanism: Mechanism, undecided: Iterable[str], called: Sequence[str]) -> Choice:
+def choose_types(mechanism: Mechanism, undecided: Iterable[str], called: Sequence[str]) -> ChosenTypes:
     """Choose between 3d and 6d for the closures whose names state neither.
 
     A closure is 6d, as where version 1 does not state its type, unless the loops then cannot close, or are locked, or
@@ -80,7 +80,7 @@ def choose_types(mechanism: Mechanism, undecided: Iterable[str], called: Sequenc
             chosen, note = _choose(part, names, words)
             types.update(chosen.types)
             notes.append(note)
-    return Choice(types, tuple(notes))
+    return ChosenTypes(types, tuple(notes))
 
 
 def _groups(mechanism: Mechanism) -> list[list[str]]:

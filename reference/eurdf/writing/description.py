@@ -16,12 +16,18 @@ from lxml import etree
 
 from eurdf.closures import REGISTRY
 from eurdf.diagnostics.wording import visible
-from eurdf.format.closure_model import CLOSURE, Compliance, FrameOnLink, FrameReference, NamedFrame, PoseOnLink
-from eurdf.format.closure_model import Closure as ClosureEntry
-from eurdf.format.closure_model import Coupling as CouplingEntry
+from eurdf.format.closure_model import (
+    CLOSURE,
+    ClosureEntry,
+    ComplianceEntry,
+    CouplingEntry,
+    FrameOnLink,
+    FrameReference,
+    NamedFrame,
+    PoseOnLink,
+)
 from eurdf.format.conventions import VERSION2_1, VERSION_KEY, is_own_key
-from eurdf.format.joint_model import JOINT, NAMED, Geared, Limits
-from eurdf.format.joint_model import Joint as JointEntry
+from eurdf.format.joint_model import JOINT, NAMED, Geared, JointEntry, LimitsEntry
 from eurdf.format.model import VERSION2, Version2, lowest_version
 from eurdf.format.yaml_text import entries_of, modeline, text_of
 from eurdf.mechanism.body import Anchor, Body
@@ -101,7 +107,7 @@ def describe_mechanism(
     head = [modeline(schema)] if schema is not None else []
     head += [f"# {visible(line)}".rstrip() for line in comments]
     text = "".join(f"{line}\n" for line in head) + text_of(entries_of(content))
-    return DescriptionFiles(_Urdf(mechanism, materials or {}).content(comments), text, version)
+    return DescriptionFiles(_UrdfWriter(mechanism, materials or {}).content(comments), text, version)
 
 
 def _refuse_unwritable(mechanism: Mechanism) -> None:
@@ -121,7 +127,7 @@ def _refuse_unwritable(mechanism: Mechanism) -> None:
             raise NotWritable(f"the axes of joint '{joint.name}' have different gears; a joint has one")
 
 
-class _Urdf:
+class _UrdfWriter:
     """The URDF of a mechanism: each joint just before the link that it carries."""
 
     def __init__(self, mechanism: Mechanism, materials: Mapping[str, Color]) -> None:
@@ -273,7 +279,7 @@ def _joint(joint: Joint, mechanism: Mechanism) -> JointEntry | None:
             if any(map(math.isfinite, values)) and not (in_urdf and len(set(values)) == 1):
                 limits[key] = values
         if limits:
-            stated["limits"] = Limits(**limits)
+            stated["limits"] = LimitsEntry(**limits)
         for key in ("damping", "friction"):
             values = getattr(properties, key)
             if any(values) and not (in_urdf and len(set(values)) == 1):
@@ -323,7 +329,7 @@ def _closure(closure: Closure, anchors: _Anchors) -> ClosureEntry:
         closure.stated(),
         name=closure.name,
         frames=(anchors.reference(closure.a), anchors.reference(closure.b)),
-        compliance=Compliance(linear=linear, angular=angular) if linear or angular else None,
+        compliance=ComplianceEntry(linear=linear, angular=angular) if linear or angular else None,
     )
 
 

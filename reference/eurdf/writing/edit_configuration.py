@@ -10,7 +10,7 @@ from typing import Any
 from eurdf.diagnostics.lines import BREAK
 from eurdf.format.model import VERSION2
 from eurdf.format.yaml_text import Value, flow, lines_of
-from eurdf.reading.yaml_node import Collection, Node, Span
+from eurdf.reading.yaml_node import Node, Span, YamlCollection
 from eurdf.reading.yaml_reader import YamlDocument, plain_data
 
 
@@ -52,7 +52,7 @@ class _Edit:
             before = tuple(takewhile(lambda key: key != "configurations", VERSION2.all_keys))
             last = [key for key in self._root.nodes if key in before][-1]
             self._add(self._root, last, {"configurations": {name: value}})
-        elif not isinstance(configurations, Collection):
+        elif not isinstance(configurations, YamlCollection):
             raise NotEditable("'configurations' is an alias")
         elif name in configurations.nodes:
             self._replace(configurations, name, value)
@@ -65,13 +65,13 @@ class _Edit:
             text = text[:start] + new + text[end:]
         return text
 
-    def _replace(self, configurations: Collection, name: str, value: dict[str, Value]) -> None:
+    def _replace(self, configurations: YamlCollection, name: str, value: dict[str, Value]) -> None:
         """Give a configuration that is there its new coordinates, joint by joint, for comments may be between them."""
         old = configurations.nodes[name]
-        if isinstance(old, Collection) and not old.nodes:
+        if isinstance(old, YamlCollection) and not old.nodes:
             self._fill(configurations, name, value)
             return
-        if not isinstance(old, Collection):  # an alias of a configuration
+        if not isinstance(old, YamlCollection):  # an alias of a configuration
             self._change(_start(old), _end(old), self._flow(value))
             return
         for joint, coordinates in value.items():
@@ -84,7 +84,7 @@ class _Edit:
         if new:
             self._add(old, list(old.nodes)[-1], new)
 
-    def _add(self, mapping: Collection, last: str | int, entries: Mapping[str, Value]) -> None:
+    def _add(self, mapping: YamlCollection, last: str | int, entries: Mapping[str, Value]) -> None:
         """Add entries behind one that a mapping has."""
         key_start, key_end = mapping.keys[last]
         end = max(_end(mapping.nodes[last]), key_end or 0)
@@ -103,7 +103,7 @@ class _Edit:
         begins_line = at == 0 or self._text[at - 1] in "\r\n"
         self._change(at, at, text if begins_line else self._break + text)
 
-    def _fill(self, around: Collection, key: str, value: Mapping[str, Value]) -> None:
+    def _fill(self, around: YamlCollection, key: str, value: Mapping[str, Value]) -> None:
         """Give an empty mapping its entries: between its braces, or in lines below its key."""
         lines = _lines(key, value)[1:]
         start, end = _start(around.nodes[key]), _end(around.nodes[key])
@@ -176,7 +176,7 @@ def _canonical(value: object) -> str:
     return json.dumps(value, sort_keys=True)
 
 
-def _is_flow(mapping: Collection) -> bool:
+def _is_flow(mapping: YamlCollection) -> bool:
     return mapping.span[1] is not None
 
 
@@ -193,7 +193,7 @@ def _end(node: Node) -> int:
     end = _span(node)[1]
     if end is not None:
         return end
-    assert isinstance(node, Collection)
+    assert isinstance(node, YamlCollection)
     last, inner = list(node.nodes.items())[-1]
     _, key_end = node.keys.get(last, (0, 0))
     return max(_end(inner), key_end or 0)

@@ -11,7 +11,7 @@ from typing import Literal
 from eurdf.diagnostics.lines import BREAK
 from eurdf.format.closure_model import AXES, CLOSURE, FrameReference, NamedFrame
 from eurdf.format.conventions import VERSION2_0, VERSION2_1, is_own_key
-from eurdf.format.joint_model import JOINT, Joint, Overridden, Spherical
+from eurdf.format.joint_model import JOINT, JointEntry, Overridden, Spherical
 from eurdf.format.model import VERSION1, Description
 from eurdf.format.schema import FILES
 from eurdf.format.urdf.data import Urdf
@@ -224,7 +224,7 @@ class MigratedText:
                 f"one joint with two angles, for two revolute joints of version 1: universal {_joints(split)}"
             )
 
-    def joint(self, entry: Joint) -> Value:
+    def joint(self, entry: JointEntry) -> Value:
         """What the new file says of a joint that is replaced."""
         axes = tuple(AXES[letter] for letter in entry.split.lower())
         mimic = False if entry.name in self.mimicking else None

@@ -10,7 +10,6 @@ from eurdf.format.urdf.elements import UrdfReader
 from eurdf.format.urdf.mimics import check_mimics
 from eurdf.linking.link import reread
 from eurdf.linking.robot_files import ReadRobot
-from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.same_model import differences, with_universal_joints
 from eurdf.reading.xml_reader import XmlReporter
@@ -78,9 +77,7 @@ def merged_by_rule(read: ReadRobot) -> dict[str, tuple[str, str, str]]:
         return carrying[urdf.joints[second].parent], second, third
 
     return {
-        joint.name: chain(joint.name)
-        for joint in mechanism.joints
-        if joint.type is JointType.SPHERICAL and joint.name not in listed
+        joint.name: chain(joint.name) for joint in mechanism.joints if joint.type.is_ball and joint.name not in listed
     }
 
 

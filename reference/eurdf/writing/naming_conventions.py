@@ -176,7 +176,7 @@ def with_type(found: Found, closure_type: ClosureType) -> Found:
 
 
 @dataclass(slots=True)
-class _Loop:
+class _NamedLoop:
     """What names state of one loop.
 
     Attributes:
@@ -228,9 +228,9 @@ def _closures(urdf: Urdf, patterns: Iterable[re.Pattern[str]], warnings: list[st
     return [replace(closure, type="3d", hinge=True) if closure.name in hinges else closure for closure in paired]
 
 
-def _loops(names: Iterable[str], patterns: Iterable[re.Pattern[str]]) -> dict[str, _Loop]:
+def _loops(names: Iterable[str], patterns: Iterable[re.Pattern[str]]) -> dict[str, _NamedLoop]:
     """The loops that names of links and joints say, links first: of a link and the joint that fixes it, it is meant."""
-    loops: dict[str, _Loop] = {}
+    loops: dict[str, _NamedLoop] = {}
     for pattern in patterns:
         for name in names:
             match = pattern.fullmatch(name)
@@ -238,7 +238,7 @@ def _loops(names: Iterable[str], patterns: Iterable[re.Pattern[str]]) -> dict[st
                 continue
             groups = match.groupdict()
             point = _loop(match)
-            loop = loops.setdefault(point + (groups.get("axis") or ""), _Loop())
+            loop = loops.setdefault(point + (groups.get("axis") or ""), _NamedLoop())
             if groups.get("axis"):
                 loop.axis_of = point
             side = loop.sides.setdefault(match["side"].upper(), [])

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from lxml import etree
 
-from eurdf.mechanism.pose import Pose, Vector3
+from eurdf.mechanism.pose import AXES, Pose, Vector3
 
 _NOT_IN_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
@@ -37,7 +37,7 @@ def rpy_of(pose: Pose) -> Vector3:
     """
     if pose.rpy is not None:
         return pose.rpy
-    x, y, z = (pose.rotate(axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
+    x, y, z = (pose.rotate(axis) for axis in AXES)
     exact = angles_with_yaw(math.atan2(x[1], x[0]), x, y, z)
     level = angles_with_yaw(0.0, x, y, z)
     for digits in range(17):

@@ -6,7 +6,7 @@ import math
 
 from eurdf.convert.common_losses import CONVERSION, impossible_inertia, unequal
 from eurdf.convert.conventions import LEAST
-from eurdf.convert.losses import Motor, approximate, by_writer, dropped, exact
+from eurdf.convert.losses import MotorJoint, approximate, by_writer, dropped, exact
 from eurdf.convert.urdf.facts import EXACT as URDF_EXACT
 from eurdf.convert.urdf.facts import URDF_ROWS
 from eurdf.mechanism.constraint import Closure
@@ -52,7 +52,7 @@ def _rod(closure: Closure) -> str:
     return f"is left out: {bodies}, distance {closure.own['length']}"
 
 
-def _cannot_act(motor: Motor) -> bool:
+def _cannot_act(motor: MotorJoint) -> bool:
     return not can_have_actuator(motor.joint)
 
 

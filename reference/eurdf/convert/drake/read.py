@@ -13,21 +13,21 @@ from dataclasses import dataclass, field, replace
 from lxml import etree
 
 from eurdf.closures.point import PointClosure
-from eurdf.convert.import_format import LOCKED, ImportFormat, ImportInput, RobotRead, loss_kinds, without_locks
+from eurdf.convert.import_format import LOCKED, ImportFormat, ImportInput, RobotRead, loss_kinds
 from eurdf.convert.losses import approximate, dropped
 from eurdf.convert.names import UniqueNames
-from eurdf.convert.urdf.read import URDF_LOSSES, UrdfTree, read_tree
+from eurdf.convert.steps import without_locks
+from eurdf.convert.urdf.read import URDF_LOSSES, UrdfDialect, read_tree
 from eurdf.convert.xml_elements import Elements, local, named
 from eurdf.mechanism.body import Anchor, Frame
 from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.pose import IDENTITY, Pose
+from eurdf.mechanism.pose import IDENTITY, Pose, X, Y
 from eurdf.writing.urdf_elements import UNLIMITED
 
 _WORLD = "world"
-_X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
 #: Elements of Drake that are read here, and those that have no effect on the robot alone.
 _KNOWN = ("frame", "ball_constraint", "tendon_constraint", "collision_filter_group")
@@ -50,7 +50,7 @@ _LOSSES = {
 
 
 @dataclass(slots=True)
-class _Joints:
+class _DrakeJoints:
     """The joints of Drake, while their elements become those of URDF.
 
     Attributes:
@@ -81,7 +81,7 @@ def read(given: ImportInput) -> RobotRead:
     Raises:
         CannotImport: It has an error.
     """
-    elements, joints = Elements(given.path), _Joints()
+    elements, joints = Elements(given.path), _DrakeJoints()
     tree = read_tree(
         given,
         _KNOWN,
@@ -96,7 +96,7 @@ def read(given: ImportInput) -> RobotRead:
     return RobotRead(mechanism, (given.path,))
 
 
-def _make_plain(root: etree._Element, elements: Elements, joints: _Joints) -> None:
+def _make_plain(root: etree._Element, elements: Elements, joints: _DrakeJoints) -> None:
     """Make the joints of Drake those of URDF, and state the limits that URDF asks for."""
     for joint in [child for child in root if isinstance(child.tag, str) and local(child) == "joint"]:
         name, kind = joint.get("name", ""), joint.get("type", "")
@@ -134,7 +134,7 @@ def _make_plain(root: etree._Element, elements: Elements, joints: _Joints) -> No
                     limit.set(attribute, value)
 
 
-def _as_in_drake(joint: Joint, joints: _Joints) -> Joint:
+def _as_in_drake(joint: Joint, joints: _DrakeJoints) -> Joint:
     """A joint with the type that it has in Drake."""
     stated = joints.kinds.get(joint.name)
     if stated is None:
@@ -150,7 +150,7 @@ def _as_in_drake(joint: Joint, joints: _Joints) -> Joint:
         properties = replace(properties, damping=joints.damping.get(joint.name, properties.damping))
     else:
         properties = replace(properties, damping=own.damping * nv, friction=own.friction * nv, effort=own.effort * nv)
-    axes = {"universal": (_X, _Y), "screw": joint.axes}.get(stated, ())
+    axes = {"universal": (X, Y), "screw": joint.axes}.get(stated, ())
     return replace(joint, type=kind, axes=axes, pitch=joints.pitches.get(joint.name, 0.0), properties=properties)
 
 
@@ -166,7 +166,7 @@ def _on_the_world(mechanism: Mechanism) -> Mechanism:
     return mechanism
 
 
-def _frames(tree: UrdfTree) -> tuple[Frame, ...]:
+def _frames(tree: UrdfDialect) -> tuple[Frame, ...]:
     names = tree.frame_names()
     return tuple(
         Frame(
@@ -178,7 +178,7 @@ def _frames(tree: UrdfTree) -> tuple[Frame, ...]:
     )
 
 
-def _closures(tree: UrdfTree, names: UniqueNames) -> tuple[Closure, ...]:
+def _closures(tree: UrdfDialect, names: UniqueNames) -> tuple[Closure, ...]:
     """The ball constraints. A collision filter group names those of its two bodies that are before it."""
     found: list[Closure] = []
     group: list[tuple[Anchor, Anchor]] = []
@@ -211,7 +211,7 @@ def _closures(tree: UrdfTree, names: UniqueNames) -> tuple[Closure, ...]:
     return tuple(found)
 
 
-def _couplings(tree: UrdfTree, names: UniqueNames) -> tuple[Coupling, ...]:
+def _couplings(tree: UrdfDialect, names: UniqueNames) -> tuple[Coupling, ...]:
     joints = {joint.name for joint in tree.mechanism.joints}
     found = []
     for element in tree.children("tendon_constraint"):

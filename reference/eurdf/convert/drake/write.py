@@ -24,14 +24,14 @@ from eurdf.convert.export_format import ExportInput, ExportOutput, Format
 from eurdf.convert.inertia import accepted_inertia, has_inertia
 from eurdf.convert.losses import Losses
 from eurdf.convert.parts import part_of
-from eurdf.convert.steps import AXES, ExportedJoint
+from eurdf.convert.steps import ExportedJoint
 from eurdf.convert.urdf.write import UrdfTree
 from eurdf.mechanism.body import Body, Inertia
 from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism, root_joint
-from eurdf.mechanism.pose import IDENTITY, ORIGIN, direction
+from eurdf.mechanism.pose import AXES, IDENTITY, ORIGIN, direction
 from eurdf.writing.urdf_elements import add_dynamics, add_fixed_joint
 from eurdf.writing.xml_text import file_content, numbers, rpy_of
 

@@ -16,7 +16,7 @@ from eurdf.closures.point import PointClosure
 from eurdf.convert.import_format import ImportFormat, ImportInput, RobotRead, loss_kinds
 from eurdf.convert.losses import approximate
 from eurdf.convert.names import UniqueNames
-from eurdf.convert.urdf.read import URDF_LOSSES, UrdfTree, loop_left_out, read_tree
+from eurdf.convert.urdf.read import URDF_LOSSES, UrdfDialect, loop_left_out, read_tree
 from eurdf.convert.xml_elements import named
 from eurdf.mechanism.body import Anchor, Frame
 from eurdf.mechanism.constraint import Closure
@@ -52,7 +52,7 @@ def read(given: ImportInput) -> RobotRead:
     return RobotRead(mechanism, (given.path,), without_axis=tuple(without_axis))
 
 
-def _closure(element: etree._Element, tree: UrdfTree, names: UniqueNames) -> Closure | None:
+def _closure(element: etree._Element, tree: UrdfDialect, names: UniqueNames) -> Closure | None:
     elements = tree.elements
     ends = [child for child in element if child.tag in ("link1", "link2")]
     if len(ends) != 2:
@@ -78,7 +78,7 @@ def _closure(element: etree._Element, tree: UrdfTree, names: UniqueNames) -> Clo
     return None
 
 
-def _frames(tree: UrdfTree) -> tuple[Frame, ...]:
+def _frames(tree: UrdfDialect) -> tuple[Frame, ...]:
     """The frames that Isaac calls fixed."""
     names, found = tree.frame_names(), []
     for element in tree.root.iterchildren("fixed_frame"):

@@ -13,11 +13,10 @@ from eurdf.closures.hinge import HingeClosure
 from eurdf.convert.export_format import ExportInput, ExportOutput, Format
 from eurdf.convert.losses import Losses, dropped
 from eurdf.convert.names import UniqueNames
-from eurdf.convert.steps import X
 from eurdf.convert.urdf.facts import EXACT, PLAIN_ROWS
 from eurdf.convert.urdf.write import PlainTree
 from eurdf.mechanism.constraint import Closure
-from eurdf.mechanism.pose import Pose, turn_from_x
+from eurdf.mechanism.pose import Pose, X, turn_from_x
 from eurdf.writing.xml_text import numbers, rpy_of
 
 #: The type of the loop joint that a closure is.

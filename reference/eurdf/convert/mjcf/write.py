@@ -24,12 +24,12 @@ from eurdf.convert.meshes import MeshFiles
 from eurdf.convert.mjcf import facts
 from eurdf.convert.names import UniqueNames
 from eurdf.convert.parts import Part, part_of
-from eurdf.convert.steps import AXES, ExportedJoint, in_series
+from eurdf.convert.steps import ExportedJoint, in_series
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.mechanism import ROOT_JOINT, root_joint
-from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
+from eurdf.mechanism.pose import AXES, IDENTITY, Pose, Vector3, direction
 from eurdf.writing.xml_text import file_content, numbers, representable
 
 _WORLD = "world"

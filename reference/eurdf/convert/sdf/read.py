@@ -28,13 +28,12 @@ from eurdf.convert.import_format import (
     ImportFormat,
     ImportInput,
     RobotRead,
-    continuous_if_unlimited,
     loss_kinds,
-    without_locks,
 )
 from eurdf.convert.losses import dropped, exact
 from eurdf.convert.names import UniqueNames
 from eurdf.convert.sdf.read_model import WORLD, SdfModel, is_true, read_body, text_of
+from eurdf.convert.steps import continuous_if_unlimited, without_locks
 from eurdf.convert.xml_elements import inside, read_root
 from eurdf.mechanism.body import Anchor, Body, Frame
 from eurdf.mechanism.constraint import Closure

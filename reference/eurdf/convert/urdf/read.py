@@ -8,9 +8,10 @@ from dataclasses import dataclass, replace
 
 from lxml import etree
 
-from eurdf.convert.import_format import ImportInput, continuous_if_unlimited
+from eurdf.convert.import_format import ImportInput
 from eurdf.convert.losses import Losses, LossKind, dropped
 from eurdf.convert.names import UniqueNames
+from eurdf.convert.steps import continuous_if_unlimited
 from eurdf.convert.xml_elements import Elements, inside, local, read_root
 from eurdf.diagnostics import Diagnostics, FileError
 from eurdf.errors import CannotImport
@@ -55,7 +56,7 @@ def loop_left_out(concept: str) -> LossKind:
 
 
 @dataclass(frozen=True, slots=True)
-class UrdfTree:
+class UrdfDialect:
     """What a dialect shares with URDF.
 
     Attributes:
@@ -93,7 +94,7 @@ def read_tree(
     known: tuple[str, ...],
     plain: Callable[[etree._Element], None] | None = None,
     change: Callable[[Joint], Joint] | None = None,
-) -> UrdfTree:
+) -> UrdfDialect:
     """Read the links and joints of a file.
 
     Args:
@@ -140,7 +141,7 @@ def read_tree(
         if isinstance(element.tag, str) and local(element) not in (*_URDF, *known):
             losses.add("import-element", local(element))
     elements = Elements(path)
-    return UrdfTree(root, elements, _actuated(mechanism, root, elements, losses), losses)
+    return UrdfDialect(root, elements, _actuated(mechanism, root, elements, losses), losses)
 
 
 def _with_copy(shape: Shape, given: ImportInput) -> Shape:

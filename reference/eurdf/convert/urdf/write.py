@@ -15,13 +15,13 @@ from eurdf.convert.losses import Losses
 from eurdf.convert.meshes import MeshFiles
 from eurdf.convert.names import UniqueNames
 from eurdf.convert.parts import Part, part_of
-from eurdf.convert.steps import ExportedJoint, Z, in_series, turn_type
+from eurdf.convert.steps import ExportedJoint, in_series, turn_type
 from eurdf.convert.urdf.facts import EXACT, ROWS
 from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, root_joint
-from eurdf.mechanism.pose import IDENTITY, Pose
+from eurdf.mechanism.pose import IDENTITY, Pose, Z
 from eurdf.writing.urdf_elements import (
     add_dynamics,
     add_fixed_joint,

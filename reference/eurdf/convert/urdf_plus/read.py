@@ -17,7 +17,7 @@ from eurdf.closures.point import PointClosure
 from eurdf.convert.import_format import ImportFormat, ImportInput, RobotRead, loss_kinds
 from eurdf.convert.losses import dropped
 from eurdf.convert.names import UniqueNames
-from eurdf.convert.urdf.read import URDF_LOSSES, UrdfTree, loop_left_out, read_tree
+from eurdf.convert.urdf.read import URDF_LOSSES, UrdfDialect, loop_left_out, read_tree
 from eurdf.convert.xml_elements import named
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Closure, Coupling
@@ -52,7 +52,7 @@ def read(given: ImportInput) -> RobotRead:
     return RobotRead(mechanism, (given.path,))
 
 
-def _closure(element: etree._Element, tree: UrdfTree, names: UniqueNames) -> Closure | None:
+def _closure(element: etree._Element, tree: UrdfDialect, names: UniqueNames) -> Closure | None:
     elements = tree.elements
     ends = []
     for new, old in (("predecessor", "parent"), ("successor", "child")):
@@ -73,7 +73,7 @@ def _closure(element: etree._Element, tree: UrdfTree, names: UniqueNames) -> Clo
     return None
 
 
-def _coupling(element: etree._Element, tree: UrdfTree, names: UniqueNames) -> Coupling:
+def _coupling(element: etree._Element, tree: UrdfDialect, names: UniqueNames) -> Coupling:
     elements = tree.elements
     chains = [
         _joints_above(tree.link(element, elements.child(element, tag).get("link")), tree)
@@ -94,7 +94,7 @@ def _coupling(element: etree._Element, tree: UrdfTree, names: UniqueNames) -> Co
     return Coupling(names.new(element.get("name") or "_".join(coefficients)), tuple(coefficients.items()))
 
 
-def _joints_above(link: str, tree: UrdfTree) -> list[str]:
+def _joints_above(link: str, tree: UrdfDialect) -> list[str]:
     """The joints between the root and a link."""
     carrying = {joint.child: joint for joint in tree.mechanism.joints}
     found: list[str] = []

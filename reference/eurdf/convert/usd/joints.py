@@ -8,11 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from eurdf.closures.se3 import quaternion_of
-from eurdf.convert.parts import UPRIGHT
-from eurdf.convert.steps import AXES
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
-from eurdf.mechanism.pose import Quaternion, cross, direction, turn_from_x
+from eurdf.mechanism.pose import AXES, IDENTITY_QUATERNION, Quaternion, cross, direction, turn_from_x
 
 #: Axis tokens of directions that need no turn of the frame.
 _TOKENS = dict(zip(AXES, "XYZ", strict=True))
@@ -60,13 +58,13 @@ def turns(axis: str) -> bool:
 def axis_and_frame(joint: Joint) -> tuple[str, Quaternion]:
     """The axis token of a joint with one axis, and the orientation of the frames of the USD joint in those of it."""
     if not joint.axes:
-        return "", UPRIGHT
+        return "", IDENTITY_QUATERNION
     first, *others = map(direction, joint.axes)
     if others:
         x, y, z, w = quaternion_of(np.transpose((first, others[0], cross(first, others[0])))).tolist()
         return "", (x, y, z, w)
     if joint.type.is_axial and first in _TOKENS:
-        return _TOKENS[first], UPRIGHT
+        return _TOKENS[first], IDENTITY_QUATERNION
     return "X" if joint.type.is_axial else "", turn_from_x(first)
 
 

@@ -22,7 +22,7 @@ from eurdf.convert.inertia import about_centre, accepted_inertia, has_inertia
 from eurdf.convert.losses import Losses
 from eurdf.convert.meshes import MeshFiles
 from eurdf.convert.names import UniqueNames
-from eurdf.convert.parts import UPRIGHT, Part, part_of
+from eurdf.convert.parts import Part, part_of
 from eurdf.convert.steps import in_series
 from eurdf.convert.usd.facts import CLOSURES, DAMPING_TIME, EXACT, LEAST_MOMENT, ROWS
 from eurdf.convert.usd.joints import KINDS, WHOLE, Freedom, axis_and_frame, freedoms, turns
@@ -32,7 +32,7 @@ from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.constraint import Closure, Coupling
 from eurdf.mechanism.joint import Joint, JointProperties, Mimic
 from eurdf.mechanism.mechanism import ROOT_JOINT, root_joint
-from eurdf.mechanism.pose import IDENTITY, Pose, turn_from_x
+from eurdf.mechanism.pose import IDENTITY, IDENTITY_QUATERNION, Pose, turn_from_x
 from eurdf.mechanism.spanning_tree import rigid_roots
 
 _DEGREES = 180.0 / math.pi
@@ -276,7 +276,7 @@ class _UsdWriter:
     # -- constraints ------------------------------------------------------------------------------------------------
 
     def _closure(self, closure: Closure) -> None:
-        axis, frames = "", (UPRIGHT, UPRIGHT)
+        axis, frames = "", (IDENTITY_QUATERNION, IDENTITY_QUATERNION)
         if isinstance(closure, HingeClosure):
             axis, frames = "X", (turn_from_x(closure.axes[0]), turn_from_x(closure.axes[1]))
         ends = []

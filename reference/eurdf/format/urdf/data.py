@@ -1,4 +1,4 @@
-"""A sound URDF as data."""
+"""A valid URDF as data."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class UrdfJoint(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Urdf:
-    """A sound URDF: unique names, known links, one tree.
+    """A valid URDF: unique names, known links, one tree.
 
     Attributes:
         document: The file it was read from.

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import eurdf
-from eurdf.kinematics.derived import borrowed
+from eurdf.pinocchio.memory import working_memory
 
 
 def answers(robot: eurdf.Robot, seed: int) -> list[Any]:
@@ -40,15 +40,15 @@ def test_threads_get_what_a_fresh_robot_answers(name: str) -> None:
         np.testing.assert_equal(own, answers(eurdf.load(name, geometry=False), seed))
 
 
-def test_borrowed_memory_is_used_again_but_by_one_at_a_time() -> None:
+def test_working_memory_is_used_again_but_by_one_at_a_time() -> None:
     robot = eurdf.load("four_bar", geometry=False)
 
     def memory(robot: eurdf.Robot, key: int) -> list[int]:
         return [key]
 
-    with borrowed(robot, memory, 1) as first, borrowed(robot, memory, 1) as second:
+    with working_memory(robot, memory, 1) as first, working_memory(robot, memory, 1) as second:
         assert first is not second
-    with borrowed(robot, memory, 1) as again, borrowed(robot, memory, 2) as other:
+    with working_memory(robot, memory, 1) as again, working_memory(robot, memory, 2) as other:
         assert again in (first, second)
         assert other == [2]
 
@@ -59,13 +59,13 @@ def test_memory_is_dropped_after_an_error_and_beyond_a_number_of_keys() -> None:
     class Memory:
         def __init__(self, robot: eurdf.Robot, key: int) -> None: ...
 
-    with pytest.raises(KeyError), borrowed(robot, Memory, 0) as failed:
+    with pytest.raises(KeyError), working_memory(robot, Memory, 0) as failed:
         raise KeyError
-    with borrowed(robot, Memory, 0) as kept:
+    with working_memory(robot, Memory, 0) as kept:
         assert kept is not failed
     references = []
     for key in range(100):
-        with borrowed(robot, Memory, key) as memory:
+        with working_memory(robot, Memory, key) as memory:
             references.append(weakref.ref(memory))
     del memory, kept, failed
     gc.collect()

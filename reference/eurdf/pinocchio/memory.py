@@ -1,35 +1,33 @@
-"""What is computed from a robot, or from its tree, once and kept with it."""
+"""What is computed from a robot, or from its tree, once and kept with it, and memory that is lent to one thread."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
-
-if TYPE_CHECKING:
-    from eurdf.pinocchio.robot import Robot
+from typing import Any, Generic, TypeVar
 
 _T = TypeVar("_T")
 
 
-class _Keeper(Protocol):
-    @property
-    def derived(self) -> dict[Any, Any]: ...
+class Cached:
+    """What keeps what functions compute from it.
 
-
-_Kept = TypeVar("_Kept", bound=_Keeper)
-
-
-def derived(robot: _Kept, compute: Callable[..., _T], *key: Hashable) -> _T:
-    """What a function computes from a robot or a tree, and a key, computed when first asked for.
-
-    Threads that ask at once all get the same.
+    Attributes:
+        derived: What was computed, by function and key.
     """
-    name = (compute, *key) if key else compute
-    if name not in robot.derived:
-        robot.derived.setdefault(name, compute(robot, *key))
-    kept: _T = robot.derived[name]
-    return kept
+
+    derived: dict[Any, Any]
+
+    def cached(self, compute: Callable[..., _T], *key: Hashable) -> _T:
+        """What a function computes from this and a key, computed when first asked for.
+
+        Threads that ask at once all get the same.
+        """
+        name = (compute, *key) if key else compute
+        if name not in self.derived:
+            self.derived.setdefault(name, compute(self, *key))
+        kept: _T = self.derived[name]
+        return kept
 
 
 # Of working memory of one kind, kept for so many keys at most, and for each key so much for as many threads.
@@ -37,7 +35,7 @@ _MOST_KEYS = 8
 _MOST_IDLE = 4
 
 
-class borrowed(Generic[_T]):  # noqa: N801 - used like a function
+class working_memory(Generic[_T]):  # noqa: N801 - used like a function
     """Working memory ``make(robot, *key)``, which no other thread uses meanwhile; it is kept for the next caller.
 
     Results must not depend on what it was used for before. After an error it is not kept.
@@ -45,11 +43,11 @@ class borrowed(Generic[_T]):  # noqa: N801 - used like a function
 
     __slots__ = ("_idle", "_memory")
 
-    def __init__(self, robot: Robot, make: Callable[..., _T], *key: Hashable) -> None:
+    def __init__(self, robot: Cached, make: Callable[..., _T], *key: Hashable) -> None:
         try:
-            idle: list[_T] = robot.derived[borrowed, make][key]
+            idle: list[_T] = robot.derived[working_memory, make][key]
         except KeyError:
-            kept = robot.derived.setdefault((borrowed, make), {})
+            kept = robot.derived.setdefault((working_memory, make), {})
             if len(kept) >= _MOST_KEYS:
                 kept.clear()
             idle = kept.setdefault(key, [])
