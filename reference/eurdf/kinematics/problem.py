@@ -72,10 +72,11 @@ class Group:
         """The same at q (B, nq)."""
         return self.jacobian(self.evaluator.at(q))
 
-    def following(self, q: Matrix, driven: Matrix, whole: Matrix | None = None) -> tuple[Matrix, Mask]:
+    def following(self, q: Matrix, driven: Matrix | None, whole: Matrix | None = None) -> tuple[Matrix, Mask]:
         """Their own velocities (B, n, k) for given ones (B, g, k), and where (B,) these exist beyond doubt.
 
-        They are the least ones, in rad/s and m/s. ``whole`` is K (B, nc, nv) of the robot, if it is known.
+        They are the least ones, in rad/s and m/s, for each unit velocity if none are given. ``whole`` is
+        K (B, nc, nv) of the robot, if it is known.
         """
         if whole is None:
             K = self.evaluator.jacobian(self.evaluator.at(q))
@@ -83,8 +84,8 @@ class Group:
             K = whole[:, self.loops.rows[:, None], np.concatenate((self.loops.velocities, self.by))]
         K = K * self.row_scale[:, None]
         norm = self.spread * norms(K)
-        n = len(self.unit)
-        return least_solution(K[:, :, :n], -product(K[:, :, n:], driven), norm)
+        own, by = K[:, :, : len(self.unit)], K[:, :, len(self.unit) :]
+        return least_solution(own, -by if driven is None else -product(by, driven), norm)
 
     def holding(self, direction: Vector) -> Group:
         """The same group, whose derivative is zero along a direction (n,) of unit length: no step moves along it."""
@@ -118,6 +119,8 @@ class Problem:
         self.given = np.array(given, dtype=np.intp)
         self._place = np.zeros(self.tree.nv, dtype=np.intp)  # of each velocity where it is among the given ones
         self._place[self.given] = np.arange(len(given))
+        self._unit_motions = np.zeros((self.tree.nv, len(given)))  # of the given velocities
+        self._unit_motions[self.given, self._place[self.given]] = 1.0
         loops = independent_groups(robot, given)
         self.groups = tuple(self._group(robot, each, few) for each in loops)
         self.work = sum(group.work for group in self.groups)
@@ -225,13 +228,12 @@ class Problem:
 
     def derivative(self, q: Matrix) -> tuple[Matrix, Mask]:
         """Their derivatives (B, nv, k) by the given velocities, and where (B,) they exist beyond doubt."""
-        B, k = len(q), len(self.given)
-        D, sure = np.zeros((B, self.tree.nv, k)), np.ones(B, dtype=bool)
-        D[:, self.given, np.arange(k)] = 1.0
+        D, sure = np.empty((len(q), *self._unit_motions.shape)), np.ones(len(q), dtype=bool)
+        D[:] = self._unit_motions
         whole = self.jacobian(q) if self._is_evaluated_whole else None
         for group in self.together:
             if len(group.by) and len(group.unit):
-                solution, is_sure = group.following(q, np.eye(len(group.by))[None], whole)
+                solution, is_sure = group.following(q, None, whole)
                 D[:, group.loops.velocities[:, None], self._place[group.by]] = solution
                 sure &= is_sure
         return D, sure

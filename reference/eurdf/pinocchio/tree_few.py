@@ -76,6 +76,10 @@ class FewPoses(RelativePoses):
         """Jlog6(ᴮM_A) (B, k, 6, 6)."""
         return np.array([pin.Jlog6(aMb.inverse()) for aMb in self._each()]).reshape(*self._shape, 6, 6)
 
+    def twist_in_b(self) -> Matrix:
+        """Ad(ᴮM_A) (B, k, 6, 6)."""
+        return np.array([aMb.toActionMatrixInverse() for aMb in self._each()]).reshape(*self._shape, 6, 6)
+
     def turn_from(self, rotation: Matrix) -> Matrix:
         turns = rotation.swapaxes(2, 3) @ self.rotation
         return np.array([pin.log3(R) for R in turns.reshape(-1, 3, 3)]).reshape(*self._shape, 3)
