@@ -33,7 +33,6 @@ class Group:
         by: Indices in v of the given velocities that move them.
         evaluator: Evaluates their constraints by their own velocities, followed by the given ones.
         row_scale: Factors (m,) that make their rows dimensionless.
-        weights: Weights (m, 2) of the squares of the rows in their sum: 1, and those that make it dimensionless.
         unit: Unit (n,) of each of their own velocities.
         spread: Ratio of the largest unit of all these velocities to the smallest.
         work: Multiplications for the smaller of A Aᵀ and Aᵀ A, and for the evaluation of A.
@@ -45,7 +44,6 @@ class Group:
     by: Indices
     evaluator: Any
     row_scale: Vector
-    weights: Matrix
     unit: Vector
     spread: float
     work: float
@@ -140,14 +138,11 @@ class Problem:
         velocities = np.concatenate((loops.velocities, by))
         rows, units = self.spaces.row_scale[loops.rows], self.spaces.scale[velocities]
         m, n = len(loops.rows), len(loops.velocities)
-        with np.errstate(over="ignore", invalid="ignore"):
-            weights = np.stack((np.ones(m), rows * rows), axis=1)
         return Group(
             loops,
             by,
             evaluator(robot, loops.closures, velocities, few=few),
             rows,
-            weights,
             units[:n],
             float(units.max() / units.min()) if len(units) else 1.0,
             float(m) * n * min(m, n) + _WORK_OF_A_CLOSURE * len(loops.closures),
