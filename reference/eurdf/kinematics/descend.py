@@ -216,7 +216,7 @@ def _steps(
             rooms = []  # no limit is in the way
         else:
             _stay_within(A, b, np.array(damping, ndmin=1), steps, rooms)
-    if not all([every(square(step) <= 1.0) for step in steps]):  # else none is longer
+    if not all(every(square(step) <= 1.0) for step in steps):  # else none is longer
         longest: Numbers = 1.0
         for step in steps:
             longest = at_least(longest, largest(step))

@@ -226,10 +226,8 @@ def least_solution(A: Matrix, b: Matrix, norm: Vector) -> tuple[Matrix, Mask]:
     own = product(right.swapaxes(1, 2), inverse[:, :, None] * product(left.swapaxes(1, 2), b))
     missed = largest((product(A, own) - b).reshape(len(A), -1))
     certain = missed <= MISSED * largest(b.reshape(len(A), -1))
-    if not every(counts):
-        redundant = values <= column(ZERO * largest(values))
-        certain = certain & (counts | redundant).all(axis=1)
-    x[which], sure[which] = own, certain
+    redundant = values <= ZERO * values[:, :1]
+    x[which], sure[which] = own, certain & (counts | redundant).all(axis=1)
     return x, sure
 
 
