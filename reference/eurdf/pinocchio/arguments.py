@@ -8,17 +8,14 @@ from __future__ import annotations
 import math
 import operator
 import reprlib
-from collections.abc import Callable, Iterable
-from functools import wraps
-from typing import Any, TypeVar
+from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 
 from eurdf.array import Matrix
 
 _FLOATS = np.dtype(np.float64)
-
-_Result = TypeVar("_Result")
 
 
 def checked_array(name: str, given: Any, *shapes: tuple[int, ...]) -> Matrix:
@@ -99,18 +96,6 @@ def checked_data(model: Any, data: Any) -> Any:
     if not isinstance(data, pin.Data) or not model.check(data):
         raise ValueError("data is not a pin.Data of the robot's model; pass robot.data or robot.model.createData()")
     return data
-
-
-def accepting(
-    function: Callable[..., _Result], types: tuple[type, ...], made: Callable[[Any], Any]
-) -> Callable[..., _Result]:
-    """A function whose first argument, the robot, may also be of other types, of which the robot is made first."""
-
-    @wraps(function)
-    def of_any(robot: Any, *args: Any, **options: Any) -> _Result:
-        return function(made(robot) if isinstance(robot, types) else robot, *args, **options)
-
-    return of_any
 
 
 def as_names(given: str | Iterable[str]) -> tuple[str, ...]:
