@@ -349,7 +349,7 @@ def assembled(
         reason = "rounding" if closes else why_open if closed.decided[0] else "not decided"
     return Assembly(
         q=closed.q[0],
-        residual=math.hypot(*r),
+        residual=math.hypot(*r.tolist()),
         converged=converged,
         closes=closes,
         iterations=int(closed.iterations[0]),

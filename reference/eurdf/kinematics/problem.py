@@ -51,6 +51,16 @@ class Group:
     held: Vector | None = None
 
     @cached_property
+    def rows(self) -> slice | Indices:
+        """Which rows of the robot's residual are theirs."""
+        return as_slice(self.loops.rows)
+
+    @cached_property
+    def closures(self) -> slice | Indices:
+        """Which of the robot's constraints are theirs."""
+        return as_slice(np.array(self.loops.closures, dtype=np.intp))
+
+    @cached_property
     def factors(self) -> Matrix:
         """Factors (m, n) that make K dimensionless."""
         with np.errstate(over="ignore", invalid="ignore"):
@@ -163,9 +173,9 @@ class Problem:
         r = np.empty((len(q), len(self.spaces.row_scale)))
         lengths, angles = np.empty((2, len(q), len(self.names)))
         for part in self.parts:
-            at, closures = part.evaluator.at(q), list(part.loops.closures)
-            r[:, part.loops.rows] = part.evaluator.residual(at)
-            lengths[:, closures], angles[:, closures] = part.evaluator.openings(at)
+            at = part.evaluator.at(q)
+            r[:, part.rows] = part.evaluator.residual(at)
+            lengths[:, part.closures], angles[:, part.closures] = part.evaluator.openings(at)
         return r, lengths, angles
 
     def residual(self, q: Matrix) -> Matrix:
@@ -174,7 +184,7 @@ class Problem:
             return self.parts[0].residual(q)
         r = np.empty((len(q), len(self.spaces.row_scale)))
         for part in self.parts:
-            r[:, part.loops.rows] = part.residual(q)
+            r[:, part.rows] = part.residual(q)
         return r
 
     def jacobian(self, q: Matrix) -> Matrix:
