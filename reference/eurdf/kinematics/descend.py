@@ -217,7 +217,7 @@ def _steps(
     rooms = [limits.room(q, group.own) for group in groups]
     rooms = [(down / group.unit, up / group.unit) for (down, up), group in zip(rooms, groups, strict=True)]
     _stay_within(A, b, np.array(damping, ndmin=1), free, rooms)
-    steps = [np.clip(step, *room) for step, room in zip(_shortened(free), rooms, strict=True)]
+    steps = [np.minimum(np.maximum(step, down), up) for step, (down, up) in zip(_shortened(free), rooms, strict=True)]
     return steps, problem.moved(q, groups, steps)
 
 

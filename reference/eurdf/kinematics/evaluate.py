@@ -16,7 +16,7 @@ import numpy as np
 from eurdf.array import Indices, Matrix
 from eurdf.closures.coupling import Couplings
 from eurdf.closures.kind import ClosureKind, RelativePoses
-from eurdf.closures.se3 import velocity_of_origin
+from eurdf.closures.se3 import IDENTITY_ROTATION, velocity_of_origin
 from eurdf.kinematics.pairs_many import ManyPairs
 from eurdf.kinematics.tree_many import TreeMany
 from eurdf.mechanism.constraint import Constraint, Coupling
@@ -186,11 +186,10 @@ class Evaluator(_ByConfiguration):
     def drift(self, q: Matrix, v: Matrix) -> Matrix:
         """r̈ = K̇ v (B, m) at q (B, nq) while every joint keeps its velocity v (B, nv)."""
         d = np.zeros((len(q), self.m))  # that of couplings is zero
-        if self._groups:
-            motions = self._pairs.motions(q, v)
-            for group in self._groups:
-                part = group.kind.drift(motions.of(group.pairs), group.fixed)
-                d[:, group.rows] = part.reshape(len(q), group.m)
+        motions: Any = self._pairs.motions(q, v) if self._groups else None
+        for group in self._groups:
+            own = motions if self._is_plain else motions.of(group.pairs)
+            d[:, group.rows] = group.kind.drift(own, group.fixed).reshape(len(q), group.m)
         return d
 
     def openings(self, at: State) -> tuple[Matrix, Matrix]:
@@ -254,7 +253,7 @@ class Frames(_ByConfiguration):
         """Of each frame (B, F, 6, nv) the velocity of its origin and its angular velocity, by v, in world axes."""
         p = at.position
         rows = np.zeros((*p.shape[:2], 6, 6))
-        rows[..., :3, :], rows[..., 3:, 3:] = velocity_of_origin(p), np.eye(3)
+        rows[..., :3, :], rows[..., 3:, 3:] = velocity_of_origin(p), IDENTITY_ROTATION
         return self.rows(at, rows).reshape(*p.shape[:2], 6, self._pairs.n)
 
     def rows(self, at: Any, rows: Matrix) -> Matrix:

@@ -76,6 +76,10 @@ class FewPoses(RelativePoses):
         """Jlog6(ᴮM_A) (B, k, 6, 6)."""
         return np.array([pin.Jlog6(aMb.inverse()) for aMb in self._each()]).reshape(*self._shape, 6, 6)
 
+    def twist_in_b(self) -> Matrix:
+        """Ad(ᴮM_A) (B, k, 6, 6)."""
+        return np.array([aMb.toActionMatrixInverse() for aMb in self._each()]).reshape(*self._shape, 6, 6)
+
     def turn_from(self, rotation: Matrix) -> Matrix:
         each = zip(rotation.reshape(-1, 3, 3), self._each(), strict=True)
         return np.array([pin.log3(S.T.dot(aMb.rotation)) for S, aMb in each]).reshape(*self._shape, 3)
