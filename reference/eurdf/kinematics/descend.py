@@ -184,8 +184,8 @@ def evaluated(groups: Sequence[Group], q: Matrix) -> tuple[list[Any], list[Matri
 def _ended(
     q: Matrix, r: list[Matrix], error: Numbers, squared: Numbers, step: int, cut: Numbers | None = None
 ) -> Descended:
-    B = len(q)
-    steps, cut = np.full(B, step), np.zeros(B, dtype=bool) if cut is None else np.array(cut)
+    steps, cut = np.zeros(len(q), dtype=np.intp), np.zeros(len(q), dtype=bool) if cut is None else np.array(cut)
+    steps += step
     return Descended(q, r, np.array(error, ndmin=1), np.array(squared, ndmin=1), steps, cut)
 
 
@@ -216,10 +216,11 @@ def _steps(
             rooms = []  # no limit is in the way
         else:
             _stay_within(A, b, np.array(damping, ndmin=1), steps, rooms)
-    if not all(every(square(step) <= 1.0) for step in steps):  # else none is longer
-        longest: Numbers = 1.0
-        for step in steps:
+    longest: Numbers = 1.0
+    for step in steps:
+        if not every(square(step) <= 1.0):  # else it is not longer
             longest = at_least(longest, largest(step))
+    if some(longest > 1.0):
         steps = [step / column(longest) for step in steps]
     if rooms:
         steps = [np.minimum(np.maximum(step, down), up) for step, (down, up) in zip(steps, rooms, strict=True)]
