@@ -339,7 +339,7 @@ def assembled(
         q = limits.clip(q, np.concatenate([group.loops.velocities for group in problem.groups]))
     closed = close(problem, q[None], tolerance, restarts, limits)
     with np.errstate(over="ignore", invalid="ignore"):
-        (r,), found = measured(problem, closed.q)
+        (r,), found = problem.residual(closed.q), openings(problem, closed.q)
     closes = bool(closed.closes[0])
     converged = float(np.abs(r).max(initial=0.0)) <= tolerance
     at_limits = () if closes or limits is None else _pressed(problem, closed.q, limits)
@@ -374,10 +374,10 @@ def closed_start(problem: Problem, q: Vector, tolerance: float, where: str = "th
     return first.q
 
 
-def measured(problem: Problem, q: Matrix) -> tuple[Matrix, tuple[Opening, ...]]:
-    """The residual (1, nc) at a configuration (1, nq), and how far each constraint is open."""
-    r, lengths, angles = problem.measured(q)
-    return r, tuple(map(Opening, problem.names, lengths[0].tolist(), angles[0].tolist()))
+def openings(problem: Problem, q: Matrix) -> tuple[Opening, ...]:
+    """How far each constraint is open at a configuration (1, nq)."""
+    lengths, angles = problem.openings(q)
+    return tuple(map(Opening, problem.names, lengths[0].tolist(), angles[0].tolist()))
 
 
 @np.errstate(over="ignore", invalid="ignore")

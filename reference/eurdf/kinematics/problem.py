@@ -164,19 +164,16 @@ class Problem:
         """Numbers that one element takes, roughly."""
         return sum(int(part.evaluator.numbers) for part in self.parts) + 10 * self.tree.nq
 
-    def measured(self, q: Matrix) -> tuple[Matrix, Matrix, Matrix]:
-        """At q (B, nq) the residual (B, nc), m and rad, and how far each constraint is open (B, c), m and rad."""
+    def openings(self, q: Matrix) -> tuple[Matrix, Matrix]:
+        """How far each constraint is open at q (B, nq), m and rad, (B, c) each."""
         if len(self.parts) == 1:
             (part,) = self.parts
-            at = part.evaluator.at(q)
-            return part.evaluator.residual(at), *part.evaluator.openings(at)
-        r = np.empty((len(q), len(self.spaces.row_scale)))
+            found: tuple[Matrix, Matrix] = part.evaluator.openings(part.evaluator.at(q))
+            return found
         lengths, angles = np.empty((2, len(q), len(self.names)))
         for part in self.parts:
-            at = part.evaluator.at(q)
-            r[:, part.rows] = part.evaluator.residual(at)
-            lengths[:, part.closures], angles[:, part.closures] = part.evaluator.openings(at)
-        return r, lengths, angles
+            lengths[:, part.closures], angles[:, part.closures] = part.evaluator.openings(part.evaluator.at(q))
+        return lengths, angles
 
     def residual(self, q: Matrix) -> Matrix:
         """The residual (B, nc), m and rad."""
@@ -200,11 +197,8 @@ class Problem:
 
     def closes(self, q: Matrix, enough: float) -> Mask:
         """Whether (B,) every constraint is open by at most ``enough``, m and rad, at q (B, nq); NaN is not closed."""
-        closes: Mask = np.ones(len(q), dtype=bool)
-        for part in self.parts:
-            for open_by in part.evaluator.openings(part.evaluator.at(q)):
-                closes &= (open_by <= enough).all(axis=1)
-        return closes
+        lengths, angles = self.openings(q)
+        return np.asarray(np.logical_and.reduce((lengths <= enough) & (angles <= enough), axis=1))
 
     def moved(self, q: Matrix, groups: Sequence[Group], steps: Sequence[Matrix]) -> Matrix:
         """Configurations (B, nq) after steps (B, n) of groups; lengths are in characteristic lengths."""

@@ -247,21 +247,21 @@ def damped_step(A: Matrix, e: Matrix, damping: Vector) -> Matrix:
     if not 0 < m <= n:
         return _damped_by_values(A, e, np.array(damping, ndmin=1))
     back = A.swapaxes(1, 2)
-    gram = A @ back
-    if not np.isfinite(gram).all():
+    gram = product(A, back)
+    if not every(np.isfinite(total(diagonals(gram)))):
         gram = np.where(are_finite(gram)[:, None, None], gram, 0.0)
     squared, axes = _umath_linalg.eigh_lo(gram)  # as for `solutions`
     highest = squared[:, -1:]
     counts = squared > CERTAIN * CERTAIN * highest
     inverse = 1.0 / (squared + column(damping))
-    sure = counts.all()
+    sure = np.count_nonzero(counts) == counts.size
     if not sure:
         inverse = np.where(counts, inverse, 0.0)
     y: Matrix = -times(back, times(axes, inverse * times(axes.swapaxes(1, 2), e)))
     if sure:
         return y
-    doubtful = (~counts & (squared > _ROUNDING_OF_SQUARES * highest)).any(axis=1) | ~counts.any(axis=1)
-    if doubtful.any():
+    doubtful = (counts != (squared > _ROUNDING_OF_SQUARES * highest)).any(axis=1) | ~(highest[:, 0] > 0.0)
+    if np.count_nonzero(doubtful):
         y[doubtful] = _damped_by_values(A[doubtful], e[doubtful], np.broadcast_to(damping, len(A))[doubtful])
     return y
 
