@@ -26,9 +26,10 @@ Progress = Callable[[int, int], None]
 
 Arrays = Sequence[npt.NDArray[Any]]
 
-# Memory of the arrays of one block, bytes, and the largest number of elements in one: more would not be faster.
-_BLOCK_BYTES = 2**22
-_LONGEST_BLOCK = 1000
+# Memory of the arrays of one block, bytes, and the largest number of elements in one: with more, the arrays are not in
+# the cache of the processor; with less, NumPy takes longer to begin its loops than to run them.
+_BLOCK_BYTES = 2**24
+_LONGEST_BLOCK = 2000
 
 # Number of blocks that an executor is given at once, so that a long batch does not fill its queue.
 _MOST_SUBMITTED = 64
