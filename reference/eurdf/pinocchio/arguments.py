@@ -17,6 +17,7 @@ import numpy as np
 from eurdf.array import Matrix
 
 _FLOATS = np.dtype(np.float64)
+_MANY = 1000  # values
 
 _Result = TypeVar("_Result")
 
@@ -52,8 +53,9 @@ def checked_array(name: str, given: Any, *shapes: tuple[int, ...]) -> Matrix:
 
 
 def _all_finite(values: Matrix) -> bool:
-    # Sooner than by isfinite; unlike dot, vdot does not warn. If the squares overflow, slower steps follow.
-    return math.isfinite(np.vdot(values, values))
+    # Sooner than by isfinite; unlike dot, vdot does not warn. If the squares overflow, slower steps follow. For many
+    # values BLAS would start threads, which wait long for each other on a busy machine.
+    return math.isfinite(np.vdot(values, values)) if values.size < _MANY else bool(np.isfinite(values).all())
 
 
 def checked_count(name: str, given: Any, least: int) -> int:
