@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from eurdf.array import Matrix
+from eurdf.blas import ONE_THREAD
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.evaluate import many_tree
 from eurdf.kinematics.named import configurations_of
@@ -130,7 +131,7 @@ def blocks(
 
 def _evaluated(function: Callable[..., Arrays], *arguments: Any) -> Arrays:
     # Elements that overflow do not converge, and say so.
-    with np.errstate(all="ignore"):
+    with np.errstate(all="ignore"), ONE_THREAD:
         return function(*arguments)
 
 
