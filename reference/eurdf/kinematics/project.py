@@ -138,7 +138,7 @@ def _step(task: ProjectionTask, q: Matrix, here: Matrix) -> tuple[Matrix, Vector
         own: Indices = space.which
         slope, H = _second_derivatives(task, q[own], here[own], K[own], space)
         step = _downhill(H, slope)
-        v[own] = (space.basis @ step[:, :, None])[:, :, 0]
+        v[own] = (space.basis[:, :, : step.shape[1]] @ step[:, :, None])[:, :, 0]
         gain[own] = -(slope * step).sum(axis=1)
     return v, gain
 
@@ -146,17 +146,25 @@ def _step(task: ProjectionTask, q: Matrix, here: Matrix) -> tuple[Matrix, Vector
 def _second_derivatives(
     task: ProjectionTask, q: Matrix, here: Matrix, K: Matrix, space: TangentSpace
 ) -> tuple[Matrix, Matrix]:
-    """Slope (b, m) and second derivative (b, m, m) of the distance along the basis Z (b, nv, m)."""
-    problem, Z = task.problem, space.basis
-    b, nv, m = Z.shape
+    """Slope (b, m) and second derivative (b, m, m) of the distance along the columns of a basis.
+
+    If W is diagonal, these are the columns that move loops: the others have no slope. What one group of loops changes
+    then does not depend on the others, so that one motion of all of them shows it.
+    """
+    problem, Z, motions = task.problem, space.basis, space.motions
+    if np.count_nonzero(task.W) > len(task.W):
+        motions = [[(column, slice(None))] for column in range(Z.shape[2])]
     g = _gradient(task, q, here)
-    multipliers = (g[:, None] @ space.inverse)[:, 0]
-    normal = g - (multipliers[:, None] @ K)[:, 0]
-    change = np.empty((b, nv, m))
-    for column in range(m):
-        beside = problem.tree.integrate(here, _DIFFERENCE * Z[:, :, column])
-        along = (multipliers[:, None] @ problem.jacobian(beside))[:, 0]
-        change[:, :, column] = (_gradient(task, q, beside) - along - normal) / _DIFFERENCE
+    multipliers = g[:, None] @ space.inverse
+    normal = g - (multipliers @ K)[:, 0]
+    Z = Z[:, :, : sum(map(len, motions))]
+    change = np.zeros(Z.shape)
+    for own in motions:
+        beside = problem.tree.integrate(here, _DIFFERENCE * Z[:, :, [column for column, _ in own]].sum(axis=2))
+        along = (multipliers @ problem.jacobian(beside))[:, 0]
+        rate = (_gradient(task, q, beside) - along - normal) / _DIFFERENCE
+        for column, velocities in own:
+            change[:, velocities, column] = rate[:, velocities]
     return (g[:, None] @ Z)[:, 0], Z.swapaxes(1, 2) @ change
 
 

@@ -83,6 +83,18 @@ class TangentSpace:
             inverse[:, group.velocities[:, None], group.rows] = scale[group.velocities, None] * own * rows[group.rows]
         return inverse[0] if self._alone else inverse
 
+    @property
+    def motions(self) -> list[list[tuple[int, Indices | slice]]]:
+        """The columns of the bases that move loops, with the velocities of their group: of each group one at a time."""
+        found: list[list[tuple[int, Indices | slice]]] = []
+        column = 0
+        for block in self._blocks:
+            for index in range(block.free.shape[2]):
+                found += [[]] * (index == len(found))
+                found[index] = [*found[index], (column + index, block.group.velocities)]
+            column += block.free.shape[2]
+        return found
+
     def _whole(self, bases: Sequence[Matrix]) -> Matrix:
         """Bases of the groups, and the unit motions of the velocities outside of them, as columns (nv, …)."""
         count, outside = sum(basis.shape[2] for basis in bases), self._spaces.outside
