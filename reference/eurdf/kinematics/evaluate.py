@@ -173,7 +173,11 @@ class Evaluator:
         """r̈ = K̇ v (B, m) at q (B, nq) while every joint keeps its velocity v (B, nv)."""
         d = np.zeros((len(q), self.m))  # that of couplings is zero
         if self._groups:
-            motions = self._pairs.motions(q, v)
+            if self._tree is None or len(q) != 1:
+                motions = self._pairs.motions(q, v)
+            else:  # poses that the residual and K have used
+                at = self.at(q)
+                motions = self._pairs.motions(at.q, v)._replace(poses=at.poses)
             for group in self._groups:
                 part = group.kind.drift(motions.of(group.pairs), group.fixed)
                 d[:, group.rows] = part.reshape(len(q), group.m)
