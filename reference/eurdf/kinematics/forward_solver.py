@@ -61,7 +61,7 @@ class ForwardSolver:
         """The dynamics of the tree, in memory that is made on first use and kept."""
         if self._own is None:
             self._own = self._tree.dynamics()
-        elif isinstance(self._own, LimbsDynamics):
+        elif self._limbs:
             self._own.update()
         return self._own
 
@@ -122,28 +122,15 @@ class ForwardSolver:
 
         It is, unless the constraints hold, the rank of K is certain, and the solution satisfies both equations.
         """
-        by_limbs = dynamics is self._own and self._limbs
-        if not by_limbs and (self._whole is None or dynamics.data is None):
-            return None
+        is_own, solver = dynamics is self._own, self._whole
         try:
-            if by_limbs:
+            if is_own and self._limbs:
                 return self._by_limbs(q, v, force, gains, dynamics, nearly_closed)
-            assert self._whole is not None
-            return self._at_once(self._whole, q, v, force, gains, dynamics, nearly_closed)
+            if solver is None or dynamics.data is None:
+                return None
+            a, on_a, J, target = solver.solve(q, v, force, gains, dynamics.data, is_own)
         except np.linalg.LinAlgError:
             return None
-
-    def _at_once(
-        self,
-        solver: LimbSolver,
-        q: Vector,
-        v: Vector,
-        force: Vector,
-        gains: list[Gains],
-        dynamics: TreeDynamics,
-        nearly_closed: bool,
-    ) -> Acceleration | None:
-        a, on_a, J, target = solver.solve(q, v, force, gains, dynamics.data, dynamics is self._own)
         if not nearly_closed and not solver.is_closed(J, v):
             return None
         if not keeps(a, J, target) or not _balances(dynamics, q, v, a, force, on_a.dot(J)):

@@ -71,6 +71,8 @@ class ConstrainedDynamics:
                 self._models.append(found)
                 self._datas.append(found.createData())
                 self._owners.append(index)
+        # Pinocchio has a matrix of one column as a vector, and reads memory that is not its own for one without rows.
+        self._is_plain = bool(self._owners) and model.nv > 1
         # References to what the solver writes, since each attribute takes time; and the lever of what may be open.
         self._open_by = [
             (data.contact_placement_error, min(1.0, math.hypot(*contact.a) or 1.0))
@@ -111,9 +113,9 @@ class ConstrainedDynamics:
             pin.initConstraintDynamics(model, data, models, datas)
             self._prepared = data if is_own else None
         a = np.array(pin.constraintDynamics(model, data, q, v, force, models, datas, self._settings))
-        J = self._jacobian(data)
+        J = pin.getConstraintsJacobian(model, data, models, datas) if self._is_plain else self._jacobian(data)
         self._last = J, data
-        if self._rows is None or self._forces is None:
+        if self._forces is None or self._rows is None:
             return ConstrainedMotion(a, data.lambda_c, J, data.primal_rhs_contact)
         target = self._rows.dot(data.primal_rhs_contact)
         return ConstrainedMotion(a, self._forces.dot(data.lambda_c), self._rows.dot(J), target)
@@ -153,7 +155,7 @@ class ConstrainedDynamics:
         if not self._owners:
             return np.empty((0, self._model.nv))
         J = pin.getConstraintsJacobian(self._model, data, self._models, self._datas)
-        return np.asarray(J.reshape(-1, self._model.nv)) if self._model.nv == 1 else J
+        return np.asarray(J.reshape(-1, self._model.nv))
 
 
 def _forces_of_contacts(constraints: Sequence[Constraint]) -> Matrix | None:

@@ -27,12 +27,14 @@ class Limb:
 
     Attributes:
         model: Its model.
+        is_whole: Whether it is all of the tree.
         velocities: Indices (n,) in v of its velocities.
     """
 
     def __init__(self, tree: Tree, joints: Sequence[int] | None = None, shares: Counter[int] | None = None) -> None:
         """Take joints, ascending, with all that carry them, and the number of limbs that have each; all by default."""
         self._site, self._whole = tree.site, tree.model
+        self.is_whole = joints is None or shares is None
         self._index: dict[int, int] | None = None
         self.velocities: Indices = np.arange(tree.nv)
         self._own_q: slice | Indices | None = None
