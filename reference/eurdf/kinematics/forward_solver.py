@@ -1,4 +1,4 @@
-"""The acceleration of the closed mechanism: by the tree's own solver if that is beyond doubt, else by elimination."""
+"""The acceleration of the closed mechanism: by Pinocchio's solver if that is beyond doubt, else by elimination."""
 
 from __future__ import annotations
 

@@ -47,19 +47,17 @@ class Limb:
             above = self._index[tree.parents[joint]]
             place = model.jointPlacements[joint]
             self._index[joint] = self.model.addJoint(above, model.joints[joint], place, model.names[joint])
-        self._shares = [shares[joint] for joint in joints]
+        self._shares = {joint: shares[joint] for joint in joints}
         self.velocities = np.array([each for joint in joints for each in tree.own_velocities[joint]], dtype=np.intp)
         coordinates = [each for joint in joints for each in tree.own_coordinates[joint]]
         self._own_q, self._own_v = as_slice(np.array(coordinates, dtype=np.intp)), as_slice(self.velocities)
-        self._share_of_v = np.repeat(self._shares, [len(tree.own_velocities[joint]) for joint in joints])
+        self._share_of_v = np.array([shares[joint] for joint in joints for _ in tree.own_velocities[joint]])
         self.update()
 
     def update(self) -> None:
         """Take its share of the inertias, armature and gravity that the model of the tree has now."""
         own, whole = self.model, self._whole
-        if self._index is None:
-            return
-        for (joint, index), share in zip(list(self._index.items())[1:], self._shares, strict=True):
+        for index, (joint, share) in enumerate(self._shares.items(), 1):
             inertia = whole.inertias[joint]
             own.inertias[index] = pin.Inertia(inertia.mass / share, inertia.lever, inertia.inertia / share)
             own.jointPlacements[index] = whole.jointPlacements[joint]
