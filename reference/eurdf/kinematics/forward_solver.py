@@ -13,6 +13,7 @@ from eurdf.kinematics.independence import norm
 from eurdf.kinematics.limb_solver import LimbSolver, is_rounding, keeps
 from eurdf.kinematics.limbs import find_limbs
 from eurdf.kinematics.loop import find_loops
+from eurdf.kinematics.rank import inverses, solutions
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.pinocchio.constrained_dynamics import Gains, StatedGains
 from eurdf.pinocchio.limbs import Limb, LimbsDynamics
@@ -123,14 +124,11 @@ class ForwardSolver:
         It is, unless the constraints hold, the rank of K is certain, and the solution satisfies both equations.
         """
         is_own, solver = dynamics is self._own, self._whole
-        try:
-            if is_own and self._limbs:
-                return self._by_limbs(q, v, force, gains, dynamics, nearly_closed)
-            if solver is None or dynamics.data is None:
-                return None
-            a, on_a, J, target = solver.solve(q, v, force, gains, dynamics.data, is_own)
-        except np.linalg.LinAlgError:
+        if is_own and self._limbs:
+            return self._by_limbs(q, v, force, gains, dynamics, nearly_closed)
+        if solver is None or dynamics.data is None:
             return None
+        a, on_a, J, target = solver.solve(q, v, force, gains, dynamics.data, is_own)
         if not nearly_closed and not solver.is_closed(J, v):
             return None
         if not keeps(a, J, target) or not _balances(dynamics, q, v, a, force, on_a.dot(J)):
@@ -157,11 +155,11 @@ class ForwardSolver:
             alone.append(found)
             if len(own):
                 response, change = solver.respond(unit)
-                inverse = np.linalg.inv(response[own])
+                inverse = inverses(response[own])
                 joined.append((response, change, inverse))
                 inertia[at[:, None], at] += inverse
                 needed[at] += inverse.dot(found.a[own])
-        trunk = np.linalg.solve(inertia, needed)
+        trunk = solutions(inertia, needed)
         a, lambdas, carried = np.zeros(len(v)), np.zeros(self._size[0]), np.zeros(len(v))
         responses = iter(joined)
         for solver, (own, at, _), (own_a, on_a, J, target) in zip(self._limbs, self._joints, alone, strict=True):

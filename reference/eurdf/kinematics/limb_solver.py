@@ -16,6 +16,7 @@ from eurdf.array import Indices, Matrix, Vector
 from eurdf.kinematics.evaluate import Evaluator
 from eurdf.kinematics.independence import Independence, norm
 from eurdf.kinematics.loop import find_loops
+from eurdf.kinematics.rank import inverses
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.kinematics.tolerances import CLOSED_FOR_FORCES, FORCES_SOLVED
 from eurdf.pinocchio.constrained_dynamics import ConstrainedDynamics, ConstrainedMotion, Gains
@@ -54,7 +55,7 @@ class LimbSolver:
             self._own_rows = np.array([each.rows for each in related])
         self._is_plain = limb.is_whole and not others
         self._is_closed = True
-        self._other: tuple[Matrix, Matrix, Matrix] = (np.empty((0, 0)),) * 3  # J₂, X and the changes of f₁
+        self._other = (np.empty((0, 0)),) * 4  # J₂, X, the changes of f₁, and the inverse of J₂ X
 
     def solve(
         self, q: Vector, v: Vector, force: Vector, gains: list[Gains], data: Any, is_own: bool
@@ -68,9 +69,6 @@ class LimbSolver:
             gains: Baumgarte gains of each constraint of the robot.
             data: Memory of the limb's model.
             is_own: Whether no other solver of constrained dynamics uses this memory.
-
-        Raises:
-            LinAlgError: Rows are redundant.
         """
         if self._is_plain:
             return self._solver.solve(q, v, force, gains, data, is_own)
@@ -89,8 +87,9 @@ class LimbSolver:
         self._is_closed = norm(r) <= CLOSED_FOR_FORCES
         J = -C
         X, change = self._solver.respond(J.T)
-        self._other = J, X, change
-        f = np.linalg.solve(J.dot(X), target - J.dot(found.a))
+        inverse = inverses(J.dot(X))
+        self._other = J, X, change, inverse
+        f = inverse.dot(target - J.dot(found.a))
         return ConstrainedMotion(
             found.a + X.dot(f),
             np.concatenate((found.on_a + change.dot(f), f)),
@@ -99,16 +98,12 @@ class LimbSolver:
         )
 
     def respond(self, forces: Matrix) -> tuple[Matrix, Matrix]:
-        """The changes of a and of all f by generalized forces (n, k) on the limb, where `solve` was last.
-
-        Raises:
-            LinAlgError: Rows are redundant.
-        """
+        """The changes of a and of all f by generalized forces (n, k) on the limb, where `solve` was last."""
         a, on_a = self._solver.respond(forces)
         if self._evaluator is None:
             return a, on_a
-        J, X, change = self._other
-        f = np.linalg.solve(J.dot(X), -J.dot(a))
+        J, X, change, inverse = self._other
+        f = -inverse.dot(J.dot(a))
         return a + X.dot(f), np.concatenate((on_a + change.dot(f), f))
 
     def in_order(self, values: Vector) -> Vector:

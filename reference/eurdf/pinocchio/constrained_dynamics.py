@@ -181,13 +181,13 @@ class StatedGains:
 
     def __init__(self, robot: Robot) -> None:
         """Keep where they are, since they may change."""
-        self._stated: list[tuple[str, list[Any]]] | None = None
+        self._stated: list[tuple[str, Any, Sequence[Any]]] | None = None
         self._none = [(0.0, 0.0)] * len(robot.constraints)
         numbers = [len(contacts_of(each)) for each in robot.constraints]
         if all(numbers):
-            models = iter(robot.constraint_models)
+            models = (model.m_baumgarte_parameters for model in robot.constraint_models)
             self._stated = [
-                (each.name, [model.m_baumgarte_parameters for model in islice(models, number)])
+                (each.name, next(models), list(islice(models, number - 1)))
                 for each, number in zip(robot.constraints, numbers, strict=True)
             ]
 
@@ -197,10 +197,14 @@ class StatedGains:
         Raises:
             ValueError: The two models of a hinge have different gains.
         """
-        return self._none if self._stated is None else [_common(*each) for each in self._stated]
+        if self._stated is None:
+            return self._none
+        return [
+            _common(name, first, *others) if others else (first.Kp, first.Kd) for name, first, others in self._stated
+        ]
 
 
-def _common(constraint: str, stated: list[Any]) -> Gains:
+def _common(constraint: str, *stated: Any) -> Gains:
     """The gains that all models of a constraint have."""
     first, *others = gains = [(parameters.Kp, parameters.Kd) for parameters in stated]
     if any(other != first for other in others):
