@@ -54,8 +54,9 @@ class DistanceClosure(ClosureKind):
         u, distance = motions.poses.once(_direction, fixed)
         velocity = motions.velocity
         across = dot(velocity, velocity) - dot(u, velocity) ** 2
-        turning = np.divide(across, distance, out=np.zeros_like(distance), where=distance > 0.0)
-        return np.asarray(dot(u, motions.acceleration) + turning)[..., None]
+        if not distance.all():
+            across, distance = np.where(distance > 0.0, across, 0.0), np.where(distance > 0.0, distance, 1.0)
+        return np.asarray(dot(u, motions.acceleration) + across / distance)[..., None]
 
     @staticmethod
     def opening(poses: RelativePoses, fixed: Vector) -> tuple[Vector, Vector]:

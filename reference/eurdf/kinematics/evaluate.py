@@ -178,6 +178,9 @@ class Evaluator:
             else:  # poses that the residual and K have used
                 at = self.at(q)
                 motions = self._pairs.motions(at.q, v)._replace(poses=at.poses)
+            if self._is_plain:
+                (group,) = self._groups
+                return group.kind.drift(motions, group.fixed).reshape(d.shape)
             for group in self._groups:
                 part = group.kind.drift(motions.of(group.pairs), group.fixed)
                 d[:, group.rows] = part.reshape(len(q), group.m)

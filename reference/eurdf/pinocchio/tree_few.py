@@ -167,10 +167,13 @@ class FewPairs:
 
     def motions(self, q: Matrix, v: Matrix) -> RelativeMotions:
         """How the pairs move at q (B, nq) while every joint keeps its velocity v (B, nv)."""
-        found = np.empty((2, len(q), self.count, 6))
-        for element in range(len(q)):
-            for bundle in self._bundles:
-                found[:, element, bundle.which] = bundle.motions(q[element], v[element])
+        if len(q) == 1 and len(self._bundles) == 1:
+            found = self._bundles[0].motions(q[0], v[0])[:, None]
+        else:
+            found = np.empty((2, len(q), self.count, 6))
+            for element in range(len(q)):
+                for bundle in self._bundles:
+                    found[:, element, bundle.which] = bundle.motions(q[element], v[element])
         if len(q) != 1 or self._at[0] is not q:
             self._at = None, 0
         return RelativeMotions(self.at(q), *found)
