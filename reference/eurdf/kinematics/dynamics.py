@@ -126,6 +126,7 @@ def forward_dynamics(
     return ForwardDynamics(a, forces)
 
 
+@overflow_refused("the motor torques")
 def inverse_dynamics(
     robot: Robot,
     q: Named,
@@ -173,11 +174,7 @@ def inverse_dynamics(
         UnderactuatedMotion: The motors cannot produce this motion.
         NumericalOverflow: The result is not finite.
     """
-    with (
-        overflow_refused("the motor torques"),
-        working_memory(robot, ForwardSolver) as solver,
-        working_memory(robot, InverseSolver) as inverse_solver,
-    ):
+    with working_memory(robot, ForwardSolver) as solver, working_memory(robot, InverseSolver) as inverse_solver:
         q, v, a, dynamics = _state(robot, q, v, a, solver, data)
         norm, tolerance = _norm(robot, weights), checked_tolerance(tolerance)
         applied = AppliedForce(robot, external, dissipation).total(q, v, None, tau)
@@ -200,6 +197,7 @@ def inverse_dynamics(
     return InverseDynamics(u, forces)
 
 
+@overflow_refused("the acceleration")
 def achievable_acceleration(
     robot: Robot,
     q: Named,
@@ -238,7 +236,7 @@ def achievable_acceleration(
         UnderactuatedMotion: A motion without inertia would need a force.
         NumericalOverflow: The result is not finite.
     """
-    with overflow_refused("the acceleration"), working_memory(robot, ForwardSolver) as solver:
+    with working_memory(robot, ForwardSolver) as solver:
         q, v, a, dynamics = _state(robot, q, v, a, solver, data)
         motion = EquationOfMotion(robot, q, v, dynamics)
         motion.refuse_open(a, checked_tolerance(tolerance))

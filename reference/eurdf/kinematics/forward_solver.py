@@ -103,10 +103,7 @@ class ForwardSolver:
         """
         solution = self.beyond_doubt(q, v, force, gains, dynamics, nearly_closed=nearly_closed)
         if solution is None:
-            with overflow_refused("the acceleration"):
-                motion = EquationOfMotion(robot, q, v, dynamics)
-                solution = motion.eliminate(force, gains)
-            finite("the acceleration", *solution)
+            solution = _eliminated(robot, q, v, force, gains, dynamics)
         return solution
 
     def beyond_doubt(
@@ -195,6 +192,15 @@ class ForwardSolver:
             limb = solver.limb
             r[solver.rows], K[np.ix_(solver.rows, limb.velocities)] = solver.closures(q, limb.dynamics.data)
         return r, K
+
+
+@overflow_refused("the acceleration")
+def _eliminated(
+    robot: Robot, q: Vector, v: Vector, force: Vector, gains: list[Gains], dynamics: TreeDynamics
+) -> Acceleration:
+    solution = EquationOfMotion(robot, q, v, dynamics).eliminate(force, gains)
+    finite("the acceleration", *solution)
+    return solution
 
 
 def _balances(dynamics: TreeDynamics, q: Vector, v: Vector, a: Vector, force: Vector, carried: Vector) -> bool:
