@@ -187,7 +187,7 @@ def _rows(name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
         for a, at in zip(accelerations, driven, strict=True):
             errors.append(float(np.abs(a - peers.forward(*at)[0]).max() / np.abs(a).max()))
         calls += [partial(each, peers.forward, driven), partial(each, peers.inverse, moved)]
-    forward, inverse, *peer = (taken / len(given) for taken in least_times(calls, 60))
+    forward, inverse, *peer = (taken / len(given) for taken in least_times(calls, 30))
     to_pin, to_numpy = peer or (None, None)
     head = name, str(robot.model.nv)
     first = (*head, duration(forward), duration(to_pin), _PIN.cell(forward, to_pin), largest(errors))

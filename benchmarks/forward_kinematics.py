@@ -45,7 +45,7 @@ def _row(name: str) -> tuple[str, ...]:
             partial(eurdf.forward_kinematics, robot, values, q),
             partial(newton.forward_kinematics, values, q),
         )
-        times.append(least_times(calls, seconds=0.3))
+        times.append(least_times(calls, seconds=0.1))
         found = [float(np.abs(eurdf.residual(robot, call())).max()) for call in calls]
         residuals = [max(pair) for pair in zip(residuals, found, strict=True)]
     if not times:

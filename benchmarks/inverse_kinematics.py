@@ -78,7 +78,7 @@ def _row(name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
         targets.append(target)
         plain: partial[Any] = partial(newton.inverse_kinematics, index, target, q)
         others = [partial(peer.solve, target, q) for peer in peers.values()]
-        times.append(least_times([ours, partial(ours, limits=False), plain, *others], seconds=0.5))
+        times.append(least_times([ours, partial(ours, limits=False), plain, *others], seconds=0.15))
         errors["eurdf"].append(newton.errors(index, target, found.q))
         errors["Newton"].append(newton.errors(index, target, end))
         for peer, solver in peers.items():
