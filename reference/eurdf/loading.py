@@ -166,7 +166,7 @@ def of_any_robot(
     Returns:
         The function, as one of the module that calls this, in which it must have the same name to be pickled.
     """
-    of_any = accepting(function, _SOURCES, partial(load, geometry=geometry))
+    of_any = accepting(function, partial(as_robot, geometry=geometry))
     first, *others = signature(function).parameters.values()
     accepted = first.replace(annotation="Robot | RobotSource")
     of_any.__signature__ = signature(function).replace(parameters=[accepted, *others])  # type: ignore[attr-defined]

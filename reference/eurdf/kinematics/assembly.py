@@ -9,7 +9,7 @@ from random configurations around the first one.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
@@ -24,7 +24,7 @@ from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits, chosen
 from eurdf.kinematics.problem import Group, Problem
 from eurdf.kinematics.rank import norms
 from eurdf.kinematics.tolerances import CLOSED, MOST_STEPS, MOST_WORK, RESTARTS, SOLVED, WELL_CLOSED
-from eurdf.pinocchio.arguments import as_names, checked_array, checked_count, checked_tolerance
+from eurdf.pinocchio.arguments import are_by_name, as_names, checked_array, checked_count, checked_tolerance
 from eurdf.pinocchio.memory import working_memory
 
 if TYPE_CHECKING:
@@ -139,7 +139,7 @@ def start(robot: Robot, q0: Named | None = None, name: str = "q0") -> Vector:
     if q0 is None:
         return robot.tree.neutral()
     tree = robot.tree
-    given = configuration_of(robot, q0, name) if isinstance(q0, Mapping) else checked_array(name, q0, (tree.nq,))
+    given = configuration_of(robot, q0, name) if are_by_name(q0) else checked_array(name, q0, (tree.nq,))
     if tree.is_normalized(given, _ROUNDING):
         return np.array(given)
     q = tree.normalized(given)
@@ -171,7 +171,7 @@ def close(
     restarts: int = 0,
     limits: PositionLimits | None = None,
 ) -> Closed:
-    """Bring the residual to zero, first of all loops together, then of each group that is still open by itself.
+    """Bring the residual to zero, in a small robot first of all loops together, and of each group by itself.
 
     Args:
         problem: The robot.
@@ -182,15 +182,33 @@ def close(
     """
     with np.errstate(all="ignore"):  # lengths such as 1e200 m overflow and never close
         little = (restarts + 2) * MOST_STEPS * problem.work <= MOST_WORK
-        if not little or not (problem.at_once or len(problem.groups) == 1):
+        if not little or not problem.groups:
             return _Closing(problem, q, tolerance, limits).closed(restarts)
-        found = descend(problem, problem.together, q, tolerance, limits)
+        if problem.at_once or len(problem.groups) == 1:
+            found = descend(problem, problem.together, q, tolerance, limits)
+        else:
+            found = _one_by_one(problem, q, tolerance, limits)
         sure = _well_closed(problem, found)
         if np.count_nonzero(sure) == len(q):
             return Closed(found.q, sure, 1 + found.steps, sure)
         closing = _Closing(problem, q, tolerance, limits)
         closing.keep_all(found, sure)
         return closing.closed(restarts)
+
+
+def _one_by_one(problem: Problem, q: Matrix, tolerance: float, limits: PositionLimits | None) -> Descended:
+    """The descents of the groups, each from where the one before it ended: they share no joint that moves."""
+    each: list[Descended] = []
+    for group in problem.groups:
+        each.append(descend(problem, [group], each[-1].q if each else q, tolerance, limits))
+    return Descended(
+        each[-1].q,
+        [found.residuals[0] for found in each],
+        np.add.reduce([found.square for found in each]),
+        np.add.reduce([found.scaled_square for found in each]),
+        np.maximum.reduce([found.steps for found in each]),
+        np.logical_or.reduce([found.cut for found in each]),
+    )
 
 
 class _Closing:
@@ -208,11 +226,11 @@ class _Closing:
         self._first = 0  # attempt
 
     def keep_all(self, found: Descended, sure: Mask) -> None:
-        """Start from where descents of all groups together ended."""
+        """Start from where descents of all groups ended."""
         self._best, self._iterations = found.q, 1 + found.steps
         self._sure[:], self._ended[:] = sure[:, None], ~found.cut[:, None]
         self._errors = np.stack([norms(r) for r in self._by_group(found.residuals)], axis=1)
-        self._first = 0 if self._problem.at_once else 1  # of one group, they were the first attempt
+        self._first = 0 if self._problem.at_once else 1  # of one by one, they were the first attempt
 
     def closed(self, restarts: int) -> Closed:
         """Where the last descents lead."""
@@ -321,7 +339,7 @@ def assembled(
         q = limits.clip(q, np.concatenate([group.loops.velocities for group in problem.groups]))
     closed = close(problem, q[None], tolerance, restarts, limits)
     with np.errstate(over="ignore", invalid="ignore"):
-        (r,), found = measured(problem, closed.q)
+        (r,), found = problem.residual(closed.q), openings(problem, closed.q)
     closes = bool(closed.closes[0])
     converged = float(np.abs(r).max(initial=0.0)) <= tolerance
     at_limits = () if closes or limits is None else _pressed(problem, closed.q, limits)
@@ -331,7 +349,7 @@ def assembled(
         reason = "rounding" if closes else why_open if closed.decided[0] else "not decided"
     return Assembly(
         q=closed.q[0],
-        residual=math.hypot(*r),
+        residual=math.hypot(*r.tolist()),
         converged=converged,
         closes=closes,
         iterations=int(closed.iterations[0]),
@@ -356,10 +374,10 @@ def closed_start(problem: Problem, q: Vector, tolerance: float, where: str = "th
     return first.q
 
 
-def measured(problem: Problem, q: Matrix) -> tuple[Matrix, tuple[Opening, ...]]:
-    """The residual (1, nc) at a configuration (1, nq), and how far each constraint is open."""
-    r, lengths, angles = problem.measured(q)
-    return r, tuple(map(Opening, problem.names, lengths[0].tolist(), angles[0].tolist()))
+def openings(problem: Problem, q: Matrix) -> tuple[Opening, ...]:
+    """How far each constraint is open at a configuration (1, nq)."""
+    lengths, angles = problem.openings(q)
+    return tuple(map(Opening, problem.names, lengths[0].tolist(), angles[0].tolist()))
 
 
 @np.errstate(over="ignore", invalid="ignore")

@@ -143,9 +143,8 @@ def descend(
         elif some(stale):
             for group, own in zip(groups, A, strict=True):
                 own[stale] = group.jacobian_at(q[stale])
-        steps = _steps(groups, A, b, q, damping * squared, limits)
+        steps, trial = _steps(problem, groups, A, b, q, damping * squared, limits)
         expected, before = squared - _predicted(A, steps, b), squared
-        trial = problem.moved(q, groups, steps)
         at, r_there, b_there, error_there, reached = evaluated(groups, trial)
         progress = squared - reached
         accepted = (expected > 0.0) & (progress > LEAST_SHARE * expected)
@@ -185,8 +184,8 @@ def _ended(
     q: Matrix, r: list[Matrix], error: Numbers, squared: Numbers, step: int, cut: Numbers | None = None
 ) -> Descended:
     B = len(q)
-    steps, cut = np.full(B, step), np.zeros(B, dtype=bool) if cut is None else np.array(cut)
-    return Descended(q, r, np.array(error, ndmin=1), np.array(squared, ndmin=1), steps, cut)
+    cut = np.zeros(B, dtype=bool) if cut is None else np.array(cut, ndmin=1)
+    return Descended(q, r, np.array(error, ndmin=1), np.array(squared, ndmin=1), np.array([step]).repeat(B), cut)
 
 
 def _predicted(A: Sequence[Matrix], steps: Sequence[Matrix], b: Sequence[Matrix]) -> Numbers:
@@ -198,48 +197,53 @@ def _predicted(A: Sequence[Matrix], steps: Sequence[Matrix], b: Sequence[Matrix]
 
 
 def _steps(
+    problem: Problem,
     groups: Sequence[Group],
     A: Sequence[Matrix],
     b: Sequence[Matrix],
     q: Matrix,
     damping: Numbers,
     limits: PositionLimits | None,
-) -> list[Matrix]:
-    """The next steps (B, n) of each group, of at most 1 rad or characteristic length, within the limits."""
-    steps = _damped(A, b, damping)
-    rooms: list[tuple[Matrix, Matrix]] = []
-    if limits is not None:
-        for group in groups:
-            down, up = limits.room(q, group.own)
-            rooms.append((down / group.unit, up / group.unit))
-        if all(not ((step < down) | (step > up)).any() for step, (down, up) in zip(steps, rooms, strict=True)):
-            rooms = []  # no limit is in the way
-        else:
-            _stay_within(A, b, np.array(damping, ndmin=1), steps, rooms)
-    if any(not every(square(step) <= 1.0) for step in steps):  # else none is longer
-        longest: Numbers = 1.0
-        for step in steps:
+) -> tuple[list[Matrix], Matrix]:
+    """The next steps (B, n) of each group, of at most 1 rad or characteristic length, within the limits.
+
+    And the configurations (B, nq) that they lead to.
+    """
+    free = _damped(A, b, damping)
+    steps = _shortened(free)
+    there = problem.moved(q, groups, steps)
+    if limits is None or not limits.are_exceeded(there):
+        return steps, there
+    rooms = [limits.room(q, group.own) for group in groups]
+    rooms = [(down / group.unit, up / group.unit) for (down, up), group in zip(rooms, groups, strict=True)]
+    _stay_within(A, b, np.array(damping, ndmin=1), free, rooms)
+    steps = [np.minimum(np.maximum(step, down), up) for step, (down, up) in zip(_shortened(free), rooms, strict=True)]
+    return steps, problem.moved(q, groups, steps)
+
+
+def _shortened(steps: list[Matrix]) -> list[Matrix]:
+    """The same steps, shorter for the elements for which one is longer than 1."""
+    longest: Numbers = 1.0
+    for step in steps:
+        if not every(square(step) <= 1.0):  # else it is not longer
             longest = at_least(longest, largest(step))
-        steps = [step / column(longest) for step in steps]
-    if rooms:
-        steps = [np.minimum(np.maximum(step, down), up) for step, (down, up) in zip(steps, rooms, strict=True)]
-    return steps
+    return [step / column(longest) for step in steps] if some(longest > 1.0) else steps
 
 
 def _damped(A: Sequence[Matrix], b: Sequence[Matrix], damping: Numbers) -> list[Matrix]:
     """The δ (B, n) that minimise Σ |A δ + b|² + λ |δ|², from the smaller of A Aᵀ and Aᵀ A of each group."""
-    grams, wide = [], [own.shape[1] < own.shape[2] for own in A]
+    grams: list[tuple[bool, Matrix, Matrix]] = []
     trace: Numbers = 0.0
-    for own, is_wide in zip(A, wide, strict=True):
-        back = own.swapaxes(1, 2)
+    for own in A:
+        is_wide, back = own.shape[1] < own.shape[2], own.swapaxes(1, 2)
         gram = product(own, back) if is_wide else product(back, own)
         diagonal = diagonals(gram)
-        grams.append((gram, diagonal))
+        grams.append((is_wide, gram, diagonal))
         trace = trace + total(diagonal)
     # Invertible even with redundant rows.
     damping = column(at_least(damping, 1e-13 * trace + 1e-300))
     steps: list[Matrix] = []
-    for own, is_wide, (gram, diagonal), rows in zip(A, wide, grams, b, strict=True):
+    for own, (is_wide, gram, diagonal), rows in zip(A, grams, b, strict=True):
         diagonal += damping
         back = own.swapaxes(1, 2)
         steps.append(times(back, solutions(gram, -rows)) if is_wide else solutions(gram, -times(back, rows)))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
@@ -19,7 +19,7 @@ from eurdf.kinematics.residual import all_openings
 from eurdf.kinematics.springs import Resting, joints_at_rest, spring_equilibrium
 from eurdf.kinematics.tolerances import RESTARTS, SHORTEST_STEP, SOLVED
 from eurdf.mechanism.mechanism import ROOT_JOINT
-from eurdf.pinocchio.arguments import checked_array, checked_tolerance
+from eurdf.pinocchio.arguments import are_by_name, checked_array, checked_tolerance
 from eurdf.pinocchio.memory import working_memory
 
 if TYPE_CHECKING:
@@ -264,7 +264,7 @@ class Given:
 
 
 def _given(robot: Robot, values: Named) -> Given:
-    if isinstance(values, Mapping):
+    if are_by_name(values):
         return _given_by_name(robot, values)
     actuation = robot.actuation
     values = checked_array("actuated", values, (len(actuation.idx_q),))
@@ -286,7 +286,7 @@ def given_many(robot: Robot, values: NamedRows) -> Given:
     Raises:
         ValueError: They do not fit the robot.
     """
-    if isinstance(values, Mapping):
+    if are_by_name(values):
         coordinates, velocities, _ = _places(robot, values)
         rows = configurations_of(robot, values, "values")[:, coordinates]
         return Given(tuple(values), coordinates, velocities, rows)

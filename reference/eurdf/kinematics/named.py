@@ -10,7 +10,7 @@ import numpy as np
 from eurdf.array import Matrix, Vector
 from eurdf.diagnostics.wording import enumerated, meant
 from eurdf.mechanism.mechanism import ROOT_JOINT
-from eurdf.pinocchio.arguments import checked_array
+from eurdf.pinocchio.arguments import are_by_name, checked_array
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -31,7 +31,7 @@ def configuration_of(robot: Robot, given: Named, argument: str = "q") -> Vector:
     Raises:
         ValueError: It does not fit the robot, or is not finite.
     """
-    if isinstance(given, Mapping):
+    if are_by_name(given):
         try:
             given = robot.configuration(given)
         except ValueError as error:
@@ -45,7 +45,7 @@ def configurations_of(robot: Robot, given: Any, argument: str = "q") -> Any:
     Raises:
         ValueError: They do not fit the robot, or the joints have values of different numbers of elements.
     """
-    if not isinstance(given, Mapping):
+    if not are_by_name(given):
         return given
     each = {name: _values_of_each(robot, name, values, argument) for name, values in given.items()}
     counts = {len(rows) for rows in each.values()} - {1}
@@ -73,7 +73,7 @@ def velocity_of(robot: Robot, given: Named, argument: str = "v", others: float =
     Raises:
         ValueError: It does not fit the robot, or is not finite.
     """
-    if not isinstance(given, Mapping):
+    if not are_by_name(given):
         return checked_array(argument, given, (robot.tree.nv,))
     names = robot.tree.velocity_names
     for name in given:
@@ -89,7 +89,7 @@ def motor_values_of(robot: Robot, given: Named, argument: str = "u", others: flo
         ValueError: It does not fit the robot, or is not finite.
     """
     actuation = robot.actuation
-    if not isinstance(given, Mapping):
+    if not are_by_name(given):
         return checked_array(argument, given, actuation.idx_v.shape)
     return vector_of(given, [name for name in actuation.joints for _ in range(robot.slots[name].nv)], argument, others)
 
@@ -106,7 +106,7 @@ def vector_of(given: Named, names: Sequence[str], argument: str, others: float =
     Raises:
         ValueError: A name is unknown, or the numbers of values differ, or something is no finite number.
     """
-    if not isinstance(given, Mapping):
+    if not are_by_name(given):
         return checked_array(argument, given, (len(names),))
     vector = np.full(len(names), others)
     require_names(given, names, argument)

@@ -34,7 +34,6 @@ class Group:
         by: Indices in v of the given velocities that move them.
         evaluator: Evaluates their constraints by their own velocities, followed by the given ones.
         row_scale: Factors (m,) that make their rows dimensionless.
-        weights: Weights (m, 2) of the squares of the rows in their sum: 1, and those that make it dimensionless.
         unit: Unit (n,) of each of their own velocities.
         spread: Ratio of the largest unit of all these velocities to the smallest.
         work: Multiplications for the smaller of A Aᵀ and Aᵀ A, and for the evaluation of A.
@@ -46,12 +45,21 @@ class Group:
     by: Indices
     evaluator: Any
     row_scale: Vector
-    weights: Matrix
     unit: Vector
     spread: float
     work: float
     own: slice | Indices
     held: Vector | None = None
+
+    @cached_property
+    def rows(self) -> slice | Indices:
+        """Which rows of the robot's residual are theirs."""
+        return as_slice(self.loops.rows)
+
+    @cached_property
+    def closures(self) -> slice | Indices:
+        """Which of the robot's constraints are theirs."""
+        return as_slice(np.array(self.loops.closures, dtype=np.intp))
 
     @cached_property
     def factors(self) -> Matrix:
@@ -73,10 +81,11 @@ class Group:
         """The same at q (B, nq)."""
         return self.jacobian(self.evaluator.at(q))
 
-    def following(self, q: Matrix, driven: Matrix, whole: Matrix | None = None) -> tuple[Matrix, Mask]:
+    def following(self, q: Matrix, driven: Matrix | None, whole: Matrix | None = None) -> tuple[Matrix, Mask]:
         """Their own velocities (B, n, k) for given ones (B, g, k), and where (B,) these exist beyond doubt.
 
-        They are the least ones, in rad/s and m/s. ``whole`` is K (B, nc, nv) of the robot, if it is known.
+        They are the least ones, in rad/s and m/s, for each unit velocity if none are given. ``whole`` is
+        K (B, nc, nv) of the robot, if it is known.
         """
         if whole is None:
             K = self.evaluator.jacobian(self.evaluator.at(q))
@@ -84,8 +93,8 @@ class Group:
             K = whole[:, self.loops.rows[:, None], np.concatenate((self.loops.velocities, self.by))]
         K = K * self.row_scale[:, None]
         norm = self.spread * norms(K)
-        n = len(self.unit)
-        return least_solution(K[:, :, :n], -product(K[:, :, n:], driven), norm)
+        own, by = K[:, :, : len(self.unit)], K[:, :, len(self.unit) :]
+        return least_solution(own, -by if driven is None else -product(by, driven), norm)
 
     def holding(self, direction: Vector) -> Group:
         """The same group, whose derivative is zero along a direction (n,) of unit length: no step moves along it."""
@@ -119,6 +128,8 @@ class Problem:
         self.given = np.array(given, dtype=np.intp)
         self._place = np.zeros(self.tree.nv, dtype=np.intp)  # of each velocity where it is among the given ones
         self._place[self.given] = np.arange(len(given))
+        self._unit_motions = np.zeros((self.tree.nv, len(given)))  # of the given velocities
+        self._unit_motions[self.given, self._place[self.given]] = 1.0
         loops = independent_groups(robot, given)
         self.groups = tuple(self._group(robot, each, few) for each in loops)
         self.work = sum(group.work for group in self.groups)
@@ -138,14 +149,11 @@ class Problem:
         velocities = np.concatenate((loops.velocities, by))
         rows, units = self.spaces.row_scale[loops.rows], self.spaces.scale[velocities]
         m, n = len(loops.rows), len(loops.velocities)
-        with np.errstate(over="ignore", invalid="ignore"):
-            weights = np.stack((np.ones(m), rows * rows), axis=1)
         return Group(
             loops,
             by,
             evaluator(robot, loops.closures, velocities, few=few),
             rows,
-            weights,
             units[:n],
             float(units.max() / units.min()) if len(units) else 1.0,
             float(m) * n * min(m, n) + _WORK_OF_A_CLOSURE * len(loops.closures),
@@ -157,19 +165,16 @@ class Problem:
         """Numbers that one element takes, roughly."""
         return sum(int(part.evaluator.numbers) for part in self.parts) + 10 * self.tree.nq
 
-    def measured(self, q: Matrix) -> tuple[Matrix, Matrix, Matrix]:
-        """At q (B, nq) the residual (B, nc), m and rad, and how far each constraint is open (B, c), m and rad."""
+    def openings(self, q: Matrix) -> tuple[Matrix, Matrix]:
+        """How far each constraint is open at q (B, nq), m and rad, (B, c) each."""
         if len(self.parts) == 1:
             (part,) = self.parts
-            at = part.evaluator.at(q)
-            return part.evaluator.residual(at), *part.evaluator.openings(at)
-        r = np.empty((len(q), len(self.spaces.row_scale)))
+            found: tuple[Matrix, Matrix] = part.evaluator.openings(part.evaluator.at(q))
+            return found
         lengths, angles = np.empty((2, len(q), len(self.names)))
         for part in self.parts:
-            at, closures = part.evaluator.at(q), list(part.loops.closures)
-            r[:, part.loops.rows] = part.evaluator.residual(at)
-            lengths[:, closures], angles[:, closures] = part.evaluator.openings(at)
-        return r, lengths, angles
+            lengths[:, part.closures], angles[:, part.closures] = part.evaluator.openings(part.evaluator.at(q))
+        return lengths, angles
 
     def residual(self, q: Matrix) -> Matrix:
         """The residual (B, nc), m and rad."""
@@ -177,7 +182,7 @@ class Problem:
             return self.parts[0].residual(q)
         r = np.empty((len(q), len(self.spaces.row_scale)))
         for part in self.parts:
-            r[:, part.loops.rows] = part.residual(q)
+            r[:, part.rows] = part.residual(q)
         return r
 
     def jacobian(self, q: Matrix) -> Matrix:
@@ -193,11 +198,8 @@ class Problem:
 
     def closes(self, q: Matrix, enough: float) -> Mask:
         """Whether (B,) every constraint is open by at most ``enough``, m and rad, at q (B, nq); NaN is not closed."""
-        closes: Mask = np.ones(len(q), dtype=bool)
-        for part in self.parts:
-            for open_by in part.evaluator.openings(part.evaluator.at(q)):
-                closes &= (open_by <= enough).all(axis=1)
-        return closes
+        lengths, angles = self.openings(q)
+        return np.asarray(np.logical_and.reduce((lengths <= enough) & (angles <= enough), axis=1))
 
     def moved(self, q: Matrix, groups: Sequence[Group], steps: Sequence[Matrix]) -> Matrix:
         """Configurations (B, nq) after steps (B, n) of groups; lengths are in characteristic lengths."""
@@ -230,13 +232,12 @@ class Problem:
 
     def derivative(self, q: Matrix) -> tuple[Matrix, Mask]:
         """Their derivatives (B, nv, k) by the given velocities, and where (B,) they exist beyond doubt."""
-        B, k = len(q), len(self.given)
-        D, sure = np.zeros((B, self.tree.nv, k)), np.ones(B, dtype=bool)
-        D[:, self.given, np.arange(k)] = 1.0
+        D, sure = np.empty((len(q), *self._unit_motions.shape)), np.ones(len(q), dtype=bool)
+        D[:] = self._unit_motions
         whole = self.jacobian(q) if self._is_evaluated_whole else None
         for group in self.together:
             if len(group.by) and len(group.unit):
-                solution, is_sure = group.following(q, np.eye(len(group.by))[None], whole)
+                solution, is_sure = group.following(q, None, whole)
                 D[:, group.loops.velocities[:, None], self._place[group.by]] = solution
                 sure &= is_sure
         return D, sure

@@ -8,13 +8,15 @@ from __future__ import annotations
 import math
 import operator
 import reprlib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from functools import wraps
-from typing import Any, TypeVar
+from typing import Any, TypeGuard, TypeVar
 
 import numpy as np
 
 from eurdf.array import Matrix
+from eurdf.blas import MANY_VELOCITIES, ONE_THREAD
+from eurdf.pinocchio.memory import Cached
 
 _FLOATS = np.dtype(np.float64)
 _MANY = 1000  # values
@@ -33,7 +35,7 @@ def checked_array(name: str, given: Any, *shapes: tuple[int, ...]) -> Matrix:
     Raises:
         ValueError: It has another shape, or something in it is not a finite number.
     """
-    if type(given) is np.ndarray and given.dtype is _FLOATS and given.shape in shapes and _all_finite(given):
+    if type(given) is np.ndarray and given.dtype is _FLOATS and given.shape in shapes and all_finite(given):
         return given  # sooner than by the steps below
     expected = " or ".join(map(str, shapes))
     try:
@@ -45,17 +47,17 @@ def checked_array(name: str, given: Any, *shapes: tuple[int, ...]) -> Matrix:
         raise ValueError(f"{name} is {reprlib.repr(given)}; expected finite numbers of shape {expected}") from None
     if values.shape not in shapes:
         raise ValueError(f"{name} has the shape {values.shape}; expected {expected}")
-    if not np.isfinite(values).all():
+    if not all_finite(values):
         at = [int(index) for index in np.argwhere(~np.isfinite(values))[0]]
         place = f"{name}{at}" if at else name
         raise ValueError(f"{place} is {values[tuple(at)]}, not finite; expected finite numbers of shape {expected}")
     return values
 
 
-def _all_finite(values: Matrix) -> bool:
-    # Sooner than by isfinite; unlike dot, vdot does not warn. If the squares overflow, slower steps follow. For many
-    # values BLAS would start threads, which wait long for each other on a busy machine.
-    return math.isfinite(np.vdot(values, values)) if values.size < _MANY else bool(np.isfinite(values).all())
+def all_finite(values: Matrix) -> bool:
+    """Whether all numbers are finite."""
+    # The squares tell it sooner, unless they overflow; unlike dot, vdot does not warn. Many BLAS divides among threads.
+    return (values.size < _MANY and math.isfinite(np.vdot(values, values))) or bool(np.isfinite(values).all())
 
 
 def checked_count(name: str, given: Any, least: int) -> int:
@@ -102,16 +104,27 @@ def checked_data(model: Any, data: Any) -> Any:
     return data
 
 
-def accepting(
-    function: Callable[..., _Result], types: tuple[type, ...], made: Callable[[Any], Any]
-) -> Callable[..., _Result]:
-    """A function whose first argument, the robot, may also be of other types, of which the robot is made first."""
+def accepting(function: Callable[..., _Result], as_robot: Callable[[Any], Any]) -> Callable[..., _Result]:
+    """A function whose first argument, the robot, may also be something of which a robot is made first.
+
+    While it computes, BLAS has one thread, if the robot is large.
+    """
 
     @wraps(function)
     def of_any(robot: Any, *args: Any, **options: Any) -> _Result:
-        return function(made(robot) if isinstance(robot, types) else robot, *args, **options)
+        if not isinstance(robot, Cached):  # which is known sooner than that it is a path
+            robot = as_robot(robot)
+        if robot.tree.nv < MANY_VELOCITIES:
+            return function(robot, *args, **options)
+        with ONE_THREAD:
+            return function(robot, *args, **options)
 
     return of_any
+
+
+def are_by_name(given: Any) -> TypeGuard[Mapping[str, Any]]:
+    """Whether values are given by name; that an array is not a mapping is known sooner by its own type."""
+    return type(given) is not np.ndarray and isinstance(given, Mapping)
 
 
 def as_names(given: str | Iterable[str]) -> tuple[str, ...]:
