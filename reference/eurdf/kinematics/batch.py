@@ -357,7 +357,7 @@ def actuated_jacobian(
     driven = for_many(robot, robot.actuation.idx_v.tolist())
     task = JacobianTask(model, driven, frames(robot, [frame], few=False), checked_reference(reference), W)
     rows = checked_configurations(robot, "q", q)
-    work = blocks(model.numbers + 20 * model.tree.nv, block, threads, executor, progress)
+    work = blocks(2 * model.numbers + 40 * model.tree.nv, block, threads, executor, progress)
     jacobian, dependent = work.map(actuated_jacobians, task, (rows,))
     finite = np.isfinite(jacobian).all(axis=(1, 2))
     jacobian[dependent | ~finite] = np.nan
