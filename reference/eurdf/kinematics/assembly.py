@@ -23,7 +23,7 @@ from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits, chosen_limits
 from eurdf.kinematics.problem import Group, Problem
 from eurdf.kinematics.rank import norms
-from eurdf.kinematics.tolerances import CLOSED, MOST_STEPS, MOST_WORK, RESTARTS, SOLVED, WELL_CLOSED
+from eurdf.kinematics.tolerances import CLOSED, MOST_STEPS, MOST_WORK, RESTARTS, SMALL, SOLVED, WELL_CLOSED
 from eurdf.pinocchio.arguments import are_by_name, as_names, checked_array, checked_count, checked_tolerance
 from eurdf.pinocchio.memory import working_memory
 
@@ -51,9 +51,9 @@ class Assembly:
         q: Configuration (nq,): closed, or the least open one found.
         residual: Euclidean norm of the residual at q, m and rad.
         converged: Whether every row of the residual is within ``tolerance``.
-        closes: Whether each closure is open by at most `CLOSED` (m, rad), as required of a configuration in a file. If
-            a robot closes but does not converge, rounded numbers in its files make redundant rows contradict each
-            other.
+        closes: Whether each closure is open by at most `CLOSED`, m and rad, as required of a configuration in a file;
+            in robots with a characteristic length L below 1 cm, by at most 1e-4 L. If a robot closes but does not
+            converge, rounded numbers in its files make redundant rows contradict each other.
         iterations: Number of evaluations of the residual and its Jacobian.
         open: How far each closure is open at q, in file order.
         reason: Why it did not converge; None if it did.
@@ -153,7 +153,7 @@ class Closed(NamedTuple):
 
     Attributes:
         q: (B, nq).
-        closes: Whether each closure is open by at most `CLOSED`, or the tolerance if that is larger (B,).
+        closes: Whether (B,) each closure is closed as `Problem.closes` has it, or within the tolerance.
         iterations: Numbers (B,) of evaluations of the residual. Groups that descend together count once.
         decided: Whether (B,) the loops close, or all descents ended.
     """
@@ -180,6 +180,7 @@ def close(
         restarts: Maximum number of restarts while a group is open by more than `CLOSED`.
         limits: The position limits to respect, as q does, or None.
     """
+    tolerance *= min(1.0, problem.spaces.length / SMALL)
     with np.errstate(all="ignore"):  # lengths such as 1e200 m overflow and never close
         little = (restarts + 2) * MOST_STEPS * problem.work <= MOST_WORK
         if not little or not problem.groups:
@@ -229,7 +230,7 @@ class _Closing:
         """Start from where descents of all groups ended."""
         self._best, self._iterations = found.q, 1 + found.steps
         self._sure[:], self._ended[:] = sure[:, None], ~found.cut[:, None]
-        self._errors = np.stack([norms(r) for r in self._by_group(found.residuals)], axis=1)
+        self._errors = np.stack(list(map(_error, self._problem.groups, self._by_group(found.residuals))), axis=1)
         self._first = 0 if self._problem.at_once else 1  # of one by one, they were the first attempt
 
     def closed(self, restarts: int) -> Closed:
@@ -259,7 +260,7 @@ class _Closing:
         closes, decided = np.array(self._sure.all(axis=1)), ~(is_open.any(axis=1) & stopped)
         doubtful = np.flatnonzero(~closes)
         if len(doubtful):
-            closes[doubtful] = problem.closes(self._best[doubtful], max(CLOSED, self._tolerance))
+            closes[doubtful] = problem.closes(self._best[doubtful], self._tolerance)
         return Closed(self._best, closes, self._iterations, decided)
 
     def _around(self, group: Group, which: Indices, attempt: int, generators: _Generators) -> Matrix:
@@ -272,7 +273,7 @@ class _Closing:
     def _keep(self, index: int, group: Group, which: Indices, found: Descended) -> None:
         """Keep where a group of some elements is less open than before."""
         self._ended[which, index] |= ~found.cut
-        errors = norms(found.residuals[0])
+        errors = _error(group, found.residuals[0])
         better = errors < self._errors[which, index]
         if self._best is self._q:
             self._best = np.array(self._q)
@@ -314,11 +315,19 @@ class _Generators(dict[int, "np.random.Generator"]):  # a text: few searches nee
         return self[element]
 
 
+def _error(group: Group, r: Matrix) -> Vector:
+    """The norms (B,) of residuals (B, m) of a group, m and rad; lengths of small robots count more, in proportion."""
+    return norms(r * np.maximum(SMALL * group.row_scale, 1.0))
+
+
 def _well_closed(problem: Problem, found: Descended) -> Mask:
     """Which elements (B,) are closed so well that their openings need not be measured."""
-    return np.asarray(
-        (found.square <= WELL_CLOSED**2) & (found.scaled_square <= (WELL_CLOSED / problem.spaces.length) ** 2)
-    )
+    return np.asarray((found.square <= WELL_CLOSED**2) & (found.scaled_square <= _well_closed_scaled(problem)))
+
+
+def _well_closed_scaled(problem: Problem) -> float:
+    """Bound of the square of the dimensionless residual of such."""
+    return (WELL_CLOSED / max(problem.spaces.length, SMALL)) ** 2
 
 
 @np.errstate(all="ignore")
@@ -327,7 +336,7 @@ def is_closed(problem: Problem, q: Matrix, tolerance: float) -> Mask:
     if not problem.parts:
         return np.ones(len(q), dtype=bool)
     _, _, _, error, scaled = evaluated(problem.parts, q)
-    closed = (error <= tolerance**2) & (scaled <= (WELL_CLOSED / problem.spaces.length) ** 2)
+    closed = (error <= tolerance**2) & (scaled <= _well_closed_scaled(problem))
     return np.array(closed, ndmin=1)
 
 

@@ -165,7 +165,7 @@ class _Search:
         errors, _ = self._error(start, np.arange(B))
         done = np.logical_and.reduce(clipped == start, axis=1) & self._reached(errors)
         if np.count_nonzero(done):
-            done[done] = self._problem.closes(start[done], CLOSED)
+            done[done] = self._problem.closes(start[done])
             if np.count_nonzero(done) == B:
                 return self._result(best, errors, reason, at_limits)
         going = np.flatnonzero(~done)

@@ -14,7 +14,7 @@ from eurdf.kinematics.evaluate import evaluator, few_tree, many_tree
 from eurdf.kinematics.loop import LoopGroup, independent_groups, merged, moving_velocities
 from eurdf.kinematics.rank import least_solution, norms, product
 from eurdf.kinematics.tangent_space import TangentSpaces
-from eurdf.kinematics.tolerances import MOST_VELOCITIES_AT_ONCE
+from eurdf.kinematics.tolerances import CLOSED, MOST_VELOCITIES_AT_ONCE, SMALL
 from eurdf.pinocchio.memory import working_memory
 from eurdf.pinocchio.tree_few import as_slice
 
@@ -196,10 +196,14 @@ class Problem:
             K[:, part.loops.rows[:, None], np.concatenate((part.loops.velocities, part.by))] = block
         return K
 
-    def closes(self, q: Matrix, enough: float) -> Mask:
-        """Whether (B,) every constraint is open by at most ``enough``, m and rad, at q (B, nq); NaN is not closed."""
+    def closes(self, q: Matrix, tolerance: float = 0.0) -> Mask:
+        """Whether (B,) every constraint is closed at q (B, nq); NaN is not.
+
+        It is if it is open by at most `CLOSED`, less in small robots, or by the tolerance, m and rad.
+        """
         lengths, angles = self.openings(q)
-        return np.asarray(np.logical_and.reduce((lengths <= enough) & (angles <= enough), axis=1))
+        short = lengths <= max(CLOSED * min(1.0, self.spaces.length / SMALL), tolerance)
+        return np.asarray(np.logical_and.reduce(short & (angles <= max(CLOSED, tolerance)), axis=1))
 
     def moved(self, q: Matrix, groups: Sequence[Group], steps: Sequence[Matrix]) -> Matrix:
         """Configurations (B, nq) after steps (B, n) of groups; lengths are in characteristic lengths."""

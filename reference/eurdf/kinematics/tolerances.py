@@ -13,6 +13,9 @@ from eurdf.closures import CLOSED as CLOSED
 #: A residual of this norm, in m and rad and dimensionless, is of closed loops for certain: how far a closure is open
 #: differs from its rows by a factor below 10.
 WELL_CLOSED = 0.1 * CLOSED
+#: In robots with a smaller characteristic length, m, what counts as closed is less in proportion. In larger ones it is
+#: not: rounded numbers in files keep loops of ordinary robots open by 1e-7 m and more.
+SMALL = 0.01
 #: Bound that solvers bring the loops to.
 SOLVED = 1e-10
 #: The same on a path whose last correction leaves rounding.
