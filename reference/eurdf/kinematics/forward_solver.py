@@ -5,16 +5,20 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from eurdf.array import Matrix, Vector
 from eurdf.kinematics.equation_of_motion import Acceleration, EquationOfMotion
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.independence import Independence, norm
 from eurdf.kinematics.loop import find_loops
+from eurdf.kinematics.rank import solutions
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.kinematics.tolerances import CLOSED_FOR_FORCES, FORCES_SOLVED
 from eurdf.pinocchio.constrained_dynamics import (
     ConstrainedDynamics,
+    ConstrainedMotion,
     StatedGains,
     build_constrained_dynamics,
 )
@@ -40,6 +44,7 @@ class ForwardSolver:
         self.rows = tuple(loop.rows for loop in find_loops(robot))
         spaces = robot.cached(TangentSpaces)
         self._independence = Independence(spaces.row_scale, spaces.scale)
+        self._combinations: Matrix | None = None  # of redundant rows, as many as are independent
         self._own: TreeDynamics | None = None
 
     @property
@@ -67,6 +72,7 @@ class ForwardSolver:
         dynamics: TreeDynamics,
         *,
         nearly_closed: bool = False,
+        within_step: bool = False,
     ) -> Acceleration:
         """Solve M a + h = τ + Kᵀ λ and K a + K̇ v = -kd K v - kp r.
 
@@ -79,12 +85,13 @@ class ForwardSolver:
             dynamics: Those of the tree.
             nearly_closed: Whether a drift will do that equals K̇ v only where the constraints hold and K v = 0, as
                 between the steps of an integration, which start and end there.
+            within_step: Whether the state is one between these steps, and the step began at the last one that was not.
 
         Raises:
             UndeterminedMotion: A joint without inertia can move.
             NumericalOverflow: The result is not finite.
         """
-        solution = self.beyond_doubt(q, v, force, gains, dynamics, nearly_closed=nearly_closed)
+        solution = self.beyond_doubt(q, v, force, gains, dynamics, nearly_closed=nearly_closed, within_step=within_step)
         if solution is None:
             with overflow_refused("the acceleration"):
                 motion = EquationOfMotion(robot, q, v, dynamics)
@@ -101,6 +108,7 @@ class ForwardSolver:
         dynamics: TreeDynamics,
         *,
         nearly_closed: bool = False,
+        within_step: bool = False,
     ) -> Acceleration | None:
         """The solution by the tree's own solver, as `solve`; None if it has none, or if the solution is in doubt.
 
@@ -109,6 +117,10 @@ class ForwardSolver:
         if self._solver is None:
             return None
         found = self._solver.solve(q, v, force, gains, dynamics.data, dynamics is self._own)
+        if not within_step:
+            self._combinations = None
+        elif self._combinations is not None:
+            return _by_combined_rows(found, force, self._combinations)
         # By dot, which takes half the time of @ for small matrices.
         a, on_a, J, target = found.a, found.on_a, found.J, found.target
         bound = CLOSED_FOR_FORCES
@@ -127,7 +139,10 @@ class ForwardSolver:
         if not (_is_small(error, terms) or _is_small(error, terms + norm(force)) or _is_small(error, norm(found.bias))):
             return None
         least = self._independence.least_forces(J, on_a)
-        return None if least is None else Acceleration(a, -least)
+        if least is None:
+            return None
+        self._combinations = self._independence.combinations()
+        return Acceleration(a, -least)
 
     def closures(self, robot: Robot, q: Vector) -> tuple[Vector, Matrix]:
         """The residual (nc,) at q (nq,), and K (nc, nv), which is its derivative where the closures are closed."""
@@ -140,3 +155,19 @@ class ForwardSolver:
 
 def _is_small(error: float, terms: float) -> bool:
     return error <= FORCES_SOLVED * terms < math.inf
+
+
+def _by_combined_rows(found: ConstrainedMotion, force: Vector, chosen: Matrix) -> Acceleration | None:
+    """The solution in which independent combinations (rank, nc) of the rows hold; None if it misses an equation.
+
+    Where the constraints do not quite hold, redundant rows contradict each other: Pinocchio's solver would lock the
+    mechanism.
+    """
+    J, target, M = chosen.dot(found.J), chosen.dot(found.target), found.mass
+    n, given = len(M), np.concatenate((force - found.bias, target))
+    equations = np.zeros((len(given), len(given)))
+    equations[:n, :n], equations[:n, n:], equations[n:, :n] = M, -J.T, J
+    x = solutions(equations, given)
+    if not _is_small(norm(equations.dot(x) - given), norm(given)):
+        return None
+    return Acceleration(x[:n], -chosen.T.dot(x[n:]))

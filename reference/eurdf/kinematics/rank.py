@@ -175,6 +175,9 @@ def numerical_ranks(values: Matrix, reference: Vector | None = None) -> Indices:
     if values.shape[-1] == 0:
         return np.zeros(values.shape[:-1], dtype=np.intp)
     most = values[..., :1] if reference is None else reference[..., None]
+    counts = values > CERTAIN * most
+    if not ((values > ZERO * most) & ~counts).any() and not (most <= NOTHING).any():
+        return np.asarray(np.add.reduce(counts, axis=-1))  # the gap between them is the widest
     ladder = np.empty((*values.shape[:-1], values.shape[-1] + 2))
     ladder[..., 0], ladder[..., -1] = 1.0, FLOOR
     ladder[..., 1:-1] = np.minimum(np.maximum(values / np.maximum(most, NOTHING), FLOOR), 1.0)
@@ -204,12 +207,7 @@ def least_solution(A: Matrix, b: Matrix, norm: Vector) -> tuple[Matrix, Mask]:
     """
     m, n = A.shape[1:]
     if m <= n:
-        transposed = A.swapaxes(1, 2)
-        gram = product(A, transposed)
-        inverse, sure = certain_inverse(gram, norm)
-        y = product(inverse, b)
-        y += product(inverse, b - product(gram, y))
-        x = product(transposed, y)
+        x, sure = least_by_squares(A, b, norm)
         if np.count_nonzero(sure) == len(A):
             return x, sure
     else:
@@ -227,6 +225,24 @@ def least_solution(A: Matrix, b: Matrix, norm: Vector) -> tuple[Matrix, Mask]:
         certain &= ~(~counts & (values > ZERO * values.max(axis=1, initial=0.0)[:, None])).any(axis=1)
     x[which], sure[which] = own, certain
     return x, sure
+
+
+def least_by_squares(A: Matrix, b: Matrix, norm: Vector) -> tuple[Matrix, Mask]:
+    """As `least_solution`, from A Aᵀ; and where (B,) the rows of A are independent for certain. Else x is arbitrary."""
+    transposed = A.swapaxes(1, 2)
+    gram = product(A, transposed)
+    inverse, sure = certain_inverse(gram, norm)
+    y = product(inverse, b)
+    y += product(inverse, b - product(gram, y))
+    return product(transposed, y), sure
+
+
+def least_by_values(A: Matrix, b: Matrix) -> Matrix:
+    """A⁺ b (B, n, k) with the `numerical_ranks` of A."""
+    left, values, right = np.linalg.svd(A, full_matrices=False)
+    counts = np.arange(values.shape[1]) < numerical_ranks(values)[:, None]
+    reciprocal = np.divide(1.0, values, out=np.zeros_like(values), where=counts)
+    return product(right.swapaxes(1, 2), reciprocal[:, :, None] * product(left.swapaxes(1, 2), b))
 
 
 def damped_step(A: Matrix, e: Matrix, damping: Vector) -> Matrix:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -13,9 +12,9 @@ from eurdf.array import Indices, Matrix, Vector
 from eurdf.kinematics.finite import finite
 from eurdf.kinematics.loop import LoopGroup, independent_groups
 from eurdf.kinematics.named import Named, velocity_of
-from eurdf.kinematics.rank import are_finite, inverses, least_solution, numerical_ranks
+from eurdf.kinematics.rank import are_finite, inverses, least_by_squares, least_by_values, norms, numerical_ranks
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
-from eurdf.kinematics.tolerances import CERTAIN
+from eurdf.kinematics.tolerances import CERTAIN, MOST_VELOCITIES_AT_ONCE
 from eurdf.pinocchio.arguments import checked_array
 
 if TYPE_CHECKING:
@@ -90,6 +89,38 @@ class TangentSpace:
         return whole[0] if self._alone else whole
 
 
+class Blocks(NamedTuple):
+    """Blocks of K that have the same numbers m of rows and n of velocities.
+
+    Attributes:
+        rows: Their rows (g, m).
+        velocities: Their velocities (g, n).
+        weights: Factors (g, m) that make the rows dimensionless.
+        unit: Units (g, n) of the velocities.
+        factors: Factors (g, m, n) that make K dimensionless.
+        is_whole: Whether the only block is K itself.
+    """
+
+    rows: Indices
+    velocities: Indices
+    weights: Matrix
+    unit: Matrix
+    factors: Matrix
+    is_whole: bool
+
+    @classmethod
+    def of_units(cls, rows: Indices, velocities: Indices, row_scale: Vector, scale: Vector) -> Blocks:
+        """Take where the blocks are, and the units of all rows and velocities."""
+        weights, unit = row_scale[rows], scale[velocities]
+        with np.errstate(over="ignore", invalid="ignore"):  # lengths such as 1e200 m
+            factors = weights[:, :, None] * unit[:, None]
+        return cls(rows, velocities, weights, unit, factors, factors.shape == (1, len(row_scale), len(scale)))
+
+    def of(self, K: Matrix) -> Matrix:
+        """The blocks (…, g, m, n) of K (…, nc, nv)."""
+        return K[..., None, :, :] if self.is_whole else K[..., self.rows[:, :, None], self.velocities[:, None]]
+
+
 class TangentSpaces:
     """Computes tangent spaces of one robot; its structure is analysed once. Plain data, which can be pickled.
 
@@ -98,6 +129,8 @@ class TangentSpaces:
         scale: Unit (nv,) of each velocity: the characteristic length for one of a loop that only translates, else 1.
         row_scale: Factors (nc,) that make the rows of K dimensionless.
         outside: Indices of the velocities outside of all loops.
+        alike: Groups of loops with as many rows and velocities, and their blocks of K.
+        whole: K as one block.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -111,26 +144,23 @@ class TangentSpaces:
                 outside[group.velocities] = False
                 alike.setdefault((len(group.rows), len(group.velocities)), []).append(group)
         self.outside = np.flatnonzero(outside)
-        self._alike = [
-            (groups, np.array([group.rows for group in groups]), np.array([group.velocities for group in groups]))
+        units = self.row_scale, self.scale
+        self.alike = [
+            (
+                groups,
+                Blocks.of_units(
+                    np.array([group.rows for group in groups]), np.array([group.velocities for group in groups]), *units
+                ),
+            )
             for groups in alike.values()
         ]
+        self.whole = Blocks.of_units(np.arange(len(units[0]))[None], np.arange(len(units[1]))[None], *units)
 
     @cached_property
     def dimensionless(self) -> Matrix:
         """Factors (nc, nv) that make K dimensionless."""
         with np.errstate(over="ignore", invalid="ignore"):  # lengths such as 1e200 m
             return self.row_scale[:, None] * self.scale
-
-    def least(self, K: Matrix, b: Vector) -> Vector:
-        """K⁺ b (nv,), as `at` has it, but without a decomposition where the rows of K (nc, nv) are independent."""
-        A = K * self.dimensionless
-        norm = math.sqrt(float(np.vdot(A, A)))
-        if math.isfinite(norm):
-            solution, sure = least_solution(A[None], (self.row_scale * b)[None, :, None], np.array([norm]))
-            if sure[0]:
-                return self.scale * solution[0, :, 0]
-        return self.at(K).inverse @ b
 
     def at(self, K: Matrix) -> TangentSpace:
         """The tangent space for the constraint Jacobian K (nc, nv).
@@ -155,8 +185,8 @@ class TangentSpaces:
     def _spaces(self, A: Matrix, alone: bool) -> Iterator[TangentSpace]:
         """The spaces of dimensionless K (B, nc, nv), by their ranks."""
         decomposed: list[tuple[LoopGroup, _Decomposed]] = []
-        for groups, rows, velocities in self._alike:
-            own = A[:, rows[:, :, None], velocities[:, None]]  # (B, groups, m, n)
+        for groups, alike in self.alike:
+            own = alike.of(A)
             if len(A) == 1 and len(groups) < _MANY:
                 found = [_decomposed(block[None]) for block in own[0]]
             else:
@@ -211,6 +241,40 @@ def _decomposed(A: Matrix) -> _Decomposed:
     right = np.swapaxes(right, 1, 2)
     k = values.shape[1]
     return _Decomposed(right, (right[:, :, :k] * reciprocal[:, None]) @ np.swapaxes(left[:, :, :k], 1, 2), rank)
+
+
+class LeastSolutions:
+    """The v = K⁺ b of least norm, dimensionless, for one K after the other; those are near one another."""
+
+    def __init__(self, spaces: TangentSpaces) -> None:
+        self._by_group = [blocks for _, blocks in spaces.alike]
+        # While the rows are independent, those of a small robot are solved all at once.
+        self._blocks = [spaces.whole] if len(spaces.scale) <= MOST_VELOCITIES_AT_ONCE else self._by_group
+        self._redundant: set[int] = set()  # the blocks some of whose rows depended on each other
+
+    def of(self, K: Matrix, b: Vector) -> Vector:
+        """K⁺ b (nv,), of K (nc, nv) and b (nc,).
+
+        Raises:
+            NumericalOverflow: K is not finite.
+        """
+        v = np.zeros(K.shape[1])
+        for index, block in enumerate(self._blocks):
+            A, rows = block.of(K) * block.factors, (block.weights * b[block.rows])[:, :, None]
+            norm = norms(A)
+            if not np.isfinite(norm).all():
+                finite("the constraint Jacobian", A)
+            if index not in self._redundant:
+                x, sure = least_by_squares(A, rows, norm)
+                if np.count_nonzero(sure) < len(A):
+                    self._redundant.add(index)
+            if index in self._redundant:
+                if self._blocks is not self._by_group:
+                    self._blocks, self._redundant = self._by_group, set()
+                    return self.of(K, b)
+                x = least_by_values(A, rows)
+            v[block.velocities] = block.unit * x[:, :, 0]
+        return v
 
 
 def metric(robot: Robot, weights: Named | Matrix | None) -> Matrix:

@@ -14,7 +14,7 @@ import pinocchio as pin
 
 from eurdf.array import Matrix, Vector
 from eurdf.pinocchio.constraint import number_of_models
-from eurdf.pinocchio.tree_dynamics import MOST_VELOCITIES_WITH_DATA
+from eurdf.pinocchio.tree_dynamics import MOST_VELOCITIES_WITH_DATA, whole_matrix
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -53,6 +53,11 @@ class ConstrainedMotion(NamedTuple):
     def bias(self) -> Vector:
         """The h (nv,) of the equation."""
         return np.asarray(self.data.nle)
+
+    @property
+    def mass(self) -> Matrix:
+        """The M (nv, nv) of the equation."""
+        return whole_matrix(self.data.M)
 
     def closed_to(self, position: float) -> bool:
         """Whether each row of the residual is at most ``position``, m or rad."""
