@@ -14,8 +14,8 @@ import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.closures.se3 import velocity_of_origin
-from eurdf.kinematics.assembly import Closed, close
 from eurdf.kinematics.bounded_step import bounded_step, damped_step_within
+from eurdf.kinematics.closing import Closed, close
 from eurdf.kinematics.descend import next_damping
 from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits
 from eurdf.kinematics.problem import Problem

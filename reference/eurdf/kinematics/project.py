@@ -12,7 +12,8 @@ import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.errors import NotClosable
-from eurdf.kinematics.assembly import assembled, close, start
+from eurdf.kinematics.assembly import assembled, start
+from eurdf.kinematics.closing import close
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.named import Named, velocity_of
 from eurdf.kinematics.problem import Problem
