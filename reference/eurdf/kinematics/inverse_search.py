@@ -147,7 +147,7 @@ class _Search:
         self._iterations = np.zeros(count, dtype=np.intp)
         self._begun: list[tuple[Indices, Matrix]] = []  # elements and where descents of them began
         self._farthest: dict[int, tuple[int, int, float]] = {}
-        self._may_be_certain = True
+        self._may_be_certain = not task.problem.stacks  # of many groups of loops, each is decomposed by itself
 
     def run(self, start: Matrix) -> SearchResult:
         """The configurations found from start (B, nq)."""

@@ -19,7 +19,7 @@ from eurdf.kinematics.named import Named, velocity_of
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import are_finite
 from eurdf.kinematics.residual import acceleration_drift, residual_and_jacobian
-from eurdf.kinematics.tangent_space import TangentSpace, TangentSpaces, metric, nearest
+from eurdf.kinematics.tangent_space import TangentSpace, TangentSpaces, metric
 from eurdf.kinematics.tolerances import RESTARTS, SOLVED
 from eurdf.pinocchio.arguments import checked_tolerance
 from eurdf.pinocchio.memory import working_memory
@@ -183,7 +183,7 @@ def project_velocity(robot: Robot, q: Named, v: Named, *, weights: Named | Matri
     W = metric(robot, weights)
     v = velocity_of(robot, v)
     _, K = residual_and_jacobian(robot, start(robot, q, "q"))
-    projected = nearest(robot.cached(TangentSpaces).at(K).basis, W, v)
+    projected = robot.cached(TangentSpaces).at(K).nearest(W, v)
     finite("the velocity", projected)
     return projected
 
@@ -217,7 +217,7 @@ def project_acceleration(
     _, K = residual_and_jacobian(robot, q)
     space = robot.cached(TangentSpaces).at(K)
     forced = -space.inverse @ acceleration_drift(robot, q, v)
-    projected = forced + nearest(space.basis, W, a - forced)
+    projected = forced + space.nearest(W, a - forced)
     finite("the acceleration", projected)
     return projected
 

@@ -12,7 +12,7 @@ from eurdf.array import Indices, Matrix, Vector
 from eurdf.kinematics.finite import finite
 from eurdf.kinematics.loop import LoopGroup, independent_groups
 from eurdf.kinematics.named import Named, velocity_of
-from eurdf.kinematics.rank import are_finite, inverses, least_by_squares, least_by_values, norms, numerical_ranks
+from eurdf.kinematics.rank import inverses, least_by_squares, least_by_values, norms, numerical_ranks
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
 from eurdf.kinematics.tolerances import CERTAIN, MOST_VELOCITIES_AT_ONCE
 from eurdf.pinocchio.arguments import checked_array
@@ -76,6 +76,22 @@ class TangentSpace:
         for group, _, own in self._blocks:
             inverse[:, group.velocities[:, None], group.rows] = scale[group.velocities, None] * own * rows[group.rows]
         return inverse[0] if self._alone else inverse
+
+    def nearest(self, W: Matrix, v: Vector) -> Vector:
+        """The v' = Z y (nv,) nearest to v in the metric W (nv, nv): Z (Zᵀ W Z)⁻¹ Zᵀ W v."""
+        if np.count_nonzero(W) > len(W):
+            Z = self.basis
+            return np.asarray(Z @ np.linalg.solve(Z.T @ W @ Z, Z.T @ (W @ v)), dtype=np.float64)
+        # The groups do not depend on each other, and what is outside of the loops is free.
+        found, weights, alike = np.array(v, dtype=np.float64), W.diagonal(), dict[tuple[int, ...], list[_Block]]()
+        for block in self._blocks:
+            alike.setdefault(block.free.shape, []).append(block)
+        for blocks in alike.values():
+            velocities = np.array([block.group.velocities for block in blocks])
+            Z = self._spaces.scale[velocities][:, :, None] * np.concatenate([block.free for block in blocks])
+            across = (weights[velocities][:, :, None] * Z).swapaxes(1, 2)
+            found[velocities] = (Z @ np.linalg.solve(across @ Z, across @ v[velocities][:, :, None]))[:, :, 0]
+        return found
 
     def _whole(self, bases: Sequence[Matrix]) -> Matrix:
         """Bases of the groups, and the unit motions of the velocities outside of them, as columns (nv, …)."""
@@ -171,37 +187,43 @@ class TangentSpaces:
         Raises:
             NumericalOverflow: K is not finite.
         """
-        A = K * self.dimensionless
-        finite("the constraint Jacobian", A)
-        (space,) = self._spaces(A[None], alone=True)
+        blocks = self._blocks(K[None])
+        finite("the constraint Jacobian", *blocks)
+        (space,) = self._spaces(blocks, 1, alone=True)
         return space
 
     def each(self, K: Matrix) -> Iterator[TangentSpace]:
         """The tangent spaces for K (B, nc, nv): those of one dimension together. A K that is not finite has no rank."""
-        A = K * self.dimensionless
-        ok = are_finite(A)
-        return self._spaces(A if ok.all() else np.where(ok[:, None, None], A, 0.0), alone=False)
+        blocks, ok = self._blocks(K), np.ones(len(K), dtype=bool)
+        for block in blocks:
+            ok &= np.isfinite(block).all(axis=(1, 2, 3))
+        if not ok.all():
+            blocks = [np.where(ok[:, None, None, None], block, 0.0) for block in blocks]
+        return self._spaces(blocks, len(K), alone=False)
 
-    def _spaces(self, A: Matrix, alone: bool) -> Iterator[TangentSpace]:
-        """The spaces of dimensionless K (B, nc, nv), by their ranks."""
+    def _blocks(self, K: Matrix) -> list[Matrix]:
+        """The dimensionless blocks (B, g, m, n) of K (B, nc, nv) of the groups that are alike."""
+        return [alike.of(K) * alike.factors for _, alike in self.alike]
+
+    def _spaces(self, blocks: Sequence[Matrix], count: int, alone: bool) -> Iterator[TangentSpace]:
+        """The spaces of so many K, by their ranks, from their dimensionless blocks."""
         decomposed: list[tuple[LoopGroup, _Decomposed]] = []
-        for groups, alike in self.alike:
-            own = alike.of(A)
-            if len(A) == 1 and len(groups) < _MANY:
-                found = [_decomposed(block[None]) for block in own[0]]
+        for (groups, _), own in zip(self.alike, blocks, strict=True):
+            if count == 1 and len(groups) < _MANY:
+                each_of = [_decomposed(block[None]) for block in own[0]]
             else:
                 parts = _decomposed(own.reshape(-1, *own.shape[2:]))
-                found = [parts.of(slice(first, None, len(groups))) for first in range(len(groups))]
-            decomposed += zip(groups, found, strict=True)
-        ranks = np.array([each.rank for _, each in decomposed], dtype=np.intp).reshape(len(decomposed), len(A)).T
-        for of_kind in np.unique(ranks, axis=0) if len(A) > 1 else ranks:
-            which = np.flatnonzero((ranks == of_kind).all(axis=1)) if len(A) > 1 else _ALONE
-            chosen = which if len(which) < len(A) else slice(None)
-            blocks = [
+                each_of = [parts.of(slice(first, None, len(groups))) for first in range(len(groups))]
+            decomposed += zip(groups, each_of, strict=True)
+        ranks = np.array([each.rank for _, each in decomposed], dtype=np.intp).reshape(len(decomposed), count).T
+        for of_kind in np.unique(ranks, axis=0) if count > 1 else ranks:
+            which = np.flatnonzero((ranks == of_kind).all(axis=1)) if count > 1 else _ALONE
+            chosen = which if len(which) < count else slice(None)
+            found = [
                 _Block(group, each.right[chosen, :, rank:], each.inverse[chosen])
                 for (group, each), rank in zip(decomposed, of_kind.tolist(), strict=True)
             ]
-            yield TangentSpace(which, blocks, self, alone)
+            yield TangentSpace(which, found, self, alone)
 
 
 class _Decomposed(NamedTuple):
@@ -309,8 +331,3 @@ def orthonormal(basis: Matrix, W: Matrix) -> Matrix:
     across = basis.swapaxes(-1, -2)
     lower = np.linalg.cholesky(across @ W @ basis)
     return np.asarray(np.linalg.solve(lower, across).swapaxes(-1, -2))
-
-
-def nearest(basis: Matrix, W: Matrix, v: Vector) -> Vector:
-    """The v' = Z y (nv,) nearest to v in the metric: Z (Zᵀ W Z)⁻¹ Zᵀ W v."""
-    return np.asarray(basis @ np.linalg.solve(basis.T @ W @ basis, basis.T @ (W @ v)), dtype=np.float64)
