@@ -40,6 +40,26 @@ class _Block(NamedTuple):
     inverse: Matrix
 
 
+class Part(NamedTuple):
+    """Tangent spaces of b elements in g groups of loops with as many rows m, velocities n and free motions f.
+
+    Attributes:
+        velocities: Indices (g, n) in v.
+        rows: Their rows (g, m) of K.
+        basis: Z (b, g, n, f), orthonormal.
+        inverse: K⁺ (b, g, n, m).
+    """
+
+    velocities: Indices
+    rows: Indices
+    basis: Matrix
+    inverse: Matrix
+
+    def of(self, K: Matrix) -> Matrix:
+        """The blocks (b, g, m, n) of K (b, nc, nv)."""
+        return K[:, self.rows[:, :, None], self.velocities[:, None]]
+
+
 class TangentSpace:
     """The null spaces of K, and its pseudoinverses; each basis is computed when first asked for.
 
@@ -77,20 +97,35 @@ class TangentSpace:
             inverse[:, group.velocities[:, None], group.rows] = scale[group.velocities, None] * own * rows[group.rows]
         return inverse[0] if self._alone else inverse
 
-    def nearest(self, W: Matrix, v: Vector) -> Vector:
-        """The v' = Z y (nv,) nearest to v in the metric W (nv, nv): Z (Zᵀ W Z)⁻¹ Zᵀ W v."""
-        if np.count_nonzero(W) > len(W):
-            Z = self.basis
-            return np.asarray(Z @ np.linalg.solve(Z.T @ W @ Z, Z.T @ (W @ v)), dtype=np.float64)
-        # The groups do not depend on each other, and what is outside of the loops is free.
-        found, weights, alike = np.array(v, dtype=np.float64), W.diagonal(), dict[tuple[int, ...], list[_Block]]()
+    def parts(self, together: bool = False) -> list[Part]:
+        """The space by groups of loops that are alike, without what is outside of the loops; or all of it as one."""
+        scale, row_scale = self._spaces.scale, self._spaces.row_scale
+        if together:
+            Z, inverse = (np.reshape(each, (-1, 1, *each.shape[-2:])) for each in (self.basis, self.inverse))
+            return [Part(np.arange(len(scale))[None], np.arange(len(row_scale))[None], Z, inverse)]
+        alike: dict[tuple[int, int, int], list[_Block]] = {}
         for block in self._blocks:
-            alike.setdefault(block.free.shape, []).append(block)
+            alike.setdefault((*block.free.shape[1:], len(block.group.rows)), []).append(block)
+        found = []
         for blocks in alike.values():
             velocities = np.array([block.group.velocities for block in blocks])
-            Z = self._spaces.scale[velocities][:, :, None] * np.concatenate([block.free for block in blocks])
-            across = (weights[velocities][:, :, None] * Z).swapaxes(1, 2)
-            found[velocities] = (Z @ np.linalg.solve(across @ Z, across @ v[velocities][:, :, None]))[:, :, 0]
+            rows = np.array([block.group.rows for block in blocks])
+            unit, free = scale[velocities][:, :, None], np.stack([block.free for block in blocks], axis=1)
+            Z = free if (unit == 1.0).all() else np.linalg.qr(unit * free)[0]
+            inverse = unit * np.stack([block.inverse for block in blocks], axis=1) * row_scale[rows][:, None]
+            found.append(Part(velocities, rows, Z, inverse))
+        return found
+
+    def nearest(self, W: Matrix, v: Vector) -> Vector:
+        """The v' = Z y (nv,) nearest to v in the metric W: Z (Zᵀ W Z)⁻¹ Zᵀ W v."""
+        if W.ndim == 2:
+            Z = self.basis
+            return np.asarray(Z @ np.linalg.solve(Z.T @ W @ Z, Z.T @ (W @ v)), dtype=np.float64)
+        found = np.array(v, dtype=np.float64)  # what is outside of the loops is free
+        for part in self.parts():
+            (Z,), own = part.basis, part.velocities
+            across = (W[own][:, :, None] * Z).swapaxes(1, 2)
+            found[own] = (Z @ np.linalg.solve(across @ Z, across @ v[own][:, :, None]))[:, :, 0]
         return found
 
     def _whole(self, bases: Sequence[Matrix]) -> Matrix:
@@ -300,7 +335,7 @@ class LeastSolutions:
 
 
 def metric(robot: Robot, weights: Named | Matrix | None) -> Matrix:
-    """The matrix W (nv, nv) of the norm |v|² = vᵀ W v.
+    """The matrix W of the norm |v|² = vᵀ W v: (nv, nv), or its diagonal (nv,) if it is diagonal.
 
     Args:
         robot: The robot.
@@ -312,11 +347,16 @@ def metric(robot: Robot, weights: Named | Matrix | None) -> Matrix:
     """
     nv = robot.tree.nv
     if weights is None:
-        return np.eye(nv)
+        return np.ones(nv)
     if isinstance(weights, Mapping):
         weights = velocity_of(robot, weights, "weights", others=1.0)
-    given = checked_array("weights", weights, (nv,), (nv, nv))
-    W = np.diag(given) if given.ndim == 1 else given
+    W = checked_array("weights", weights, (nv,), (nv, nv))
+    if W.ndim == 2 and np.count_nonzero(W) <= nv and W.diagonal().all():
+        W = np.array(W.diagonal())
+    if W.ndim == 1:
+        if not (W > 0.0).all():
+            raise ValueError("weights are not positive definite")
+        return W
     if np.abs(W - W.T).max(initial=0.0) > 1e-9 * np.abs(W).max(initial=0.0):
         raise ValueError("weights are not a symmetric matrix")
     try:
@@ -326,8 +366,13 @@ def metric(robot: Robot, weights: Named | Matrix | None) -> Matrix:
     return W
 
 
+def weighted(W: Matrix, motions: Matrix) -> Matrix:
+    """W times the columns of motions (…, nv, m)."""
+    return W[:, None] * motions if W.ndim == 1 else W @ motions
+
+
 def orthonormal(basis: Matrix, W: Matrix) -> Matrix:
     """Orthonormal bases in the metric, Zᵀ W Z = 1, of the spans of Z (…, nv, m)."""
     across = basis.swapaxes(-1, -2)
-    lower = np.linalg.cholesky(across @ W @ basis)
+    lower = np.linalg.cholesky(across @ weighted(W, basis))
     return np.asarray(np.linalg.solve(lower, across).swapaxes(-1, -2))
