@@ -14,7 +14,16 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, TypeVar
 
 import numpy as np
 
-from eurdf.closures.se3 import cross, log3, log3_derivative, log6, log6_derivative, transposed, turned
+from eurdf.closures.se3 import (
+    cross,
+    log3,
+    log3_derivative,
+    log6,
+    log6_derivative,
+    transposed,
+    turned,
+    velocity_of_origin,
+)
 from eurdf.mechanism.constraint import Closure, ClosureKey, Form
 
 if TYPE_CHECKING:
@@ -52,6 +61,13 @@ class RelativePoses:
     def logarithm_by_twist(self) -> Matrix:
         """Its derivative (B, k, 6, 6) by the twist of B against A, seen from A: Jlog6(ᴬM_B) Ad(ᴮM_A) = Jlog6(ᴮM_A)."""
         return log6_derivative(-self.logarithm())
+
+    def twist_in_b(self) -> Matrix:
+        """Ad(ᴮM_A) (B, k, 6, 6), which takes the twist of B against A, seen from A, to the axes of B."""
+        inverse = transposed(self.rotation)
+        Ad = np.zeros((*self.position.shape[:2], 6, 6))
+        Ad[..., :3, :], Ad[..., 3:, 3:] = inverse @ velocity_of_origin(self.position), inverse
+        return Ad
 
     def turn_from(self, rotation: Matrix) -> Matrix:
         """log3(Sᵀ ᴬR_B) (B, k, 3), rad, how B is turned against the axes S (B, k, 3, 3), seen from A."""

@@ -13,7 +13,7 @@ import numpy as np
 
 from eurdf.array import Matrix, Vector
 
-_NEXT, _LAST = [1, 2, 0], [2, 0, 1]
+_NEXT, _LAST, _SWAPPED = np.array((1, 2, 0)), np.array((2, 0, 1)), np.array((3, 4, 5, 0, 1, 2))
 _EACH = np.arange(3)
 IDENTITY_ROTATION = np.eye(3)
 # Linear maps are one product with a vector: it is faster than to set entries one by one.
@@ -147,7 +147,7 @@ def _beta(turn: Matrix, order: int = 0) -> list[Vector]:
     The inverse of the right Jacobian of exp3 is 1 + W/2 + β W².
     """
     t = dot(turn, turn)[..., None]
-    most = float(t.max(initial=0.0))
+    most = float(np.maximum.reduce(t, axis=None, initial=0.0))
     if most < _NEAR:
         return _series(t, most, order)
     small = t < _NEAR
@@ -168,8 +168,8 @@ def _series(t: Vector, most: float, order: int) -> list[Vector]:
     count = min(len(_COTANGENT), 2 + order + int(39.0 / math.log(39.0 / max(most, 1e-300))))
     coefficients, found = _COTANGENT[:count], []
     for _ in range(order + 1):
-        value = np.full_like(t, coefficients[-1])
-        for coefficient in reversed(coefficients[:-1]):
+        value = np.zeros(t.shape)
+        for coefficient in reversed(coefficients):
             value *= t
             value += coefficient
         found.append(value)
@@ -216,19 +216,16 @@ def log6_second(r: Matrix, twist: Matrix, change: Matrix) -> Matrix:
 
     With ad the matrix of r ×, J = 1 + ad/2 + B ad² has ṙ = J ξ, where B is β over dual numbers; r̈ = J ξ̇ + J̇ ξ.
     """
-    v, w = r[..., :3], r[..., 3:]
+    w, swapped = r[..., 3:], r[..., _SWAPPED]
     beta, slope, bend = _beta(w, 2)
-    ad, along = (r @ _AD).reshape(*r.shape, 6), 2.0 * _along(w, v)
+    ad, along = (r @ _AD).reshape(*r.shape, 6), _along(r, swapped)
     once = turned(ad, twist)
     twice = turned(ad, once)
     rate = twist + 0.5 * once + _dual(beta, slope * along, twice)
-    dv, dw = rate[..., :3], rate[..., 3:]
-    ad_rate, along_rate = (rate @ _AD).reshape(*r.shape, 6), 2.0 * _along(w, dw)
-    across = turned(ad, change)
-    second = change + 0.5 * (across + turned(ad_rate, twist))
-    both = turned(ad, across) + turned(ad_rate, once) + turned(ad, turned(ad_rate, twist))
-    second += _dual(beta, slope * along, both)
-    along_second = 2.0 * (_along(dw, v) + _along(w, dv))
+    ad_rate, along_rate = (rate @ _AD).reshape(*r.shape, 6), 2.0 * _along(w, rate[..., 3:])
+    both = turned(ad, change) + turned(ad_rate, twist)
+    second = change + 0.5 * both + _dual(beta, slope * along, turned(ad, both) + turned(ad_rate, once))
+    along_second = 2.0 * _along(rate, swapped)
     return second + _dual(slope * along_rate, bend * along_rate * along + slope * along_second, twice)
 
 

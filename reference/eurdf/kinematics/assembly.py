@@ -7,7 +7,7 @@ them.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
@@ -21,7 +21,7 @@ from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits, chosen_limits
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.tolerances import MOST_WORK, RESTARTS, SOLVED
-from eurdf.pinocchio.arguments import as_names, checked_array, checked_count, checked_tolerance
+from eurdf.pinocchio.arguments import as_names, checked_count, checked_tolerance
 from eurdf.pinocchio.memory import working_memory
 
 if TYPE_CHECKING:
@@ -132,7 +132,7 @@ def start(robot: Robot, q0: Named | None = None, name: str = "q0") -> Vector:
     if q0 is None:
         return robot.tree.neutral()
     tree = robot.tree
-    given = configuration_of(robot, q0, name) if isinstance(q0, Mapping) else checked_array(name, q0, (tree.nq,))
+    given = configuration_of(robot, q0, name)
     if tree.is_normalized(given, _ROUNDING):
         return np.array(given)
     q = tree.normalized(given)
@@ -149,7 +149,7 @@ def assembled(
         q = limits.clip(q, np.concatenate([group.loops.velocities for group in problem.groups]))
     closed = close(problem, q[None], tolerance, restarts, limits)
     with np.errstate(over="ignore", invalid="ignore"):
-        (r,), found = measured(problem, closed.q)
+        (r,), found = problem.residual(closed.q), openings(problem, closed.q)
     closes = bool(closed.closes[0])
     converged = float(np.abs(r).max(initial=0.0)) <= tolerance
     at_limits = () if closes or limits is None else _pressed(problem, closed.q, limits)
@@ -159,7 +159,7 @@ def assembled(
         reason = "rounding" if closes else why_open if closed.decided[0] else "not decided"
     return Assembly(
         q=closed.q[0],
-        residual=math.hypot(*r),
+        residual=math.hypot(*r.tolist()),
         converged=converged,
         closes=closes,
         iterations=int(closed.iterations[0]),
@@ -184,10 +184,10 @@ def closed_start(problem: Problem, q: Vector, tolerance: float, where: str = "th
     return first.q
 
 
-def measured(problem: Problem, q: Matrix) -> tuple[Matrix, tuple[Opening, ...]]:
-    """The residual (1, nc) at a configuration (1, nq), and how far each constraint is open."""
-    r, lengths, angles = problem.measured(q)
-    return r, tuple(map(Opening, problem.names, lengths[0].tolist(), angles[0].tolist()))
+def openings(problem: Problem, q: Matrix) -> tuple[Opening, ...]:
+    """How far each constraint is open at a configuration (1, nq)."""
+    lengths, angles = problem.openings(q)
+    return tuple(map(Opening, problem.names, lengths[0].tolist(), angles[0].tolist()))
 
 
 @np.errstate(over="ignore", invalid="ignore")

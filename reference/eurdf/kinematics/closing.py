@@ -50,7 +50,7 @@ def close(
     restarts: int = 0,
     limits: PositionLimits | None = None,
 ) -> Closed:
-    """Bring the residual to zero, first of all loops together, then of each group that is still open by itself.
+    """Bring the residual to zero, in a small robot first of all loops together, and of each group by itself.
 
     Args:
         problem: The robot.
@@ -61,15 +61,33 @@ def close(
     """
     with np.errstate(all="ignore"):  # lengths such as 1e200 m overflow and never close
         little = (restarts + 2) * MOST_STEPS * problem.work <= MOST_WORK
-        if not little or not (problem.at_once or len(problem.groups) == 1):
+        if not little or not problem.groups or problem.stacks:
             return _Closing(problem, q, tolerance, limits).closed(restarts)
-        found = descend(problem, problem.together, q, tolerance, limits)
+        if problem.at_once or len(problem.groups) == 1:
+            found = descend(problem, problem.together, q, tolerance, limits)
+        else:
+            found = _one_by_one(problem, q, tolerance, limits)
         sure = _well_closed(problem, found)
         if np.count_nonzero(sure) == len(q):
             return Closed(found.q, sure, 1 + found.steps, sure)
         closing = _Closing(problem, q, tolerance, limits)
         closing.keep_all(found, sure)
         return closing.closed(restarts)
+
+
+def _one_by_one(problem: Problem, q: Matrix, tolerance: float, limits: PositionLimits | None) -> Descended:
+    """The descents of the groups, each from where the one before it ended: they share no joint that moves."""
+    each: list[Descended] = []
+    for group in problem.groups:
+        each.append(descend(problem, [group], each[-1].q if each else q, tolerance, limits))
+    return Descended(
+        each[-1].q,
+        [found.residuals[0] for found in each],
+        np.add.reduce([found.square for found in each]),
+        np.add.reduce([found.scaled_square for found in each]),
+        np.maximum.reduce([found.steps for found in each]),
+        np.logical_or.reduce([found.cut for found in each]),
+    )
 
 
 class _Closing:
@@ -87,11 +105,11 @@ class _Closing:
         self._first = 0  # attempt
 
     def keep_all(self, found: Descended, sure: Mask) -> None:
-        """Start from where descents of all groups together ended."""
+        """Start from where descents of all groups ended."""
         self._best, self._iterations = found.q, 1 + found.steps
         self._sure[:], self._ended[:] = sure[:, None], ~found.cut[:, None]
         self._errors = np.stack([norms(r) for r in self._by_group(found.residuals)], axis=1)
-        self._first = 0 if self._problem.at_once else 1  # of one group, they were the first attempt
+        self._first = 0 if self._problem.at_once else 1  # of one by one, they were the first attempt
 
     def closed(self, restarts: int) -> Closed:
         """Where the last descents lead."""

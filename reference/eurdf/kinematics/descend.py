@@ -145,9 +145,8 @@ def descend(
         elif some(stale):
             for group, own in zip(groups, A, strict=True):
                 own[stale] = group.among(stale).jacobian_at(q[stale])
-        steps = _steps(groups, A, b, q, damping * squared, limits)
+        steps, trial = _steps(problem, groups, A, b, q, damping * squared, limits)
         expected, before = squared - _predicted(A, steps, b), squared
-        trial = problem.moved(q, groups, steps)
         at, r_there, b_there, error_there, reached = evaluated(groups, trial)
         progress = squared - reached
         accepted = (expected > 0.0) & (progress > LEAST_SHARE * expected)
@@ -187,8 +186,8 @@ def _ended(
     q: Matrix, r: list[Matrix], error: Numbers, squared: Numbers, step: int, cut: Numbers | None = None
 ) -> Descended:
     B = len(q)
-    steps, cut = np.full(B, step), np.zeros(B, dtype=bool) if cut is None else np.array(cut)
-    return Descended(q, r, np.array(error, ndmin=1), np.array(squared, ndmin=1), steps, cut)
+    cut = np.zeros(B, dtype=bool) if cut is None else np.array(cut, ndmin=1)
+    return Descended(q, r, np.array(error, ndmin=1), np.array(squared, ndmin=1), np.array([step]).repeat(B), cut)
 
 
 def _predicted(A: Sequence[Matrix], steps: Sequence[Matrix], b: Sequence[Matrix]) -> Numbers:
@@ -200,32 +199,38 @@ def _predicted(A: Sequence[Matrix], steps: Sequence[Matrix], b: Sequence[Matrix]
 
 
 def _steps(
+    problem: Problem | Stack,
     groups: Sequence[Any],
     A: Sequence[Matrix],
     b: Sequence[Matrix],
     q: Matrix,
     damping: Numbers,
     limits: PositionLimits | None,
-) -> list[Matrix]:
-    """The next steps (B, n) of each group, of at most 1 rad or characteristic length, within the limits."""
-    steps = _damped(A, b, damping)
-    rooms: list[tuple[Matrix, Matrix]] = []
-    if limits is not None:
-        for group in groups:
-            down, up = group.room(q, limits)
-            rooms.append((down / group.unit, up / group.unit))
-        if all(not ((step < down) | (step > up)).any() for step, (down, up) in zip(steps, rooms, strict=True)):
-            rooms = []  # no limit is in the way
-        else:
-            _stay_within(A, b, np.array(damping, ndmin=1), steps, rooms)
-    if any(not every(square(step) <= 1.0) for step in steps):  # else none is longer
-        longest: Numbers = 1.0
-        for step in steps:
-            longest = at_least(longest, largest(step))
-        steps = [step / column(longest) for step in steps]
-    if rooms:
-        steps = [np.minimum(np.maximum(step, down), up) for step, (down, up) in zip(steps, rooms, strict=True)]
-    return steps
+) -> tuple[list[Matrix], Matrix]:
+    """The next steps (B, n) of each group, of at most 1 rad or characteristic length, within the limits.
+
+    And the configurations (B, nq) that they lead to.
+    """
+    free = _damped(A, b, damping)
+    steps = _shortened(free)
+    there = problem.moved(q, groups, steps)
+    if limits is None or not problem.exceeds(there, groups, limits):
+        return steps, there
+    rooms = [group.room(q, limits) for group in groups]
+    rooms = [(down / group.unit, up / group.unit) for (down, up), group in zip(rooms, groups, strict=True)]
+    _stay_within(A, b, np.array(damping, ndmin=1), free, rooms)
+    steps = [np.minimum(np.maximum(step, down), up) for step, (down, up) in zip(_shortened(free), rooms, strict=True)]
+    return steps, problem.moved(q, groups, steps)
+
+
+def _shortened(steps: list[Matrix]) -> list[Matrix]:
+    """The same steps, shorter for the elements for which one is longer than 1."""
+    if all(every(square(step) <= 1.0) for step in steps):  # none is
+        return steps
+    longest: Numbers = 1.0
+    for step in steps:
+        longest = at_least(longest, largest(step))
+    return [step / column(longest) for step in steps]
 
 
 def _damped(A: Sequence[Matrix], b: Sequence[Matrix], damping: Numbers) -> list[Matrix]:

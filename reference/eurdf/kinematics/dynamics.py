@@ -124,6 +124,7 @@ def forward_dynamics(
     return ForwardDynamics(a, forces)
 
 
+@overflow_refused("the motor torques")
 def inverse_dynamics(
     robot: Robot,
     q: Named,
@@ -171,11 +172,7 @@ def inverse_dynamics(
         UnderactuatedMotion: The motors cannot produce this motion.
         NumericalOverflow: The result is not finite.
     """
-    with (
-        overflow_refused("the motor torques"),
-        working_memory(robot, ForwardSolver) as solver,
-        working_memory(robot, InverseSolver) as inverse_solver,
-    ):
+    with working_memory(robot, ForwardSolver) as solver, working_memory(robot, InverseSolver) as inverse_solver:
         q, v, a, dynamics = _state(robot, q, v, a, solver, data)
         norm, tolerance = _norm(robot, weights), checked_tolerance(tolerance)
         applied = AppliedForce(robot, external, dissipation).total(q, v, None, tau)
@@ -198,6 +195,7 @@ def inverse_dynamics(
     return InverseDynamics(u, forces)
 
 
+@overflow_refused("the acceleration")
 def achievable_acceleration(
     robot: Robot,
     q: Named,
@@ -236,7 +234,7 @@ def achievable_acceleration(
         UnderactuatedMotion: A motion without inertia would need a force.
         NumericalOverflow: The result is not finite.
     """
-    with overflow_refused("the acceleration"), working_memory(robot, ForwardSolver) as solver:
+    with working_memory(robot, ForwardSolver) as solver:
         q, v, a, dynamics = _state(robot, q, v, a, solver, data)
         motion = EquationOfMotion(robot, q, v, dynamics)
         motion.refuse_open(a, checked_tolerance(tolerance))
@@ -329,7 +327,9 @@ def _refuse_uncontrolled(
 
 def _norm(robot: Robot, weights: Named | None) -> Vector:
     """1/√w (nu,)."""
-    given = motor_values_of(robot, {} if weights is None else weights, "weights", others=1.0)
+    if weights is None:
+        return np.ones(len(robot.actuation.idx_v))
+    given = motor_values_of(robot, weights, "weights", others=1.0)
     if not (given > 0.0).all():
         raise ValueError(f"weights[{int(np.argmin(given))}] is {given.min()}; expected positive numbers")
     return np.asarray(1.0 / np.sqrt(given))

@@ -6,6 +6,7 @@ give the same numbers. What overflows is inf or NaN.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -15,7 +16,7 @@ import numpy as np
 from eurdf.array import Indices, Matrix
 from eurdf.closures.coupling import Couplings
 from eurdf.closures.kind import ClosureKind, RelativePoses
-from eurdf.closures.se3 import velocity_of_origin
+from eurdf.closures.se3 import IDENTITY_ROTATION, velocity_of_origin
 from eurdf.kinematics.pairs_many import ManyPairs
 from eurdf.kinematics.tree_many import TreeMany
 from eurdf.mechanism.constraint import Constraint, Coupling
@@ -60,7 +61,31 @@ class State(NamedTuple):
     by_kind: list[RelativePoses]
 
 
-class Evaluator:
+class _ByConfiguration(ABC):
+    """Evaluates something at configurations; for few, what it found at the last one is kept.
+
+    Solvers ask for values and derivatives at one configuration in different places.
+    """
+
+    _few: bool
+    _key: bytes | None = None  # of the configuration of the last state of one element
+    _last: Any = None
+
+    def at(self, q: Matrix) -> Any:
+        """The state at q (B, nq)."""
+        if not self._few or len(q) != 1:
+            return self._state(np.array(q))
+        key = q.tobytes()
+        if key != self._key:
+            self._last, self._key = self._state(q.copy()), key
+        return self._last
+
+    @abstractmethod
+    def _state(self, q: Matrix) -> Any:
+        """The state at q (B, nq), which the caller leaves as it is."""
+
+
+class Evaluator(_ByConfiguration):
     """Some constraints, and the velocities by which K has columns.
 
     One by Pinocchio has memory of its own, for one thread at a time; one by NumPy is plain data.
@@ -105,8 +130,7 @@ class Evaluator:
         # The rows of the residual are those of one kind, in order.
         self._is_plain = self._couplings is None and len(self._groups) == 1
         self._tree: Tree | None = tree
-        self._key: bytes | None = None  # of the configuration of the last state of one element
-        self._last = State(np.empty((1, 0)), None, [])
+        self._few = few
         if not few:
             self._pairs = ManyPairs(tree.cached(TreeMany), self._sites, velocities)
             self._sites, self._tree = [], None  # what is Pinocchio's cannot be sent to another process
@@ -125,16 +149,6 @@ class Evaluator:
     def numbers_of_residual(self) -> int:
         """Numbers that the residual of one element takes, roughly."""
         return int(self._pairs.numbers)
-
-    def at(self, q: Matrix) -> State:
-        """The constraints at q (B, nq)."""
-        if self._tree is None or len(q) != 1:
-            return self._state(np.array(q))
-        # Solvers ask for the residual and for K at one configuration, in different places.
-        key = q.tobytes()
-        if key != self._key:
-            self._last, self._key = self._state(q.copy()), key
-        return self._last
 
     def at_once(self, q: Matrix) -> State:
         """The constraints at q (1, nq), by Pinocchio, sooner than memory to evaluate them in is made."""
@@ -172,11 +186,10 @@ class Evaluator:
     def drift(self, q: Matrix, v: Matrix) -> Matrix:
         """r̈ = K̇ v (B, m) at q (B, nq) while every joint keeps its velocity v (B, nv)."""
         d = np.zeros((len(q), self.m))  # that of couplings is zero
-        if self._groups:
-            motions = self._pairs.motions(q, v)
-            for group in self._groups:
-                part = group.kind.drift(motions.of(group.pairs), group.fixed)
-                d[:, group.rows] = part.reshape(len(q), group.m)
+        motions: Any = self._pairs.motions(q, v) if self._groups else None
+        for group in self._groups:
+            own = motions if self._is_plain else motions.of(group.pairs)
+            d[:, group.rows] = group.kind.drift(own, group.fixed).reshape(len(q), group.m)
         return d
 
     def openings(self, at: State) -> tuple[Matrix, Matrix]:
@@ -222,15 +235,14 @@ def _few_pairs(tree: Tree, sites: Sequence[Pair], velocities: Indices) -> FewPai
         return ManyPairs(tree.cached(TreeMany), sites, velocities)
 
 
-class Frames:
+class Frames(_ByConfiguration):
     """Named frames: their poses in the world, and their Jacobians. As for an `Evaluator`, few or many."""
 
-    def __init__(self, pairs: Any) -> None:
+    def __init__(self, pairs: Any, *, few: bool) -> None:
         """Take pairs of the world and the frames."""
-        self._pairs = pairs
+        self._pairs, self._few = pairs, few
 
-    def at(self, q: Matrix) -> Any:
-        """The frames at q (B, nq)."""
+    def _state(self, q: Matrix) -> Any:
         return self._pairs.at(q)
 
     def poses(self, at: Any) -> tuple[Matrix, Matrix]:
@@ -241,7 +253,7 @@ class Frames:
         """Of each frame (B, F, 6, nv) the velocity of its origin and its angular velocity, by v, in world axes."""
         p = at.position
         rows = np.zeros((*p.shape[:2], 6, 6))
-        rows[..., :3, :], rows[..., 3:, 3:] = velocity_of_origin(p), np.eye(3)
+        rows[..., :3, :], rows[..., 3:, 3:] = velocity_of_origin(p), IDENTITY_ROTATION
         return self.rows(at, rows).reshape(*p.shape[:2], 6, self._pairs.n)
 
     def rows(self, at: Any, rows: Matrix) -> Matrix:
@@ -263,8 +275,8 @@ def frames_at(tree: Tree, sites: Sequence[Any], *, few: bool) -> Frames:
     """Frames at some sites of the tree, as `eurdf.pinocchio.tree_few.Site`."""
     pairs, velocities = [(tree.world, site) for site in sites], np.arange(tree.nv)
     if few:
-        return Frames(_few_pairs(tree, pairs, velocities))
-    return Frames(ManyPairs(tree.cached(TreeMany), pairs, velocities))
+        return Frames(_few_pairs(tree, pairs, velocities), few=True)
+    return Frames(ManyPairs(tree.cached(TreeMany), pairs, velocities), few=False)
 
 
 class TreeFew:

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
+from functools import wraps
+from typing import ParamSpec, TypeVar
 
 import numpy as np
 
 from eurdf.array import Matrix
 from eurdf.errors import NumericalOverflow
+from eurdf.pinocchio.arguments import all_finite
+
+_P = ParamSpec("_P")
+_R = TypeVar("_R")
 
 
 def finite(result: str, *arrays: Matrix) -> None:
@@ -17,19 +22,27 @@ def finite(result: str, *arrays: Matrix) -> None:
     Raises:
         NumericalOverflow: A number is not finite.
     """
-    if not all(np.isfinite(array).all() for array in arrays):
-        raise NumericalOverflow(result)
+    for array in arrays:
+        if not all_finite(array):
+            raise NumericalOverflow(result)
 
 
-@contextmanager
-def overflow_refused(result: str) -> Iterator[None]:
-    """Raise `NumericalOverflow` where a decomposition fails, and silence NumPy's warnings of overflow.
+def overflow_refused(result: str) -> Callable[[Callable[_P, _R]], Callable[_P, _R]]:
+    """Decorate a function to raise `NumericalOverflow` where a decomposition fails, without NumPy's warnings.
 
-    A decomposition of finite numbers fails only if an intermediate result overflows. It is a context manager and a
-    decorator.
+    A decomposition of finite numbers fails only if an intermediate result overflows.
     """
-    try:
-        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            yield
-    except np.linalg.LinAlgError:
-        raise NumericalOverflow(result) from None
+
+    def decorated(function: Callable[_P, _R]) -> Callable[_P, _R]:
+        silent = np.errstate(over="ignore", invalid="ignore", divide="ignore")(function)
+
+        @wraps(function)
+        def refusing(*args: _P.args, **options: _P.kwargs) -> _R:
+            try:
+                return silent(*args, **options)
+            except np.linalg.LinAlgError:
+                raise NumericalOverflow(result) from None
+
+        return refusing
+
+    return decorated

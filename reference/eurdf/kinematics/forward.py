@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
@@ -13,7 +13,7 @@ from eurdf.errors import NotClosable, NumericalOverflow, TooFar
 from eurdf.kinematics.assembly import assembled, closed_start, start
 from eurdf.kinematics.blocks import checked_rows
 from eurdf.kinematics.closing import close, is_closed
-from eurdf.kinematics.named import ByJoint, Named, NamedRows, configurations_of, unknown_joint
+from eurdf.kinematics.named import ByJoint, Named, NamedRows, configurations_of, is_by_joint, unknown_joint
 from eurdf.kinematics.path import follow_given
 from eurdf.kinematics.problem import Problem, for_many
 from eurdf.kinematics.residual import all_openings
@@ -266,7 +266,7 @@ class Given:
 
 
 def _given(robot: Robot, values: Named) -> Given:
-    if isinstance(values, Mapping):
+    if is_by_joint(values):
         return _given_by_name(robot, values)
     actuation = robot.actuation
     values = checked_array("actuated", values, (len(actuation.idx_q),))
@@ -288,7 +288,7 @@ def given_many(robot: Robot, values: NamedRows) -> Given:
     Raises:
         ValueError: They do not fit the robot.
     """
-    if isinstance(values, Mapping):
+    if is_by_joint(values):
         coordinates, velocities, _ = _places(robot, values)
         rows = configurations_of(robot, values, "values")[:, coordinates]
         return Given(tuple(values), coordinates, velocities, rows)

@@ -93,10 +93,7 @@ class ForwardSolver:
         """
         solution = self.beyond_doubt(q, v, force, gains, dynamics, nearly_closed=nearly_closed, within_step=within_step)
         if solution is None:
-            with overflow_refused("the acceleration"):
-                motion = EquationOfMotion(robot, q, v, dynamics)
-                solution = motion.eliminate(force, gains)
-            finite("the acceleration", *solution)
+            solution = _eliminated(robot, q, v, force, gains, dynamics)
         return solution
 
     def beyond_doubt(
@@ -151,6 +148,15 @@ class ForwardSolver:
     def closures_of_tree(self, q: Vector, dynamics: TreeDynamics) -> tuple[Vector, Matrix] | None:
         """The same by the tree's own solver; None if it has none."""
         return None if self._solver is None else self._solver.closures(q, dynamics.data)
+
+
+@overflow_refused("the acceleration")
+def _eliminated(
+    robot: Robot, q: Vector, v: Vector, force: Vector, gains: list[tuple[float, float]], dynamics: TreeDynamics
+) -> Acceleration:
+    solution = EquationOfMotion(robot, q, v, dynamics).eliminate(force, gains)
+    finite("the acceleration", *solution)
+    return solution
 
 
 def _is_small(error: float, terms: float) -> bool:

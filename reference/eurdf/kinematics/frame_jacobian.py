@@ -8,7 +8,6 @@ import numpy as np
 from pinocchio import LOCAL, LOCAL_WORLD_ALIGNED, WORLD
 
 from eurdf.array import Matrix, Vector
-from eurdf.closures.se3 import skew
 from eurdf.kinematics.evaluate import Frames, frames
 from eurdf.pinocchio.memory import working_memory
 
@@ -52,11 +51,6 @@ def checked_reference(reference: Any) -> Any:
 def in_reference(found: Frames, q: Matrix, reference: Any) -> Matrix:
     """The Jacobians (B, 6, nv) of one frame at q (B, nq), in the axes of the reference."""
     at = found.at(q)
-    J: Matrix = found.jacobians(at)[:, 0]
-    R, p = (part[:, 0] for part in found.poses(at))
-    if reference == LOCAL:
-        inverse = R.swapaxes(1, 2)
-        return np.concatenate((inverse @ J[:, :3], inverse @ J[:, 3:]), axis=1)
-    if reference == WORLD:
-        return np.concatenate((J[:, :3] + skew(p) @ J[:, 3:], J[:, 3:]), axis=1)
-    return J
+    if reference == LOCAL_WORLD_ALIGNED:
+        return found.jacobians(at)[:, 0]
+    return found.rows(at, at.twist_in_b() if reference == LOCAL else np.broadcast_to(np.eye(6), (len(q), 1, 6, 6)))

@@ -15,6 +15,7 @@ import numpy as np
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.loop import LoopGroup
 from eurdf.kinematics.rank import least_solution, norms, product
+from eurdf.pinocchio.tree_few import as_slice
 
 if TYPE_CHECKING:
     from eurdf.kinematics.position_limit import PositionLimits
@@ -29,7 +30,6 @@ class Group:
         by: Indices in v of the given velocities that move them.
         evaluator: Evaluates their constraints by their own velocities, followed by the given ones.
         row_scale: Factors (m,) that make their rows dimensionless.
-        weights: Weights (m, 2) of the squares of the rows in their sum: 1, and those that make it dimensionless.
         unit: Unit (n,) of each of their own velocities.
         spread: Ratio of the largest unit of all these velocities to the smallest.
         work: Multiplications for the smaller of A Aᵀ and Aᵀ A, and for the evaluation of A.
@@ -41,12 +41,21 @@ class Group:
     by: Indices
     evaluator: Any
     row_scale: Vector
-    weights: Matrix
     unit: Vector
     spread: float
     work: float
     own: slice | Indices
     held: Vector | None = None
+
+    @cached_property
+    def rows(self) -> slice | Indices:
+        """Which rows of the robot's residual are theirs."""
+        return as_slice(self.loops.rows)
+
+    @cached_property
+    def closures(self) -> slice | Indices:
+        """Which of the robot's constraints are theirs."""
+        return as_slice(np.array(self.loops.closures, dtype=np.intp))
 
     @cached_property
     def factors(self) -> Matrix:
@@ -84,10 +93,11 @@ class Group:
         """The same at q (B, nq)."""
         return self.jacobian(self.evaluator.at(q))
 
-    def following(self, q: Matrix, driven: Matrix, whole: Matrix | None = None) -> tuple[Matrix, Mask]:
+    def following(self, q: Matrix, driven: Matrix | None, whole: Matrix | None = None) -> tuple[Matrix, Mask]:
         """Their own velocities (B, n, k) for given ones (B, g, k), and where (B,) these exist beyond doubt.
 
-        They are the least ones, in rad/s and m/s. ``whole`` is K (B, nc, nv) of the robot, if it is known.
+        They are the least ones, in rad/s and m/s, for each unit velocity if none are given. ``whole`` is
+        K (B, nc, nv) of the robot, if it is known.
         """
         if whole is None:
             K = self.evaluator.jacobian(self.evaluator.at(q))
@@ -95,8 +105,8 @@ class Group:
             K = whole[:, self.loops.rows[:, None], np.concatenate((self.loops.velocities, self.by))]
         K = K * self.row_scale[:, None]
         norm = self.spread * norms(K)
-        n = len(self.unit)
-        return least_solution(K[:, :, :n], -product(K[:, :, n:], driven), norm)
+        own, by = K[:, :, : len(self.unit)], K[:, :, len(self.unit) :]
+        return least_solution(own, -by if driven is None else -product(by, driven), norm)
 
     def holding(self, direction: Vector) -> Group:
         """The same group, whose derivative is zero along a direction (n,) of unit length: no step moves along it."""
@@ -160,16 +170,21 @@ class Stack:
             groups[0].work,
         )
 
-    def following(self, q: Matrix, driven: Matrix) -> tuple[Matrix, Mask]:
+    def following(self, q: Matrix, driven: Matrix | None) -> tuple[Matrix, Mask]:
         """As `Group.following` of each group: velocities (B, g, n, c) for given ones (B, g, k, c), and where (B, g)."""
         evaluator = self.part.evaluator
         K = evaluator.jacobian(evaluator.at(q))[:, self.rows[:, :, None], self.columns[:, None]]
         K *= self.row_scale[:, :, None]
         n = self.unit.shape[1]
-        A, b = K[..., :n], -(K[..., n:] @ driven)
+        A, b = K[..., :n], -K[..., n:] if driven is None else -(K[..., n:] @ driven)
         norm = self.spread * np.sqrt(np.einsum("bgij,bgij->bg", K, K))
         x, sure = least_solution(A.reshape(-1, *A.shape[2:]), b.reshape(-1, *b.shape[2:]), norm.ravel())
         return x.reshape(*A.shape[:2], *x.shape[1:]), sure.reshape(A.shape[:2])
+
+    def exceeds(self, own: Matrix, groups: Sequence[Pairs], limits: PositionLimits) -> bool:
+        """As `Problem.exceeds`, at own coordinates (E, c) of pairs."""
+        (pairs,) = groups
+        return pairs.exceeds(own, limits)
 
     def moved(self, own: Matrix, groups: Sequence[Pairs], steps: Sequence[Matrix]) -> Matrix:
         """As `Problem.moved`: own coordinates (E, c) of pairs after their steps (E, n)."""
@@ -225,6 +240,10 @@ class Pairs:
         """As `PositionLimits.room` of their velocities (E, n)."""
         down, up = limits.room(self._whole(own))
         return down[self._row, self._velocities], up[self._row, self._velocities]
+
+    def exceeds(self, own: Matrix, limits: PositionLimits) -> bool:
+        """Whether a configuration with these coordinates is beyond a limit."""
+        return limits.are_exceeded(self._whole(own))
 
     def clipped(self, own: Matrix, limits: PositionLimits) -> Matrix:
         """Their coordinates within the limits."""

@@ -12,7 +12,7 @@ from pinocchio import SE3
 
 from eurdf.array import Vector
 from eurdf.closures.se3 import IDENTITY_ROTATION
-from eurdf.kinematics.assembly import assembled, measured, start
+from eurdf.kinematics.assembly import assembled, openings, start
 from eurdf.kinematics.blocks import checked_rows, shape_of
 from eurdf.kinematics.frame_jacobian import frames_of
 from eurdf.kinematics.inverse_search import InverseKinematicsReason, InverseTask, Target, search
@@ -156,7 +156,7 @@ def inverse_kinematics(
             clipped = q if chosen is None else chosen.clip(q)
             at_limits = assembled(problem, clipped, SOLVED, RESTARTS, chosen).at_limits
         with np.errstate(over="ignore", invalid="ignore"):
-            _, is_open = measured(problem, found.q)
+            is_open = openings(problem, found.q)
     return InverseKinematics(
         q=found.q[0],
         converged=found.reason[0] is None,

@@ -32,6 +32,7 @@ from eurdf.kinematics.rank import (
     norms,
     numbers,
     numerical_ranks,
+    product,
     some,
     square,
     squares,
@@ -156,12 +157,12 @@ class _Search:
         at_limits: list[tuple[JointAtLimit, ...]] = [()] * B
         clipped, best = self._clipped(start), np.array(start)
         errors, _ = self._error(start, np.arange(B))
-        done = (clipped == start).all(axis=1) & self._reached(errors)
+        done = np.logical_and.reduce(clipped == start, axis=1) & self._reached(errors)
         if np.count_nonzero(done):
             done[done] = self._problem.closes(start[done], CLOSED)
+            if np.count_nonzero(done) == B:
+                return SearchResult(best, *self._distances(errors), self._iterations, reason, at_limits)
         going = np.flatnonzero(~done)
-        if not len(going):
-            return SearchResult(best, *self._distances(errors), self._iterations, reason, at_limits)
         first = self._close(clipped[going], RESTARTS)
         best[going] = first.q
         is_open = going[~first.closes]
@@ -207,9 +208,9 @@ class _Search:
         damping, idle = numbers(len(q), FIRST_DAMPING), numbers(len(q), 0)
         E: Matrix | None = None
         for step in range(MOST_STEPS + 1):
-            going = ~self._reached(e) & (idle <= MOST_IDLE_STEPS)
+            going = as_numbers(~self._reached(e)) & (idle <= MOST_IDLE_STEPS)
             if not step and some(going):
-                self._begun.append((which[going], q[going]))
+                self._begun.append((which, q) if every(going) else (which[going], q[going]))
             if step == MOST_STEPS or not (len(on) and every(going)):
                 end[on], errors[on] = q, e
                 if step == MOST_STEPS or not some(going):
@@ -218,7 +219,7 @@ class _Search:
                 E, at = None if E is None else E[going], None
             if E is None:
                 E = self._jacobian(self._task.frames.at(q) if at is None else at, e)
-            v = self._steps(q, e, E, damping * cost)
+            v, there = self._steps(q, e, E, damping * cost)
             expected = cost - square(e + times(E, v))
             worth = expected > LEAST_GAIN * cost
             if not every(worth):
@@ -226,9 +227,9 @@ class _Search:
                 if not some(worth):
                     break
                 on, q, e, cost, damping, idle = on[worth], q[worth], e[worth], cost[worth], damping[worth], idle[worth]
-                E, v, expected = E[worth], v[worth], expected[worth]
+                E, there, expected = E[worth], there[worth], expected[worth]
             self._iterations[which[on]] += 1
-            closed = self._close(self._moved(q, v))
+            closed = self._close(there)
             e_there, at = self._error(closed.q, which[on])
             closes, reached = as_numbers(closed.closes), square(e_there)
             gain = choose(closes, (cost - reached) / expected, 0.0)
@@ -245,29 +246,40 @@ class _Search:
                 E[accepted] = self._jacobian(self._task.frames.at(q[accepted]), e[accepted])
         return end, errors
 
-    def _steps(self, q: Matrix, e: Matrix, E: Matrix, damping: Numbers) -> Matrix:
-        """The v (b, nv) with K v = 0 that minimise |E v + e|² + λ|v|² within the limits; at most 1 rad or length."""
+    def _steps(self, q: Matrix, e: Matrix, E: Matrix, damping: Numbers) -> tuple[Matrix, Matrix]:
+        """The v (b, nv) with K v = 0 that minimise |E v + e|² + λ|v|² within the limits; at most 1 rad or length.
+
+        And the configurations (b, nq) that they lead to.
+        """
         K, scale, limits = self._problem.jacobian(q), self._spaces.scale, self._task.limits
-        v = np.empty((len(q), len(scale)))
+        steps, parts = np.empty((len(q), len(scale))), []
         for which, A, Z in self._free_motions(K, E):
-            own_damping = at_least(taken(damping, which), 1e-13 * square(A) + 1e-300)
-            y = damped_step(A, e[which], own_damping)
-            steps = y if Z is None else times(Z, y)
-            if limits is not None:
-                down, up = limits.room(q[which])
-                moved = scale * steps
-                over = ((moved > up) & (up <= scale)) | ((moved < down) & (-down <= scale))
-                for index in np.flatnonzero(over.any(axis=1)).tolist() if np.count_nonzero(over) else ():
-                    at, by = np.arange(len(q))[which][index], float(np.broadcast_to(own_damping, len(steps))[index])
-                    if Z is None:
-                        basis = self._spaces.at(K[at]).free / scale[:, None]
-                        within = damped_step_within((E[at] * scale) @ basis, e[at], by, *self._bounds(q[at], basis))
-                        steps[index] = basis @ within
-                    else:
-                        bounds = self._bounds(q[at], Z[index])
-                        steps[index] = Z[index] @ damped_step_within(A[index], e[at], by, *bounds, y[index])
-            v[which] = scale * (steps / column(at_least(largest(steps), 1.0)))
-        return v
+            by = at_least(taken(damping, which), 1e-13 * square(A) + 1e-300)
+            y = damped_step(A, e[which], by)
+            steps[which] = y if Z is None else times(Z, y)
+            parts.append((which, A, Z, by, y))
+        longest = largest(steps)
+        v = scale * (steps / column(at_least(longest, 1.0)))
+        there = self._problem.tree.integrate(q, v)
+        if limits is None or (every(longest <= 1.0) and not limits.are_exceeded(there)):
+            return v, there
+        down, up = limits.room(q)
+        moved = scale * steps
+        over = np.any(((moved > up) & (up <= scale)) | ((moved < down) & (-down <= scale)), axis=1)
+        for which, A, Z, by, y in parts:
+            by = np.broadcast_to(by, len(A))
+            for index, at in enumerate(np.arange(len(q))[which].tolist()):
+                if not over[at]:
+                    continue
+                if Z is None:
+                    basis = self._spaces.at(K[at]).free / scale[:, None]
+                    bounds = self._bounds(q[at], basis)
+                    steps[at] = basis @ damped_step_within((E[at] * scale) @ basis, e[at], float(by[index]), *bounds)
+                else:
+                    bounds = self._bounds(q[at], Z[index])
+                    steps[at] = Z[index] @ damped_step_within(A[index], e[at], float(by[index]), *bounds, y[index])
+        v = scale * (steps / column(at_least(largest(steps), 1.0)))
+        return v, self._moved(q, v)
 
     def _free_motions(self, K: Matrix, E: Matrix) -> Iterator[tuple[slice | Indices, Matrix, Matrix | None]]:
         """Some elements, the derivatives A of their errors by free motions, and these Z (b, nv, f), dimensionless.
@@ -283,12 +295,14 @@ class _Search:
         if self._may_be_certain:  # else the rows of K depend on each other at every configuration
             A = K * spaces.dimensionless
             across = A.swapaxes(1, 2)
-            inverse, sure = certain_inverse(A @ across, norms(A))
-            self._may_be_certain = certain = bool(np.count_nonzero(sure))
-            if certain:
-                projected = B - B @ across @ inverse @ A
-                projected -= projected @ across @ inverse @ A  # what rounding left
-                if np.count_nonzero(sure) == len(K):
+            inverse, sure = certain_inverse(product(A, across), norms(A))
+            sure = as_numbers(sure)
+            self._may_be_certain = some(sure)
+            if self._may_be_certain:
+                projected = B
+                for _ in range(2):  # the second time what rounding left
+                    projected = projected - product(product(product(projected, across), inverse), A)
+                if every(sure):
                     yield which, projected, None
                     return
                 yield np.flatnonzero(sure), projected[sure], None
@@ -365,7 +379,7 @@ class _Search:
         if len(which) < len(position):
             position, rotation = position[which], rotation[which]
         errors = np.empty((len(q), len(self._task.poses), 6))
-        errors[:, :, :3] = (at.position - position) / self._spaces.length
+        np.divide(at.position - position, self._spaces.length, out=errors[:, :, :3])
         if self._turns:
             errors[:, :, 3:] = at.turn_from(rotation)
         return errors.reshape(len(q), self._rows)[:, self._used], at
@@ -390,10 +404,10 @@ class _Search:
 
     def _distances(self, e: Matrix) -> tuple[Matrix, Matrix]:
         """How far each frame is from its target (b, F), m and rad, by the errors."""
-        both = np.sqrt((self._by_frame(e) ** 2).sum(axis=3))
+        both = np.sqrt(np.add.reduce(np.square(self._by_frame(e)), axis=3))
         return self._spaces.length * both[:, :, 0], both[:, :, 1]
 
     def _reached(self, e: Matrix) -> Mask:
         """Whether (b,) every frame is at its target within the tolerance."""
         squared = np.add.reduce(np.square(e).reshape(len(e), len(self._near), 3), axis=2)
-        return np.asarray((squared <= self._near).all(axis=1))
+        return np.asarray(np.logical_and.reduce(squared <= self._near, axis=1))

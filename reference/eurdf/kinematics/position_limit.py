@@ -81,6 +81,12 @@ class PositionLimits:
         at = q[..., self.coordinates[velocities]]
         return np.minimum(self.lower[velocities] - at, 0.0), np.maximum(self.upper[velocities] - at, 0.0)
 
+    def are_exceeded(self, q: Matrix) -> bool:
+        """Whether a coordinate of q (B, nq) is outside of its limits."""
+        coordinates, lower, upper = self._of_bounded
+        at = q[:, coordinates]
+        return bool(np.count_nonzero((at < lower) | (at > upper)))
+
     def excess(self, q: Matrix) -> Matrix:
         """How far q (…, nq) is beyond the lower, then beyond the upper limits (…, 2 nv); negative within them."""
         at = q[..., self.coordinates]

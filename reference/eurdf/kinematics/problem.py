@@ -16,6 +16,7 @@ from eurdf.kinematics.tolerances import MOST_VELOCITIES_AT_ONCE
 from eurdf.pinocchio.tree_few import as_slice
 
 if TYPE_CHECKING:
+    from eurdf.kinematics.position_limit import PositionLimits
     from eurdf.pinocchio.robot import Robot
 
 # From so many groups of a large robot on that are alike, they are evaluated and solved at once.
@@ -53,6 +54,8 @@ class Problem:
         self.given = np.array(given, dtype=np.intp)
         self._place = np.zeros(self.tree.nv, dtype=np.intp)  # of each velocity where it is among the given ones
         self._place[self.given] = np.arange(len(given))
+        self._unit_motions = np.zeros((self.tree.nv, len(given)))  # of the given velocities
+        self._unit_motions[self.given, self._place[self.given]] = 1.0
         loops = independent_groups(robot, given)
         self.groups = tuple(self._group(robot, each, few) for each in loops)
         self.work = sum(group.work for group in self.groups)
@@ -76,14 +79,11 @@ class Problem:
         velocities = np.concatenate((loops.velocities, by))
         rows, units = self.spaces.row_scale[loops.rows], self.spaces.scale[velocities]
         m, n = len(loops.rows), len(loops.velocities)
-        with np.errstate(over="ignore", invalid="ignore"):
-            weights = np.stack((np.ones(m), rows * rows), axis=1)
         return Group(
             loops,
             by,
             evaluator(robot, loops.closures, velocities, few=few),
             rows,
-            weights,
             units[:n],
             float(units.max() / units.min()) if len(units) else 1.0,
             float(m) * n * min(m, n) + _WORK_OF_A_CLOSURE * len(loops.closures),
@@ -109,19 +109,16 @@ class Problem:
         """Numbers that one element takes, roughly."""
         return sum(int(part.evaluator.numbers) for part in self.parts) + 10 * self.tree.nq
 
-    def measured(self, q: Matrix) -> tuple[Matrix, Matrix, Matrix]:
-        """At q (B, nq) the residual (B, nc), m and rad, and how far each constraint is open (B, c), m and rad."""
+    def openings(self, q: Matrix) -> tuple[Matrix, Matrix]:
+        """How far each constraint is open at q (B, nq), m and rad, (B, c) each."""
         if len(self.parts) == 1:
             (part,) = self.parts
-            at = part.evaluator.at(q)
-            return part.evaluator.residual(at), *part.evaluator.openings(at)
-        r = np.empty((len(q), len(self.spaces.row_scale)))
+            found: tuple[Matrix, Matrix] = part.evaluator.openings(part.evaluator.at(q))
+            return found
         lengths, angles = np.empty((2, len(q), len(self.names)))
         for part in self.parts:
-            at, closures = part.evaluator.at(q), list(part.loops.closures)
-            r[:, part.loops.rows] = part.evaluator.residual(at)
-            lengths[:, closures], angles[:, closures] = part.evaluator.openings(at)
-        return r, lengths, angles
+            lengths[:, part.closures], angles[:, part.closures] = part.evaluator.openings(part.evaluator.at(q))
+        return lengths, angles
 
     def residual(self, q: Matrix) -> Matrix:
         """The residual (B, nc), m and rad."""
@@ -129,7 +126,7 @@ class Problem:
             return self.parts[0].residual(q)
         r = np.empty((len(q), len(self.spaces.row_scale)))
         for part in self.parts:
-            r[:, part.loops.rows] = part.residual(q)
+            r[:, part.rows] = part.residual(q)
         return r
 
     def jacobian(self, q: Matrix) -> Matrix:
@@ -145,11 +142,12 @@ class Problem:
 
     def closes(self, q: Matrix, enough: float) -> Mask:
         """Whether (B,) every constraint is open by at most ``enough``, m and rad, at q (B, nq); NaN is not closed."""
-        closes: Mask = np.ones(len(q), dtype=bool)
-        for part in self.parts:
-            for open_by in part.evaluator.openings(part.evaluator.at(q)):
-                closes &= (open_by <= enough).all(axis=1)
-        return closes
+        lengths, angles = self.openings(q)
+        return np.asarray(np.logical_and.reduce((lengths <= enough) & (angles <= enough), axis=1))
+
+    def exceeds(self, q: Matrix, groups: Sequence[Group], limits: PositionLimits) -> bool:
+        """Whether a configuration (B, nq) to which groups have moved is beyond a limit."""
+        return limits.are_exceeded(q)
 
     def moved(self, q: Matrix, groups: Sequence[Group], steps: Sequence[Matrix]) -> Matrix:
         """Configurations (B, nq) after steps (B, n) of groups; lengths are in characteristic lengths."""
@@ -184,19 +182,17 @@ class Problem:
 
     def derivative(self, q: Matrix) -> tuple[Matrix, Mask]:
         """Their derivatives (B, nv, k) by the given velocities, and where (B,) they exist beyond doubt."""
-        B, k = len(q), len(self.given)
-        D, sure = np.zeros((B, self.tree.nv, k)), np.ones(B, dtype=bool)
-        D[:, self.given, np.arange(k)] = 1.0
+        D, sure = np.empty((len(q), *self._unit_motions.shape)), np.ones(len(q), dtype=bool)
+        D[:] = self._unit_motions
         whole = self.jacobian(q) if self._is_evaluated_whole else None
         for stack in self.stacks:
-            g, k = stack.by.shape
-            if k:
-                solutions, are_sure = stack.following(q, np.broadcast_to(np.eye(k), (B, g, k, k)))
+            if stack.by.shape[1]:
+                solutions, are_sure = stack.following(q, None)
                 D[:, stack.velocities[:, :, None], self._place[stack.by][:, None]] = solutions
                 sure &= are_sure.all(axis=1)
         for group in self._followers:
             if len(group.by) and len(group.unit):
-                solution, is_sure = group.following(q, np.eye(len(group.by))[None], whole)
+                solution, is_sure = group.following(q, None, whole)
                 D[:, group.loops.velocities[:, None], self._place[group.by]] = solution
                 sure &= is_sure
         return D, sure

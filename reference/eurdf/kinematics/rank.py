@@ -54,7 +54,7 @@ def numbers(count: int, value: float) -> Numbers:
 
 def every(mask: Numbers) -> bool:
     """Whether a mask is true of every element."""
-    return np.count_nonzero(mask) == len(mask) if isinstance(mask, np.ndarray) else bool(mask)
+    return np.count_nonzero(mask) == mask.size if isinstance(mask, np.ndarray) else bool(mask)
 
 
 def some(mask: Numbers) -> bool:
@@ -181,7 +181,8 @@ def numerical_ranks(values: Matrix, reference: Vector | None = None) -> Indices:
     ladder = np.empty((*values.shape[:-1], values.shape[-1] + 2))
     ladder[..., 0], ladder[..., -1] = 1.0, FLOOR
     ladder[..., 1:-1] = np.minimum(np.maximum(values / np.maximum(most, NOTHING), FLOOR), 1.0)
-    return np.asarray(np.argmax(ladder[..., :-1] / ladder[..., 1:], axis=-1) * (most[..., 0] > NOTHING))
+    widest: Indices = (ladder[..., :-1] / ladder[..., 1:]).argmax(axis=-1)
+    return widest * (most[..., 0] > NOTHING)
 
 
 def certain_inverse(gram: Matrix, norm: Vector) -> tuple[Matrix, Mask]:
@@ -205,25 +206,26 @@ def least_solution(A: Matrix, b: Matrix, norm: Vector) -> tuple[Matrix, Mask]:
         b: (B, m, k).
         norm: As in `certain_inverse`.
     """
-    m, n = A.shape[1:]
-    if m <= n:
-        x, sure = least_by_squares(A, b, norm)
-        if np.count_nonzero(sure) == len(A):
-            return x, sure
+    B, m, n = A.shape
+    if m > n:
+        x, sure = np.zeros((B, n, b.shape[2])), np.zeros(B, dtype=bool)
     else:
-        x, sure = np.zeros((len(A), n, b.shape[2])), np.zeros(len(A), dtype=bool)
+        x, sure = least_by_squares(A, b, norm)
+        if every(sure):
+            return x, sure
     doubtful = ~sure & np.isfinite(norm)  # and with it A
+    if not some(doubtful):
+        return x, sure
     which = slice(None) if every(doubtful) else np.flatnonzero(doubtful)
     A, b = A[which], b[which]
     left, values, right = np.linalg.svd(A, full_matrices=False)
     counts = values > CERTAIN * norm[which, None]
-    inverse = np.divide(1.0, values, out=np.zeros_like(values), where=counts)
-    own = right.swapaxes(1, 2) @ (inverse[:, :, None] * (left.swapaxes(1, 2) @ b))
-    missed = np.abs(A @ own - b).max(axis=(1, 2), initial=0.0)
-    certain = missed <= MISSED * np.abs(b).max(axis=(1, 2), initial=0.0)
-    if not counts.all():
-        certain &= ~(~counts & (values > ZERO * values.max(axis=1, initial=0.0)[:, None])).any(axis=1)
-    x[which], sure[which] = own, certain
+    inverse = np.divide(1.0, values, out=np.zeros(values.shape), where=counts)
+    own = product(right.swapaxes(1, 2), inverse[:, :, None] * product(left.swapaxes(1, 2), b))
+    missed = largest((product(A, own) - b).reshape(len(A), -1))
+    certain = missed <= MISSED * largest(b.reshape(len(A), -1))
+    redundant = values <= ZERO * values[:, :1]
+    x[which], sure[which] = own, certain & (counts | redundant).all(axis=1)
     return x, sure
 
 
@@ -232,6 +234,8 @@ def least_by_squares(A: Matrix, b: Matrix, norm: Vector) -> tuple[Matrix, Mask]:
     transposed = A.swapaxes(1, 2)
     gram = product(A, transposed)
     inverse, sure = certain_inverse(gram, norm)
+    if not some(sure):
+        return np.zeros((len(A), A.shape[2], b.shape[2])), sure
     y = product(inverse, b)
     y += product(inverse, b - product(gram, y))
     return product(transposed, y), sure
@@ -261,21 +265,21 @@ def damped_step(A: Matrix, e: Matrix, damping: Vector) -> Matrix:
     if not 0 < m <= n:
         return _damped_by_values(A, e, np.array(damping, ndmin=1))
     back = A.swapaxes(1, 2)
-    gram = A @ back
-    if not np.isfinite(gram).all():
+    gram = product(A, back)
+    if not every(np.isfinite(total(diagonals(gram)))):
         gram = np.where(are_finite(gram)[:, None, None], gram, 0.0)
     squared, axes = _umath_linalg.eigh_lo(gram)  # as for `solutions`
     highest = squared[:, -1:]
     counts = squared > CERTAIN * CERTAIN * highest
     inverse = 1.0 / (squared + column(damping))
-    sure = counts.all()
+    sure = np.count_nonzero(counts) == counts.size
     if not sure:
         inverse = np.where(counts, inverse, 0.0)
     y: Matrix = -times(back, times(axes, inverse * times(axes.swapaxes(1, 2), e)))
     if sure:
         return y
-    doubtful = (~counts & (squared > _ROUNDING_OF_SQUARES * highest)).any(axis=1) | ~counts.any(axis=1)
-    if doubtful.any():
+    doubtful = (counts != (squared > _ROUNDING_OF_SQUARES * highest)).any(axis=1) | ~(highest[:, 0] > 0.0)
+    if np.count_nonzero(doubtful):
         y[doubtful] = _damped_by_values(A[doubtful], e[doubtful], np.broadcast_to(damping, len(A))[doubtful])
     return y
 

@@ -15,7 +15,7 @@ from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.frame_jacobian import checked_reference, frame_jacobian, frames_of, in_reference
 from eurdf.kinematics.named import Named
 from eurdf.kinematics.problem import Problem
-from eurdf.kinematics.rank import numerical_rank, numerical_ranks
+from eurdf.kinematics.rank import numerical_rank, numerical_ranks, product
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces, metric, orthonormal
 from eurdf.pinocchio.arguments import checked_array
@@ -124,7 +124,7 @@ def actuated_jacobians(task: JacobianTask, q: Matrix) -> tuple[Matrix, Mask]:
     """`actuated_jacobian` (B, 6, nu) at q (B, nq), and where (B,) the actuators depend on each other."""
     J = in_reference(task.frames, q, task.reference)
     D, dependent = _derivatives(task.free, task.driven, task.W, q)
-    return J @ D, dependent
+    return product(J, D), dependent
 
 
 def _derivatives(free: Problem, driven: Problem, W: Matrix | None, q: Matrix) -> tuple[Matrix, Mask]:

@@ -12,7 +12,7 @@ from eurdf.array import Indices, Matrix, Vector
 from eurdf.kinematics.finite import finite
 from eurdf.kinematics.loop import LoopGroup, independent_groups
 from eurdf.kinematics.named import Named, velocity_of
-from eurdf.kinematics.rank import inverses, least_by_squares, least_by_values, norms, numerical_ranks
+from eurdf.kinematics.rank import inverses, least_by_squares, least_by_values, norms, numerical_ranks, product
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
 from eurdf.kinematics.tolerances import CERTAIN, MOST_VELOCITIES_AT_ONCE
 from eurdf.pinocchio.arguments import checked_array
@@ -77,6 +77,8 @@ class TangentSpace:
     @cached_property
     def basis(self) -> Matrix:
         """Z (nv, nv - rank) with K Z = 0 and Zᵀ Z = 1."""
+        if self._spaces.all_turn:
+            return self.free
         found = []
         for block in self._blocks:
             scale = self._spaces.scale[block.group.velocities]
@@ -86,7 +88,10 @@ class TangentSpace:
     @cached_property
     def free(self) -> Matrix:
         """Z (nv, nv - rank) with K Z = 0 that is orthonormal in units of the characteristic length."""
-        return self._whole([self._spaces.scale[block.group.velocities, None] * block.free for block in self._blocks])
+        scale, free = self._spaces.scale, [block.free for block in self._blocks]
+        if not self._spaces.all_turn:
+            free = [scale[block.group.velocities, None] * block.free for block in self._blocks]
+        return self._whole(free)
 
     @cached_property
     def inverse(self) -> Matrix:
@@ -180,6 +185,7 @@ class TangentSpaces:
         scale: Unit (nv,) of each velocity: the characteristic length for one of a loop that only translates, else 1.
         row_scale: Factors (nc,) that make the rows of K dimensionless.
         outside: Indices of the velocities outside of all loops.
+        all_turn: Whether every unit is 1: none of a velocity of a loop is a length.
         alike: Groups of loops with as many rows and velocities, and their blocks of K.
         whole: K as one block.
     """
@@ -188,6 +194,7 @@ class TangentSpaces:
         self.length = characteristic_length(robot)
         self.scale = velocity_scale(robot, self.length)
         self.row_scale = row_scale(robot, self.length)
+        self.all_turn = bool((self.scale == 1.0).all())
         outside = np.ones(robot.tree.nv, dtype=bool)
         alike: dict[tuple[int, int], list[LoopGroup]] = {}  # by the numbers of their rows and velocities
         for group in independent_groups(robot):
@@ -282,22 +289,22 @@ class _Decomposed(NamedTuple):
 def _decomposed(A: Matrix) -> _Decomposed:
     """Decompose blocks; the singular values decide on the rank of those that are in doubt."""
     m, n = A.shape[1:]
-    squares = np.einsum("bij,bij->bi", A, A)
-    total = squares.sum(axis=1)
-    # The smallest singular value is at most the norm of a row.
-    if m <= n and (squares.min(axis=1, initial=np.inf) > CERTAIN * CERTAIN * total).all():
-        Q, R = np.linalg.qr(np.swapaxes(A, 1, 2), mode="complete")
-        inverse = inverses(R[:, :m])
-        # 1/|R⁻¹| bounds the smallest singular value of A from below.
-        if (CERTAIN * np.sqrt(total * np.einsum("bij,bij->b", inverse, inverse)) < 1.0).all():
-            return _Decomposed(Q, Q[:, :, :m] @ np.swapaxes(inverse, 1, 2), np.full(len(A), m))
+    if m <= n:
+        squares = np.einsum("bij,bij->bi", A, A)
+        total = squares.sum(axis=1)
+        # The smallest singular value is at most the norm of a row.
+        if (squares.min(axis=1, initial=np.inf) > CERTAIN * CERTAIN * total).all():
+            Q, R = np.linalg.qr(A.swapaxes(1, 2), mode="complete")
+            inverse = inverses(R[:, :m])
+            # 1/|R⁻¹| bounds the smallest singular value of A from below.
+            if (CERTAIN * np.sqrt(total * np.einsum("bij,bij->b", inverse, inverse)) < 1.0).all():
+                return _Decomposed(Q, product(Q[:, :, :m], inverse.swapaxes(1, 2)), np.full(len(A), m))
     left, values, right = np.linalg.svd(A)
     rank = numerical_ranks(values)
     counts = np.arange(values.shape[1]) < rank[:, None]
-    reciprocal = np.divide(1.0, values, out=np.zeros_like(values), where=counts)
-    right = np.swapaxes(right, 1, 2)
-    k = values.shape[1]
-    return _Decomposed(right, (right[:, :, :k] * reciprocal[:, None]) @ np.swapaxes(left[:, :, :k], 1, 2), rank)
+    reciprocal = np.divide(1.0, values, out=np.zeros(values.shape), where=counts)
+    right, k = right.swapaxes(1, 2), values.shape[1]
+    return _Decomposed(right, product(right[:, :, :k] * reciprocal[:, None], left[:, :, :k].swapaxes(1, 2)), rank)
 
 
 class LeastSolutions:

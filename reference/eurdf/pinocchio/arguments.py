@@ -8,17 +8,14 @@ from __future__ import annotations
 import math
 import operator
 import reprlib
-from collections.abc import Callable, Iterable
-from functools import wraps
-from typing import Any, TypeVar
+from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 
 from eurdf.array import Matrix
 
 _FLOATS = np.dtype(np.float64)
-
-_Result = TypeVar("_Result")
 
 
 def checked_array(name: str, given: Any, *shapes: tuple[int, ...]) -> Matrix:
@@ -32,7 +29,7 @@ def checked_array(name: str, given: Any, *shapes: tuple[int, ...]) -> Matrix:
     Raises:
         ValueError: It has another shape, or something in it is not a finite number.
     """
-    if type(given) is np.ndarray and given.dtype is _FLOATS and given.shape in shapes and _all_finite(given):
+    if type(given) is np.ndarray and given.dtype is _FLOATS and given.shape in shapes and all_finite(given):
         return given  # sooner than by the steps below
     expected = " or ".join(map(str, shapes))
     try:
@@ -44,16 +41,17 @@ def checked_array(name: str, given: Any, *shapes: tuple[int, ...]) -> Matrix:
         raise ValueError(f"{name} is {reprlib.repr(given)}; expected finite numbers of shape {expected}") from None
     if values.shape not in shapes:
         raise ValueError(f"{name} has the shape {values.shape}; expected {expected}")
-    if not np.isfinite(values).all():
+    if not all_finite(values):
         at = [int(index) for index in np.argwhere(~np.isfinite(values))[0]]
         place = f"{name}{at}" if at else name
         raise ValueError(f"{place} is {values[tuple(at)]}, not finite; expected finite numbers of shape {expected}")
     return values
 
 
-def _all_finite(values: Matrix) -> bool:
-    # Sooner than by isfinite; unlike dot, vdot does not warn. If the squares overflow, slower steps follow.
-    return math.isfinite(np.vdot(values, values))
+def all_finite(values: Matrix) -> bool:
+    """Whether all numbers are finite."""
+    # The squares tell it sooner, unless they overflow; unlike dot, vdot does not warn.
+    return math.isfinite(np.vdot(values, values)) or bool(np.isfinite(values).all())
 
 
 def checked_count(name: str, given: Any, least: int) -> int:
@@ -98,18 +96,6 @@ def checked_data(model: Any, data: Any) -> Any:
     if not isinstance(data, pin.Data) or not model.check(data):
         raise ValueError("data is not a pin.Data of the robot's model; pass robot.data or robot.model.createData()")
     return data
-
-
-def accepting(
-    function: Callable[..., _Result], types: tuple[type, ...], made: Callable[[Any], Any]
-) -> Callable[..., _Result]:
-    """A function whose first argument, the robot, may also be of other types, of which the robot is made first."""
-
-    @wraps(function)
-    def of_any(robot: Any, *args: Any, **options: Any) -> _Result:
-        return function(made(robot) if isinstance(robot, types) else robot, *args, **options)
-
-    return of_any
 
 
 def as_names(given: str | Iterable[str]) -> tuple[str, ...]:

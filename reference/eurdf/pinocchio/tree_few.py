@@ -76,13 +76,18 @@ class FewPoses(RelativePoses):
         """Jlog6(ᴮM_A) (B, k, 6, 6)."""
         return np.array([pin.Jlog6(aMb.inverse()) for aMb in self._each()]).reshape(*self._shape, 6, 6)
 
+    def twist_in_b(self) -> Matrix:
+        """Ad(ᴮM_A) (B, k, 6, 6)."""
+        return np.array([aMb.toActionMatrixInverse() for aMb in self._each()]).reshape(*self._shape, 6, 6)
+
     def turn_from(self, rotation: Matrix) -> Matrix:
-        turns = rotation.swapaxes(2, 3) @ self.rotation
-        return np.array([pin.log3(R) for R in turns.reshape(-1, 3, 3)]).reshape(*self._shape, 3)
+        each = zip(rotation.reshape(-1, 3, 3), self._each(), strict=True)
+        return np.array([pin.log3(S.T.dot(aMb.rotation)) for S, aMb in each]).reshape(*self._shape, 3)
 
     def turn_by_omega(self, turn: Matrix) -> Matrix:
-        found = np.array([pin.Jlog3(pin.exp3(each)) for each in turn.reshape(-1, 3)])
-        return found.reshape(*self._shape, 3, 3) @ self.rotation.swapaxes(2, 3)
+        each = zip(turn.reshape(-1, 3), self._each(), strict=True)
+        found = [pin.Jlog3(pin.exp3(own)).dot(aMb.rotation.T) for own, aMb in each]
+        return np.array(found).reshape(*self._shape, 3, 3)
 
     def _each(self) -> Sequence[Any]:
         pairs, q = self._pairs, self.q
