@@ -42,7 +42,7 @@ class Problem:
         at_once: Whether all loops descend with one damping, before each group does by itself.
         together: The loops as they descend with one damping, if they do.
         stacks: Many groups of a large robot that are alike, for few elements.
-        parts: The same loops as their constraints are evaluated fastest: all at once, but in large robots by group.
+        parts: The same loops as their constraints are evaluated fastest: all at once, in large robots those alike.
     """
 
     def __init__(self, robot: Robot, given: Sequence[int] = (), *, few: bool = True) -> None:
