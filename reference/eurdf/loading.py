@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial, wraps
+from functools import partial
 from inspect import currentframe, signature
-from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Concatenate, ParamSpec, TypeVar
 
 from eurdf.advice.angles import advise_on_angles
 from eurdf.advice.lengths import advise_on_lengths
@@ -25,7 +25,7 @@ from eurdf.linking.mimics import warn_of_ignored_mimics
 from eurdf.linking.robot_files import ReadRobot, inertia_diagnostics, read_robot
 from eurdf.mechanism.mechanism import Root
 from eurdf.mesh_files.kinds import KINDS, suffix_of
-from eurdf.pinocchio.memory import Cached
+from eurdf.pinocchio.arguments import accepting
 from eurdf.pinocchio.meshes import Mesh, read_meshes
 from eurdf.reading.robot_source import RobotSource
 
@@ -166,14 +166,7 @@ def of_any_robot(
     Returns:
         The function, as one of the module that calls this, in which it must have the same name to be pickled.
     """
-
-    @wraps(function)
-    def accepting(robot: Any, *args: Any, **options: Any) -> _Result:
-        # That it is a robot is known sooner than that it is a path.
-        own: Any = robot if isinstance(robot, Cached) else as_robot(robot, geometry=geometry)
-        return function(own, *args, **options)
-
-    of_any: Callable[..., _Result] = accepting
+    of_any = accepting(function, partial(as_robot, geometry=geometry))
     first, *others = signature(function).parameters.values()
     accepted = first.replace(annotation="Robot | RobotSource")
     of_any.__signature__ = signature(function).replace(parameters=[accepted, *others])  # type: ignore[attr-defined]

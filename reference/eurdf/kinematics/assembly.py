@@ -21,7 +21,7 @@ from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits, chosen_limits
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.tolerances import MOST_WORK, RESTARTS, SOLVED
-from eurdf.pinocchio.arguments import as_names, checked_count, checked_tolerance
+from eurdf.pinocchio.arguments import are_by_name, as_names, checked_array, checked_count, checked_tolerance
 from eurdf.pinocchio.memory import working_memory
 
 if TYPE_CHECKING:
@@ -132,7 +132,7 @@ def start(robot: Robot, q0: Named | None = None, name: str = "q0") -> Vector:
     if q0 is None:
         return robot.tree.neutral()
     tree = robot.tree
-    given = configuration_of(robot, q0, name)
+    given = configuration_of(robot, q0, name) if are_by_name(q0) else checked_array(name, q0, (tree.nq,))
     if tree.is_normalized(given, _ROUNDING):
         return np.array(given)
     q = tree.normalized(given)

@@ -225,28 +225,27 @@ def _steps(
 
 def _shortened(steps: list[Matrix]) -> list[Matrix]:
     """The same steps, shorter for the elements for which one is longer than 1."""
-    if all(every(square(step) <= 1.0) for step in steps):  # none is
-        return steps
     longest: Numbers = 1.0
     for step in steps:
-        longest = at_least(longest, largest(step))
-    return [step / column(longest) for step in steps]
+        if not every(square(step) <= 1.0):  # else it is not longer
+            longest = at_least(longest, largest(step))
+    return [step / column(longest) for step in steps] if some(longest > 1.0) else steps
 
 
 def _damped(A: Sequence[Matrix], b: Sequence[Matrix], damping: Numbers) -> list[Matrix]:
     """The δ (B, n) that minimise Σ |A δ + b|² + λ |δ|², from the smaller of A Aᵀ and Aᵀ A of each group."""
-    grams, wide = [], [own.shape[1] < own.shape[2] for own in A]
+    grams: list[tuple[bool, Matrix, Matrix]] = []
     trace: Numbers = 0.0
-    for own, is_wide in zip(A, wide, strict=True):
-        back = own.swapaxes(1, 2)
+    for own in A:
+        is_wide, back = own.shape[1] < own.shape[2], own.swapaxes(1, 2)
         gram = product(own, back) if is_wide else product(back, own)
         diagonal = diagonals(gram)
-        grams.append((gram, diagonal))
+        grams.append((is_wide, gram, diagonal))
         trace = trace + total(diagonal)
     # Invertible even with redundant rows.
     damping = column(at_least(damping, 1e-13 * trace + 1e-300))
     steps: list[Matrix] = []
-    for own, is_wide, (gram, diagonal), rows in zip(A, wide, grams, b, strict=True):
+    for own, (is_wide, gram, diagonal), rows in zip(A, grams, b, strict=True):
         diagonal += damping
         back = own.swapaxes(1, 2)
         steps.append(times(back, solutions(gram, -rows)) if is_wide else solutions(gram, -times(back, rows)))

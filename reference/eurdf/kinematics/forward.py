@@ -13,14 +13,14 @@ from eurdf.errors import NotClosable, NumericalOverflow, TooFar
 from eurdf.kinematics.assembly import assembled, closed_start, start
 from eurdf.kinematics.blocks import checked_rows
 from eurdf.kinematics.closing import close, is_closed
-from eurdf.kinematics.named import ByJoint, Named, NamedRows, configurations_of, is_by_joint, unknown_joint
+from eurdf.kinematics.named import ByJoint, Named, NamedRows, configurations_of, unknown_joint
 from eurdf.kinematics.path import follow_given
 from eurdf.kinematics.problem import Problem, for_many
 from eurdf.kinematics.residual import all_openings
 from eurdf.kinematics.springs import Resting, joints_at_rest, spring_equilibrium
 from eurdf.kinematics.tolerances import RESTARTS, SHORTEST_STEP, SOLVED
 from eurdf.mechanism.mechanism import ROOT_JOINT
-from eurdf.pinocchio.arguments import checked_array, checked_tolerance
+from eurdf.pinocchio.arguments import are_by_name, checked_array, checked_tolerance
 from eurdf.pinocchio.memory import working_memory
 
 if TYPE_CHECKING:
@@ -266,7 +266,7 @@ class Given:
 
 
 def _given(robot: Robot, values: Named) -> Given:
-    if is_by_joint(values):
+    if are_by_name(values):
         return _given_by_name(robot, values)
     actuation = robot.actuation
     values = checked_array("actuated", values, (len(actuation.idx_q),))
@@ -288,7 +288,7 @@ def given_many(robot: Robot, values: NamedRows) -> Given:
     Raises:
         ValueError: They do not fit the robot.
     """
-    if is_by_joint(values):
+    if are_by_name(values):
         coordinates, velocities, _ = _places(robot, values)
         rows = configurations_of(robot, values, "values")[:, coordinates]
         return Given(tuple(values), coordinates, velocities, rows)

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, TypeGuard
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from eurdf.array import Matrix, Vector
 from eurdf.diagnostics.wording import enumerated, meant
 from eurdf.mechanism.mechanism import ROOT_JOINT
-from eurdf.pinocchio.arguments import checked_array
+from eurdf.pinocchio.arguments import are_by_name, checked_array
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -25,18 +25,13 @@ Named = Vector | ByJoint
 NamedRows = Matrix | Mapping[str, Any]
 
 
-def is_by_joint(given: Any) -> TypeGuard[ByJoint]:
-    """Whether values are given by the names of their joints; of an array this is told sooner than by its type alone."""
-    return type(given) is not np.ndarray and isinstance(given, Mapping)
-
-
 def configuration_of(robot: Robot, given: Named, argument: str = "q") -> Vector:
     """A configuration (nq,), as `Robot.configuration` makes it where coordinates are given by name.
 
     Raises:
         ValueError: It does not fit the robot, or is not finite.
     """
-    if is_by_joint(given):
+    if are_by_name(given):
         try:
             given = robot.configuration(given)
         except ValueError as error:
@@ -50,7 +45,7 @@ def configurations_of(robot: Robot, given: Any, argument: str = "q") -> Any:
     Raises:
         ValueError: They do not fit the robot, or the joints have values of different numbers of elements.
     """
-    if not is_by_joint(given):
+    if not are_by_name(given):
         return given
     each = {name: _values_of_each(robot, name, values, argument) for name, values in given.items()}
     counts = {len(rows) for rows in each.values()} - {1}
@@ -78,7 +73,7 @@ def velocity_of(robot: Robot, given: Named, argument: str = "v", others: float =
     Raises:
         ValueError: It does not fit the robot, or is not finite.
     """
-    if not is_by_joint(given):
+    if not are_by_name(given):
         return checked_array(argument, given, (robot.tree.nv,))
     names = robot.tree.velocity_names
     for name in given:
@@ -94,7 +89,7 @@ def motor_values_of(robot: Robot, given: Named, argument: str = "u", others: flo
         ValueError: It does not fit the robot, or is not finite.
     """
     actuation = robot.actuation
-    if not is_by_joint(given):
+    if not are_by_name(given):
         return checked_array(argument, given, actuation.idx_v.shape)
     return vector_of(given, [name for name in actuation.joints for _ in range(robot.slots[name].nv)], argument, others)
 
@@ -111,7 +106,7 @@ def vector_of(given: Named, names: Sequence[str], argument: str, others: float =
     Raises:
         ValueError: A name is unknown, or the numbers of values differ, or something is no finite number.
     """
-    if not is_by_joint(given):
+    if not are_by_name(given):
         return checked_array(argument, given, (len(names),))
     vector = np.full(len(names), others)
     require_names(given, names, argument)

@@ -8,14 +8,18 @@ from __future__ import annotations
 import math
 import operator
 import reprlib
-from collections.abc import Iterable
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping
+from functools import wraps
+from typing import Any, TypeGuard, TypeVar
 
 import numpy as np
 
 from eurdf.array import Matrix
+from eurdf.pinocchio.memory import Cached
 
 _FLOATS = np.dtype(np.float64)
+
+_Result = TypeVar("_Result")
 
 
 def checked_array(name: str, given: Any, *shapes: tuple[int, ...]) -> Matrix:
@@ -96,6 +100,22 @@ def checked_data(model: Any, data: Any) -> Any:
     if not isinstance(data, pin.Data) or not model.check(data):
         raise ValueError("data is not a pin.Data of the robot's model; pass robot.data or robot.model.createData()")
     return data
+
+
+def accepting(function: Callable[..., _Result], as_robot: Callable[[Any], Any]) -> Callable[..., _Result]:
+    """A function whose first argument, the robot, may also be something of which a robot is made first."""
+
+    @wraps(function)
+    def of_any(robot: Any, *args: Any, **options: Any) -> _Result:
+        # That it is a robot is known sooner than that it is a path.
+        return function(robot if isinstance(robot, Cached) else as_robot(robot), *args, **options)
+
+    return of_any
+
+
+def are_by_name(given: Any) -> TypeGuard[Mapping[str, Any]]:
+    """Whether values are given by name; that an array is not a mapping is known sooner by its own type."""
+    return type(given) is not np.ndarray and isinstance(given, Mapping)
 
 
 def as_names(given: str | Iterable[str]) -> tuple[str, ...]:
