@@ -234,20 +234,19 @@ def _shortened(steps: list[Matrix]) -> list[Matrix]:
 
 def _damped(A: Sequence[Matrix], b: Sequence[Matrix], damping: Numbers) -> list[Matrix]:
     """The δ (B, n) that minimise Σ |A δ + b|² + λ |δ|², from the smaller of A Aᵀ and Aᵀ A of each group."""
-    grams: list[tuple[bool, Matrix, Matrix]] = []
+    grams = []
     trace: Numbers = 0.0
     for own in A:
-        is_wide, back = own.shape[1] < own.shape[2], own.swapaxes(1, 2)
+        back, is_wide = own.swapaxes(1, 2), own.shape[1] < own.shape[2]
         gram = product(own, back) if is_wide else product(back, own)
         diagonal = diagonals(gram)
-        grams.append((is_wide, gram, diagonal))
+        grams.append((back, is_wide, gram, diagonal))
         trace = trace + total(diagonal)
     # Invertible even with redundant rows.
     damping = column(at_least(damping, 1e-13 * trace + 1e-300))
     steps: list[Matrix] = []
-    for own, (is_wide, gram, diagonal), rows in zip(A, grams, b, strict=True):
+    for (back, is_wide, gram, diagonal), rows in zip(grams, b, strict=True):
         diagonal += damping
-        back = own.swapaxes(1, 2)
         steps.append(times(back, solutions(gram, -rows)) if is_wide else solutions(gram, -times(back, rows)))
     return steps
 
