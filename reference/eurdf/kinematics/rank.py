@@ -175,9 +175,6 @@ def numerical_ranks(values: Matrix, reference: Vector | None = None) -> Indices:
     if values.shape[-1] == 0:
         return np.zeros(values.shape[:-1], dtype=np.intp)
     most = values[..., :1] if reference is None else reference[..., None]
-    counts = values > CERTAIN * most
-    if not ((values > ZERO * most) & ~counts).any() and not (most <= NOTHING).any():
-        return np.asarray(np.add.reduce(counts, axis=-1))  # the gap between them is the widest
     ladder = np.empty((*values.shape[:-1], values.shape[-1] + 2))
     ladder[..., 0], ladder[..., -1] = 1.0, FLOOR
     ladder[..., 1:-1] = np.minimum(np.maximum(values / np.maximum(most, NOTHING), FLOOR), 1.0)
@@ -244,9 +241,12 @@ def least_by_squares(A: Matrix, b: Matrix, norm: Vector) -> tuple[Matrix, Mask]:
 def least_by_values(A: Matrix, b: Matrix) -> Matrix:
     """A⁺ b (B, n, k) with the `numerical_ranks` of A."""
     left, values, right = np.linalg.svd(A, full_matrices=False)
-    counts = np.arange(values.shape[1]) < numerical_ranks(values)[:, None]
-    reciprocal = np.divide(1.0, values, out=np.zeros_like(values), where=counts)
-    return product(right.swapaxes(1, 2), reciprocal[:, :, None] * product(left.swapaxes(1, 2), b))
+    most = values[:, :1]
+    counts = values > np.maximum(CERTAIN * most, NOTHING)
+    if np.count_nonzero(values > ZERO * most) > np.count_nonzero(counts):  # else the gap between them is the widest
+        counts = np.arange(values.shape[1]) < numerical_ranks(values)[:, None]
+    values[~counts] = np.inf
+    return product(right.swapaxes(1, 2), product(left.swapaxes(1, 2), b) / values[:, :, None])
 
 
 def damped_step(A: Matrix, e: Matrix, damping: Vector) -> Matrix:
