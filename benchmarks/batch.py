@@ -3,6 +3,9 @@
 Motors are within 0.05 rad or 1 mm of the assembled configuration; tolerances are the default ones of both. Batches have
 10,000 elements, 1,000 for inverse kinematics and chains of four-bars; of the single functions 40 calls are measured.
 Both run in turns, and the least time of three counts. The last column says how many times as long a call takes.
+
+The second table has forward kinematics of all robots of the collection for several sizes of a batch: the mean time of
+an element, and the ratio of that in a batch of 4,096 to that in one of 100,000. What takes over a minute is left out.
 """
 
 from __future__ import annotations
@@ -21,6 +24,10 @@ ELEMENTS = 10_000
 ELEMENTS_OF_A_CHAIN = 1_000
 SINGLES = 40
 TURNS = 3
+SIZES = (100, 1_000, 4_096, 10_000, 100_000)
+#: So many elements of the second table differ; larger batches repeat them.
+DIFFERENT = 4_096
+LONGEST = 60.0  # s
 
 
 def least(one: Callable[[], object], other: Callable[[], object]) -> tuple[float, float]:
@@ -46,9 +53,30 @@ def configurations(robot: eurdf.Robot, q0: np.ndarray, count: int) -> np.ndarray
 
 
 def tables() -> Iterator[Table]:
-    """Of single robots and of chains."""
+    """Of single robots and of chains; then of all robots by the size of the batch."""
     columns = ("robot", "function", "elements", "time", "per element", "one call", "one call to element")
     yield Table(columns, [row for name in (*ROBOTS, *chains()[:2]) for row in _rows(name)])
+    heads = ("robot", *(f"{size:,}" for size in SIZES), "4,096 to 100,000")
+    yield Table(heads, [_sizes(name) for name in eurdf.collection_names()], "Forward kinematics, time of an element")
+
+
+def _sizes(name: str) -> tuple[str, ...]:
+    robot = robot_called(name)
+    q0 = eurdf.assemble(robot).q
+    different = configurations(robot, q0, DIFFERENT)[:, robot.actuation.idx_q]
+    taken: dict[int, float] = {}
+    for size in SIZES:
+        if size * min(taken.values(), default=0.0) > LONGEST:
+            break
+        values = np.resize(different, (size, different.shape[1]))
+        eurdf.batch.forward_kinematics(robot, values[:1], q0)
+        start, calls = time.process_time(), 0
+        while time.process_time() - start < 0.3:
+            eurdf.batch.forward_kinematics(robot, values, q0)
+            calls += 1
+        taken[size] = (time.process_time() - start) / calls / size
+    cells = [duration(taken[size]) if size in taken else "-" for size in SIZES]
+    return name, *cells, ratio(taken[4_096], taken[100_000]) if len(taken) == len(SIZES) else "-"
 
 
 def _rows(name: str) -> Iterator[tuple[str, ...]]:

@@ -184,7 +184,7 @@ def wrong(good: Any) -> dict[str, Any]:
     }
 
 
-#: A mapping gives coordinates by name; a column of one number is also a matrix.
+#: A column of one number is also a matrix.
 RIGHT = {("stiffness", "column"), ("damping", "column")}
 
 

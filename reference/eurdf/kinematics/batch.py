@@ -129,7 +129,8 @@ def forward_kinematics(
             `assembled` configuration, or the neutral one if there is none. To stay on a branch far from the start, give
             the result for near values.
         tolerance: Bound of each row of the residual for closed loops, m or rad.
-        block: Number of elements that are worked on together. By default as many as take some 4 MB, at most 1,000.
+        block: Number of elements that are worked on together. By default as many as take some 16 MB, at most 2,000; for
+            several threads half of these, a third or a quarter.
         threads: Number of threads that work on blocks.
         executor: Any `concurrent.futures.Executor` that works on blocks instead: a process pool, or that of a cluster.
         progress: Called after each block with the number of elements done and the number of all.
@@ -348,7 +349,7 @@ def actuated_jacobian(
     """
     model = for_many(robot)
     W = None if weights is None else metric(robot, weights)
-    driven = Problem(robot, robot.actuation.idx_v.tolist(), few=False)
+    driven = for_many(robot, robot.actuation.idx_v.tolist())
     task = JacobianTask(model, driven, frames(robot, [frame], few=False), checked_reference(reference), W)
     rows = checked_configurations(robot, "q", q)
     work = blocks(model.numbers + 20 * model.tree.nv, block, threads, executor, progress)

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from eurdf.array import Matrix
+from eurdf.blas import ONE_THREAD
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.evaluate import many_tree
 from eurdf.kinematics.named import configurations_of
@@ -26,9 +27,13 @@ Progress = Callable[[int, int], None]
 
 Arrays = Sequence[npt.NDArray[Any]]
 
-# Memory of the arrays of one block, bytes, and the largest number of elements in one: more would not be faster.
-_BLOCK_BYTES = 2**22
-_LONGEST_BLOCK = 1000
+# Memory of the arrays of one block, bytes, and the largest number of elements in one: with more, the arrays are not in
+# the cache of the processor; with less, NumPy takes longer to begin its loops than to run them.
+_BLOCK_BYTES = 2**24
+_LONGEST_BLOCK = 2000
+
+# Blocks are smaller by the number of threads, so that each has several, but not by more than this.
+_PARTS = 4
 
 # Number of blocks that an executor is given at once, so that a long batch does not fill its queue.
 _MOST_SUBMITTED = 64
@@ -61,16 +66,16 @@ class Blocks:
         total = len(arrays[0])
         starts = range(0, max(total, 1), self.size)
         calls = ((task, *(array[first : first + self.size] for array in arrays)) for first in starts)
-        done: dict[int, Arrays] = {}
+        found: tuple[npt.NDArray[Any], ...] = ()
         count = 0
         for index, result in self._results(function, calls):
-            done[index] = result
+            found = found or tuple(np.empty((total, *part.shape[1:]), part.dtype) for part in result)
+            for whole, part in zip(found, result, strict=True):
+                whole[starts[index] : starts[index] + len(part)] = part
             count += len(result[0])
             if self.progress is not None:
                 self.progress(count, total)
-        return tuple(
-            np.concatenate(parts) for parts in zip(*(done[index] for index in range(len(starts))), strict=True)
-        )
+        return found
 
     def _results(self, function: Callable[..., Arrays], calls: Iterator[Any]) -> Iterator[tuple[int, Arrays]]:
         """The result of each call with its index, in any order."""
@@ -120,13 +125,13 @@ def blocks(
     threads = checked_count("threads", threads, 1)
     if executor is not None and threads > 1:
         raise ValueError("both threads and executor are given; use one of them")
-    size = max(1, min(_LONGEST_BLOCK, _BLOCK_BYTES // (8 * max(numbers, 1))))
+    size = max(1, min(_LONGEST_BLOCK, _BLOCK_BYTES // (8 * max(numbers, 1))) // min(threads, _PARTS))
     return Blocks(size if block is None else checked_count("block", block, 1), threads, executor, progress)
 
 
 def _evaluated(function: Callable[..., Arrays], *arguments: Any) -> Arrays:
     # Elements that overflow do not converge, and say so.
-    with np.errstate(all="ignore"):
+    with np.errstate(all="ignore"), ONE_THREAD:
         return function(*arguments)
 
 

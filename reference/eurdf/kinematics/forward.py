@@ -204,9 +204,8 @@ def driving_many(robot: Robot, given: Given, tolerance: float) -> Driving:
     """A robot some joints of which are given, for many elements."""
     velocities, resting, at_rest = given.velocities.tolist(), joints_at_rest(robot, given.velocities), None
     if resting is not None:
-        at_rest = Problem(robot, (*velocities, *resting.velocities.tolist()), few=False)
-    driven = Problem(robot, velocities, few=False)
-    return Driving(for_many(robot), driven, given.coordinates, resting, at_rest, tolerance)
+        at_rest = for_many(robot, (*velocities, *resting.velocities.tolist()))
+    return Driving(for_many(robot), for_many(robot, velocities), given.coordinates, resting, at_rest, tolerance)
 
 
 def goals(driving: Driving, q: Matrix, values: Matrix) -> Matrix:

@@ -18,6 +18,7 @@ from eurdf.closures.kind import RelativeMotions, RelativePoses
 from eurdf.closures.se3 import cross, rotation_of, skew, turned
 from eurdf.kinematics.tree_many import IDENTITY, Node, TreeMany
 from eurdf.pinocchio.ancestry import between, nodes_between
+from eurdf.pinocchio.tree_few import as_slice
 
 
 class _Subtree:
@@ -64,11 +65,12 @@ class _Subtree:
         ]
         self.column_nodes = [number for _, number, _, _ in columns]
         self.velocities = np.array([velocity for _, _, _, velocity in columns], dtype=np.intp)
-        self._column_rows = np.array([row for row, _, _, _ in columns], dtype=np.intp)
+        rows = np.array([row for row, _, _, _ in columns], dtype=np.intp)
+        self._column_rows = as_slice(rows)
         subspace = np.array([S for _, _, S, _ in columns]).reshape(-1, 1, 2, 3)
         self._slides = bool(subspace[:, :, 0].any())
         self._subspace = subspace if self._slides else subspace[:, :, 1:]
-        self._of_node = np.equal(np.arange(self.count)[:, None], self._column_rows).astype(np.float64)
+        self._of_node = np.equal(np.arange(self.count)[:, None], rows).astype(np.float64)
 
     def place(self, q: Matrix) -> Matrix:
         """Poses (count, 3, 4, B) of the nodes' moving frames at q (B, nq)."""
@@ -83,21 +85,22 @@ class _Subtree:
         return poses
 
     def twists(self, poses: Matrix) -> Matrix:
-        """Of each column the twist (c, 6, B) for a unit velocity, of the point at the origin and in its axes."""
+        """Of each column the twist for a unit velocity, of the origin and in its axes; then zero (c + 1, 6, B)."""
         at = poses[self._column_rows]
         seen = self._subspace @ at[:, :, :3]
-        found = np.empty((len(at), 6, at.shape[-1]))
-        angular, p = seen[:, :, -1], at[:, :, 3]
+        twists = np.empty((len(at) + 1, 6, at.shape[-1]))
+        twists[-1] = 0.0
+        found, angular, p = twists[:-1], seen[:, :, -1], at[:, :, 3]
         found[:, 3:] = angular
         for x, y, z in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
             found[:, x] = p[:, y] * angular[:, z] - p[:, z] * angular[:, y]
         if self._slides:
             found[:, :3] += seen[:, :, 0]
-        return found
+        return twists
 
     def motions(self, poses: Matrix, v: Matrix) -> tuple[Matrix, Matrix]:
         """The twists and their derivatives (B, count, 6) of the nodes, of the point at the origin and in its axes."""
-        own = self._of_node @ (_elements_first(self.twists(poses)) * v[:, self.velocities, None])
+        own = self._of_node @ (_elements_first(self.twists(poses)[:-1]) * v[:, self.velocities, None])
         twists, changes = np.zeros((2, *own.shape))
         for rows, above, _, _ in self._levels:
             twists[:, rows] = twists[:, above] + own[:, rows]
@@ -260,11 +263,13 @@ class ManyPairs:
         for column, (number, velocity) in enumerate(zip(chain.column_nodes, chain.velocities.tolist(), strict=True)):
             if velocity in wanted:
                 self._by_joint.setdefault(joint_of[number], []).append((column, wanted[velocity]))
-        self._scatters: dict[tuple[int, int, int], list[tuple[Indices, Indices]]] = {}
 
     @cached_property
-    def _entries(self) -> tuple[Indices, Matrix, Indices]:
-        """Of each pair its columns among those of the chain, their signs, and where they are among the velocities.
+    def _entries(self) -> tuple[Indices, Matrix, Indices | None, list[tuple[int, int, int]]]:
+        """Of each pair its columns among those of the chain, the last one zero, and their signs.
+
+        Then of each column (k, n) of K which of these it is, None if all are in their order, and what is added to it
+        where a joint mimics another one of its path: the pair, and the columns of the pair and of K.
 
         They take much memory where many pairs have long paths, and the poses do without them.
         """
@@ -276,13 +281,20 @@ class ManyPairs:
             ]
             for a, b in self._ends
         ]
-        width = max(map(len, entries), default=0)
-        columns, places = np.zeros((self.count, width), dtype=np.intp), np.full((self.count, width), -1)
-        signs = np.zeros((self.count, width, 1, 1))
+        whole = all([place for _, _, place in own] == list(range(self.n)) for own in entries)
+        width = max(map(len, entries), default=0) + (not whole)
+        columns, chosen = np.full((self.count, width), -1), np.full((self.count, self.n), width - 1)
+        signs, added = np.ones((self.count, width, 1, 1)), []
         for pair, own in enumerate(entries):
             for index, (column, sign, place) in enumerate(own):
-                columns[pair, index], signs[pair, index], places[pair, index] = column, sign, place
-        return columns, signs, places
+                columns[pair, index], signs[pair, index] = column, sign
+                if whole:
+                    continue
+                if chosen[pair, place] == width - 1:
+                    chosen[pair, place] = index
+                else:
+                    added.append((pair, index, place))
+        return columns, signs, None if whole else chosen, added
 
     @property
     def numbers(self) -> int:
@@ -297,8 +309,8 @@ class ManyPairs:
 
     def jacobian(self, at: ManyPoses, which: slice, rows: Matrix) -> Matrix:
         """The derivative (B, k r, n) by the velocities of rows (B, k, r, 6) over the twists of some pairs."""
+        columns, signs, chosen, added = self._entries
         if at.twists is None:
-            columns, signs, _ = self._entries
             twists = self._chain.twists(at.nodes)[columns]
             twists *= signs
             at.twists = np.ascontiguousarray(twists.transpose(3, 0, 2, 1))
@@ -308,48 +320,15 @@ class ManyPairs:
         seen = (np.ascontiguousarray(rows).reshape(B, k, 2 * r, 3) @ back[:, which]).reshape(B, k, r, 6)
         seen[..., 3:] -= cross(seen[..., :3], origin[:, which, None])
         block = seen @ at.twists[:, which]
-        scatter = self._scatter(which, r)
-        if not scatter:
+        if chosen is None:
             return block.reshape(B, k * r, self.n)
-        K, block = np.zeros((B, k * r * self.n)), block.reshape(B, k * r * block.shape[-1])
-        for index, (of_block, of_K) in enumerate(scatter):
-            part = block if len(of_block) == block.shape[1] else block[:, of_block]
-            if index:
-                K[:, of_K] += part
-            else:
-                K[:, of_K] = part
+        width = block.shape[-1]
+        of_block = (np.arange(k * r) * width).reshape(k, r, 1) + chosen[which, None]
+        K: Matrix = block.reshape(B, k * r * width)[:, of_block.ravel()].reshape(B, k, r, self.n)
+        for pair, column, place in added:
+            if which.start <= pair < which.stop:
+                K[:, pair - which.start, :, place] += block[:, pair - which.start, :, column]
         return K.reshape(B, k * r, self.n)
-
-    def _scatter(self, which: slice, r: int) -> list[tuple[Indices, Indices]]:
-        """Entries of the block (k, r, width) of some pairs, and where in K (k r, n) they belong; none if all are there.
-
-        Where a joint mimics another one of its path, several entries belong to one of K: each but the first comes in
-        a later round.
-        """
-        key = which.start, which.stop, r
-        if key not in self._scatters:
-            places = self._entries[2][which]
-            k, width = places.shape
-            rounds: list[tuple[list[int], list[int]]] = []
-            seen: dict[int, int] = {}
-            for pair in range(k):
-                for row in range(r):
-                    for index, place in enumerate(places[pair].tolist()):
-                        if place < 0:
-                            continue
-                        target = (pair * r + row) * self.n + place
-                        turn = seen[target] = seen.get(target, -1) + 1
-                        if turn == len(rounds):
-                            rounds.append(([], []))
-                        rounds[turn][0].append((pair * r + row) * width + index)
-                        rounds[turn][1].append(target)
-            whole = width == self.n and len(rounds) == 1 and rounds[0][0] == rounds[0][1] == list(range(k * r * width))
-            self._scatters[key] = (
-                []
-                if whole
-                else [(np.array(of_block, np.intp), np.array(of_K, np.intp)) for of_block, of_K in rounds or [([], [])]]
-            )
-        return self._scatters[key]
 
     def motions(self, q: Matrix, v: Matrix) -> RelativeMotions:
         """How the pairs move at q (B, nq) while every joint keeps its velocity v (B, nv)."""

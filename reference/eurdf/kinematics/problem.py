@@ -13,6 +13,7 @@ from eurdf.kinematics.group import Group, Stack
 from eurdf.kinematics.loop import LoopGroup, independent_groups, merged, moving_velocities
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.kinematics.tolerances import MOST_VELOCITIES_AT_ONCE
+from eurdf.pinocchio.memory import working_memory
 from eurdf.pinocchio.tree_few import as_slice
 
 if TYPE_CHECKING:
@@ -162,6 +163,10 @@ class Problem:
         Of those that keep the loops closed, they are the least ones, in rad/s and m/s.
         """
         v, sure = np.zeros((len(q), self.tree.nv)), np.ones(len(q), dtype=bool)
+        if len(q) > 1 and (q[1] == q[0]).all() and (q[2:] == q[0]).all():  # as where all elements start
+            D, is_sure = self.derivative(q[:1])
+            if is_sure[0]:
+                return driven @ D[0].T, sure
         v[:, self.given] = driven
         whole = self.jacobian(q) if self._is_evaluated_whole else None
         for stack in self.stacks:
@@ -198,10 +203,11 @@ class Problem:
         return D, sure
 
 
-def for_many(robot: Robot) -> Problem:
-    """A robot for many elements at once, with no velocity held; made once."""
-    return robot.cached(_for_many)
+def for_many(robot: Robot, given: Sequence[int] = ()) -> Problem:
+    """A robot for many elements at once, with the indices in v of the given velocities; made once and shared."""
+    with working_memory(robot, _for_many, *given) as problem:
+        return problem
 
 
-def _for_many(robot: Robot) -> Problem:
-    return Problem(robot, few=False)
+def _for_many(robot: Robot, *given: int) -> Problem:
+    return Problem(robot, given, few=False)

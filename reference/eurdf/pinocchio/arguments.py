@@ -18,6 +18,7 @@ from eurdf.array import Matrix
 from eurdf.pinocchio.memory import Cached
 
 _FLOATS = np.dtype(np.float64)
+_MANY = 1000  # values
 
 _Result = TypeVar("_Result")
 
@@ -54,8 +55,11 @@ def checked_array(name: str, given: Any, *shapes: tuple[int, ...]) -> Matrix:
 
 def all_finite(values: Matrix) -> bool:
     """Whether all numbers are finite."""
-    # The squares tell it sooner, unless they overflow; unlike dot, vdot does not warn.
-    return math.isfinite(np.vdot(values, values)) or bool(np.isfinite(values).all())
+    # The squares tell it sooner, unless they overflow; unlike dot, vdot does not warn. For many values BLAS would start
+    # threads, which wait long for each other on a busy machine.
+    if values.size < _MANY and math.isfinite(np.vdot(values, values)):
+        return True
+    return bool(np.isfinite(values).all())
 
 
 def checked_count(name: str, given: Any, least: int) -> int:
