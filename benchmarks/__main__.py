@@ -1,4 +1,4 @@
-"""Run measurements by name: ``python -m benchmarks load growth check``.
+"""Run measurements by name: ``python -m benchmarks load growth commands``.
 
 ``python -m benchmarks fuzz`` runs the mutation campaign, ``… simulators`` other simulators on exported robots, and
 ``… claims`` what the comparison with other formats says was seen by running.
@@ -15,7 +15,7 @@ from types import ModuleType
 from benchmarks import (
     assembly,
     batch,
-    check,
+    commands,
     conformance,
     derivatives,
     dynamics,
@@ -26,6 +26,7 @@ from benchmarks import (
     load,
     loops,
     page,
+    python_cost,
     reading,
     simulation,
     transmission,
@@ -38,7 +39,7 @@ MEASUREMENTS: dict[str, ModuleType] = {
     "load": load,
     "reading": reading,
     "growth": growth,
-    "check": check,
+    "commands": commands,
     "hostile": hostile,
     "assembly": assembly,
     "loops": loops,
@@ -48,6 +49,7 @@ MEASUREMENTS: dict[str, ModuleType] = {
     "dynamics": dynamics,
     "simulation": simulation,
     "batch": batch,
+    "python_cost": python_cost,
     "transmission": transmission,
     "conformance": conformance,
 }
@@ -87,10 +89,12 @@ def main() -> int:
     )
     parser.add_argument("names", nargs="*", choices=[*MEASUREMENTS, []], help="which to run; all by default")
     parser.add_argument("--markdown", action="store_true", help="print tables in Markdown, where there are any")
-    parser.add_argument("--page", type=Path, metavar="FILE", help="write the page of the documentation instead")
+    parser.add_argument(
+        "--page", type=Path, metavar="FILE", help="write these sections of the page of the documentation instead"
+    )
     options = parser.parse_args()
     if options.page is not None:
-        page.write(options.page)
+        page.write(options.page, options.names)
         return 0
     for name in options.names or MEASUREMENTS:
         _run(MEASUREMENTS[name], options.markdown)

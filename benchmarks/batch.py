@@ -1,44 +1,39 @@
-"""`eurdf.batch` against calls of the functions for one element, in time of the processor for each element.
+"""`eurdf.batch`, in time of the processor for each element, at several sizes and against calls for one element.
 
-Motors are within 0.05 rad or 1 mm of the assembled configuration; tolerances are the default ones of both. Batches have
-10,000 elements, 1,000 for inverse kinematics and chains of four-bars; of the single functions 40 calls are measured.
-Both run in turns, and the least time of three counts. The last column says how many times as long a call takes.
-
-The second table has forward kinematics of all robots of the collection for several sizes of a batch: the mean time of
-an element, and the ratio of that in a batch of 4,096 to that in one of 100,000. What takes over a minute is left out.
+Motors are within 0.05 rad or 1 mm of the assembled configuration; tolerances are the default ones of both. Of the
+batches of 100,000 elements, one run counts; of the others, and of 40 calls for one element, the least time of three.
+Residual and K are those of 10,000 elements, inverse kinematics those of 1,000 places of a link, and of 10 calls.
 """
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 
 import numpy as np
 import pinocchio as pin
 
 import eurdf
 from benchmarks.robots import ROBOTS, chains, robot_called
-from benchmarks.table import Table, duration, ratio
+from benchmarks.table import Goal, Table, duration, ratio
 
+SIZES = (1_000, 4_096, 10_000, 100_000)
 ELEMENTS = 10_000
-ELEMENTS_OF_A_CHAIN = 1_000
 SINGLES = 40
 TURNS = 3
-SIZES = (100, 1_000, 4_096, 10_000, 100_000)
-#: So many elements of the second table differ; larger batches repeat them.
-DIFFERENT = 4_096
-LONGEST = 60.0  # s
+
+_SMALL = Goal(1.5)
 
 
-def least(one: Callable[[], object], other: Callable[[], object]) -> tuple[float, float]:
-    """Least times of the processor of two functions that run in turns, s."""
-    times: tuple[list[float], list[float]] = ([], [])
-    for _ in range(TURNS):
-        for function, taken in zip((one, other), times, strict=True):
-            start = time.process_time()
-            function()
-            taken.append(time.process_time() - start)
-    return min(times[0]), min(times[1])
+def least(function: Callable[[], object], turns: int = TURNS) -> float:
+    """Least time of the processor of a function, s."""
+    times = []
+    for _ in range(turns):
+        start = time.process_time()
+        function()
+        times.append(time.process_time() - start)
+    return min(times)
 
 
 def configurations(robot: eurdf.Robot, q0: np.ndarray, count: int) -> np.ndarray:
@@ -53,83 +48,49 @@ def configurations(robot: eurdf.Robot, q0: np.ndarray, count: int) -> np.ndarray
 
 
 def tables() -> Iterator[Table]:
-    """Of single robots and of chains; then of all robots by the size of the batch."""
-    columns = ("robot", "function", "elements", "time", "per element", "one call", "one call to element")
-    yield Table(columns, [row for name in (*ROBOTS, *chains()[:2]) for row in _rows(name)])
-    heads = ("robot", *(f"{size:,}" for size in SIZES), "4,096 to 100,000")
-    yield Table(heads, [_sizes(name) for name in eurdf.collection_names()], "Forward kinematics, time of an element")
+    """Of forward kinematics by sizes, and of the other functions."""
+    sizes = tuple(f"{size:,}" for size in SIZES)
+    columns = ("robot", "nv", *sizes, _SMALL.of("4,096 to 100,000"), "one call", "one call to 10,000")
+    rows = [_forward_row(name, SIZES) for name in ROBOTS]
+    yield Table(columns, rows, "Forward kinematics, per element")
+    rows = [_forward_row(name, SIZES[:1]) for name in chains()[:2]]
+    yield Table(("chain of four-bars", "nv", sizes[0], "one call", "one call to it"), rows, "The same, of chains")
+    columns = ("robot", "function", "per element", "one call", "one call to element")
+    yield Table(columns, [row for name in ROBOTS for row in _rows(name)], "Other functions, per element")
 
 
-def _sizes(name: str) -> tuple[str, ...]:
+def _forward_row(name: str, sizes: tuple[int, ...]) -> tuple[str, ...]:
     robot = robot_called(name)
     q0 = eurdf.assemble(robot).q
-    different = configurations(robot, q0, DIFFERENT)[:, robot.actuation.idx_q]
-    taken: dict[int, float] = {}
-    for size in SIZES:
-        if size * min(taken.values(), default=0.0) > LONGEST:
-            break
-        values = np.resize(different, (size, different.shape[1]))
-        eurdf.batch.forward_kinematics(robot, values[:1], q0)
-        start, calls = time.process_time(), 0
-        while time.process_time() - start < 0.3:
-            eurdf.batch.forward_kinematics(robot, values, q0)
-            calls += 1
-        taken[size] = (time.process_time() - start) / calls / size
-    cells = [duration(taken[size]) if size in taken else "-" for size in SIZES]
-    return name, *cells, ratio(taken[4_096], taken[100_000]) if len(taken) == len(SIZES) else "-"
+    values = configurations(robot, q0, max(sizes))[:, robot.actuation.idx_q]
+    move = eurdf.batch.forward_kinematics
+    closable = np.flatnonzero(move(robot, values[:SINGLES], q0).converged)
+    turns = {size: 1 if size > ELEMENTS else TURNS for size in sizes}
+    each = {size: least(partial(move, robot, values[:size], q0), turns[size]) / size for size in sizes}
+    shown = [duration(seconds) for seconds in each.values()]
+    if len(sizes) > 1:
+        shown.append(_SMALL.cell(each[4_096], each[100_000]))
+    if not len(closable):
+        return name, str(robot.model.nv), *shown, "-", "-"
+    one = least(lambda: [eurdf.forward_kinematics(robot, values[index], q0) for index in closable]) / len(closable)
+    return name, str(robot.model.nv), *shown, duration(one), ratio(one, each[min(ELEMENTS, sizes[-1])])
 
 
 def _rows(name: str) -> Iterator[tuple[str, ...]]:
     robot = robot_called(name)
-    count = ELEMENTS_OF_A_CHAIN if "four-bars" in name else ELEMENTS
     q0 = eurdf.assemble(robot).q
-    q = configurations(robot, q0, count)
-    values = q[:, robot.actuation.idx_q]
-    found = eurdf.batch.forward_kinematics(robot, values, q0)
-    closable = np.flatnonzero(found.converged)
-    few = closable[:SINGLES]
-    yield (
-        name,
-        *_row(
-            "forward_kinematics",
-            lambda: eurdf.batch.forward_kinematics(robot, values, q0),
-            count,
-            lambda: [eurdf.forward_kinematics(robot, each, q0) for each in values[few]],
-            len(few),
-        ),
-    )
-    if "four-bars" in name:
-        return
-    yield (
-        name,
-        *_row(
-            "residual_and_jacobian",
-            lambda: eurdf.batch.residual_and_jacobian(robot, q),
-            count,
-            lambda: [eurdf.residual_and_jacobian(robot, each) for each in q[:SINGLES]],
-            SINGLES,
-        ),
-    )
+    q = configurations(robot, q0, ELEMENTS)
+    one = least(lambda: [eurdf.residual_and_jacobian(robot, each) for each in q[:SINGLES]]) / SINGLES
+    each = least(partial(eurdf.batch.residual_and_jacobian, robot, q)) / ELEMENTS
+    yield name, "`residual_and_jacobian`", duration(each), duration(one), ratio(one, each)
+    found = eurdf.batch.forward_kinematics(robot, q[: ELEMENTS // 10, robot.actuation.idx_q], q0)
     link, data, places = robot.mechanism.bodies[-1].name, robot.model.createData(), []
     index = robot.model.getFrameId(link, pin.FrameType.BODY)
-    for each in found.q[closable[: count // 10]]:
-        pin.framesForwardKinematics(robot.model, data, each)
+    for closed in found.q[found.converged]:
+        pin.framesForwardKinematics(robot.model, data, closed)
         places.append(np.array(data.oMf[index].translation))
-    yield (
-        name,
-        *_row(
-            "inverse_kinematics",
-            lambda: eurdf.batch.inverse_kinematics(robot, {link: np.array(places)}, q0),
-            len(places),
-            lambda: [eurdf.inverse_kinematics(robot, {link: place}, q0) for place in places[: SINGLES // 4]],
-            len(places[: SINGLES // 4]),
-        ),
-    )
-
-
-def _row(
-    name: str, batch: Callable[[], object], count: int, singles: Callable[[], object], calls: int
-) -> tuple[str, ...]:
-    together, apart = least(batch, singles)
-    each, one = together / count, apart / calls
-    return f"`{name}`", str(count), duration(together), duration(each), duration(one), ratio(one, each)
+    few = places[: SINGLES // 4]
+    if few:
+        each = least(partial(eurdf.batch.inverse_kinematics, robot, {link: np.array(places)}, q0)) / len(places)
+        one = least(lambda: [eurdf.inverse_kinematics(robot, {link: place}, q0) for place in few]) / len(few)
+        yield name, "`inverse_kinematics`", duration(each), duration(one), ratio(one, each)

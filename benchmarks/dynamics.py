@@ -2,8 +2,14 @@
 
 Both forward dynamics take motor torques and return the acceleration and the forces of the closures.
 `pin.constraintDynamics` runs to 1e-14 with μ = 1e-8, its memory made beforehand; it judges neither ranks nor its
-solution. The plain inverse dynamics take Pinocchio's Jacobian and bias, a basis of the free motions from a singular
-value decomposition of K, and pseudoinverses; they check nothing. States are twenty closed ones along a path.
+solution, and has no model of a distance or a coupling. A hinge is two 3d models. The difference is that of the
+accelerations, relative to the largest one. The plain inverse dynamics take Pinocchio's Jacobian and bias, a basis of
+the free motions from a singular value decomposition of K, and pseudoinverses; they check nothing. States are twenty
+closed ones along a path.
+
+Then robots with hinges, distances and couplings of version 2.1 against the same robots with a 3d closure in place of
+each hinge and distance, at the point of frame B, and without their couplings; and Kangaroo's two legs against one leg.
+A dash is where the 3d closures let the motors not move.
 
 In a chain of 100 four-bars, a `pin.Data` would take 1.7 GB. There the peer is `mj_forward` of MuJoCo, whose closures
 are soft (`connect`); it reads no XML that is nested as deeply as a chain of 1,000. Memory is what the first call adds
@@ -13,7 +19,8 @@ to the process.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -24,12 +31,21 @@ import pinocchio as pin
 
 import eurdf
 from benchmarks.interleaved import least_times, peak_memory
-from benchmarks.mujoco_model import move, mujoco_model
+from benchmarks.mujoco_model import MuJoCoRobot
 from benchmarks.robots import CHAINS, ROBOTS, chain, chains, robot_called
-from benchmarks.table import Table, duration, ratio
+from benchmarks.table import Goal, Table, duration, largest, ratio
+from eurdf.closures.distance import DistanceClosure
+from eurdf.closures.hinge import HingeClosure
+from eurdf.closures.point import PointClosure
+from eurdf.mechanism.body import Anchor
+from eurdf.mechanism.constraint import Closure, Coupling
+from eurdf.mechanism.pose import Pose
+from eurdf.pinocchio.robot import build_robot
 
 Vector = npt.NDArray[np.float64]
 
+_PIN, _TWIN, _LEGS = Goal(2.0, 25e-6), Goal(3.0), Goal(4.0)
+_OF_2_1 = (HingeClosure, DistanceClosure, Coupling)
 
 # Of four-bars in series: MuJoCo reads no XML that is nested deeper.
 _MOST_NESTED = 100
@@ -89,38 +105,93 @@ def each(function: Callable[..., Any], arguments: list[tuple[Any, ...]]) -> None
 
 
 def tables() -> Iterator[Table]:
-    """Of forward dynamics, inverse dynamics and chains."""
-    forward, inverse = zip(*[_rows(name) for name in (*ROBOTS, "five_bar", "four_bar", chains()[0])], strict=True)
-    columns = ("robot", "nv", "eurdf, with `data=`", "pin", "ratio", "without `data=`", "ratio to with")
-    yield Table(columns, forward, "Forward dynamics")
+    """Of forward dynamics, inverse dynamics, closures of version 2.1, two legs and chains."""
+    forward, inverse = zip(*[_rows(name) for name in (*ROBOTS, chains()[0])], strict=True)
+    yield Table(("robot", "nv", "eurdf", "pin", _PIN.of("to pin"), "difference"), forward, "Forward dynamics")
     yield Table(("robot", "nv", "eurdf", "NumPy", "ratio"), inverse, "Inverse dynamics")
+    with_2_1 = [name for name in ROBOTS if any(kind in _OF_2_1 for kind in map(type, robot_called(name).constraints))]
+    yield _against("with 3d", _TWIN, {name: (robot_called(name), in_3d(robot_called(name))) for name in with_2_1})
+    yield _against("one leg", _LEGS, {"kangaroo_2legs": (robot_called("kangaroo_2legs"), robot_called("kangaroo_leg"))})
     columns = ("chain of N four-bars", "nv", "first call", "later", "MuJoCo", "ratio", "memory")
     yield Table(columns, [_chain_row(count) for count in CHAINS], "Forward dynamics of chains")
 
 
+def in_3d(robot: eurdf.Robot) -> eurdf.Robot:
+    """The robot with a 3d closure in place of each hinge and distance, and without couplings."""
+    data, q = robot.model.createData(), eurdf.assemble(robot).q
+    pin.framesForwardKinematics(robot.model, data, q)
+
+    def closure(each: Closure) -> Closure:
+        if type(each) not in _OF_2_1:
+            return each
+        site, body = robot.tree.site(each.b), robot.model.getFrameId(each.a.body, pin.FrameType.BODY)
+        point = data.oMf[body].actInv((data.oMi[site.joint] * site.placement).translation)
+        return PointClosure(each.name, Anchor(each.a.body, Pose(tuple(point.tolist()))), each.b)
+
+    mechanism = robot.mechanism
+    closures = tuple(map(closure, mechanism.closures))
+    return build_robot(replace(mechanism, closures=closures, couplings=()), geometry=False)
+
+
+def _against(peer: str, goal: Goal, pairs: Mapping[str, tuple[eurdf.Robot, eurdf.Robot]]) -> Table:
+    """Robots against similar ones, in three functions."""
+    rows = []
+    for name, robots in pairs.items():
+        cells: list[str] = []
+        for ours, other in zip(*map(_functions, robots), strict=True):
+            if ours is None or other is None:
+                cells += ["-"] * 3
+                continue
+            times = least_times((ours, other))
+            cells += [*map(duration, times), goal.cell(*times)]
+        rows.append((name, *cells))
+    words = ("dynamics", "10 steps", "forward kinematics")
+    columns = [head for word in words for head in (word, f"{peer}, {word}", goal.of(f"ratio, {word}"))]
+    return Table(("robot", *columns), rows, f"Against the same {peer}")
+
+
+def _functions(robot: eurdf.Robot) -> Iterator[partial[Any] | None]:
+    """Forward dynamics and steps from rest, and forward kinematics of a small motion if the loops allow it."""
+    q, u = eurdf.assemble(robot).q, np.ones(len(robot.actuation.idx_v))
+    yield partial(eurdf.forward_dynamics, robot, q, np.zeros(robot.model.nv), u)
+    yield partial(eurdf.simulate, robot, q, duration=10e-3)
+    v = np.zeros(robot.model.nv)
+    v[robot.actuation.idx_v] = 1e-3
+    move = partial(eurdf.forward_kinematics, robot, robot.tree.integrate(q, v)[robot.actuation.idx_q], q)
+    try:
+        move()
+    except eurdf.errors.NotClosable:
+        yield None
+    else:
+        yield move
+
+
 def _rows(name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
     robot = robot_called(name)
-    peers, data, u = Peers(robot), robot.model.createData(), np.ones(len(robot.actuation.idx_v))
-    given = states(robot)
-    motions, driven, moved = [], [], []
-    for q, v in given:
-        passive, a = eurdf.springs.spring_force(robot, q), eurdf.forward_dynamics(robot, q, v, u).a
-        motions.append((robot, q, v, a))
-        driven.append((q, v, u, passive))
-        moved.append((q, v, a, passive))
-        np.testing.assert_allclose(a, peers.forward(*driven[-1])[0], atol=1e-9 * np.abs(a).max())
-    calls = (
-        (lambda q, v: eurdf.forward_dynamics(robot, q, v, u, data=data), given),
-        (lambda q, v: eurdf.forward_dynamics(robot, q, v, u), given),
-        (peers.forward, driven),
-        (eurdf.inverse_dynamics, motions),
-        (peers.inverse, moved),
-    )
-    times = least_times([partial(each, *call) for call in calls], 60)
-    ours, alone, pinocchio, inverse, plain = (taken / len(given) for taken in times)
+    u, given = np.ones(len(robot.actuation.idx_v)), states(robot)
+    accelerations = [eurdf.forward_dynamics(robot, q, v, u).a for q, v in given]
+    motions = [(robot, q, v, a) for (q, v), a in zip(given, accelerations, strict=True)]
+    calls: list[partial[None]] = [
+        partial(each, lambda q, v: eurdf.forward_dynamics(robot, q, v, u), given),
+        partial(each, eurdf.inverse_dynamics, motions),
+    ]
+    errors: list[float] = []
+    try:
+        peers = Peers(robot)
+    except eurdf.errors.NoConstraintModel:
+        pass
+    else:
+        springs = [eurdf.springs.spring_force(robot, q) for q, _ in given]
+        driven = [(q, v, u, passive) for (q, v), passive in zip(given, springs, strict=True)]
+        moved = [(q, v, a, passive) for (_, q, v, a), passive in zip(motions, springs, strict=True)]
+        for a, at in zip(accelerations, driven, strict=True):
+            errors.append(float(np.abs(a - peers.forward(*at)[0]).max() / np.abs(a).max()))
+        calls += [partial(each, peers.forward, driven), partial(each, peers.inverse, moved)]
+    forward, inverse, *peer = (taken / len(given) for taken in least_times(calls, 30))
+    to_pin, to_numpy = peer or (None, None)
     head = name, str(robot.model.nv)
-    forward = duration(ours), duration(pinocchio), ratio(ours, pinocchio), duration(alone), ratio(alone, ours)
-    return (*head, *forward), (*head, duration(inverse), duration(plain), ratio(inverse, plain))
+    first = (*head, duration(forward), duration(to_pin), _PIN.cell(forward, to_pin), largest(errors))
+    return first, (*head, duration(inverse), duration(to_numpy), ratio(inverse, to_numpy) if to_numpy else "-")
 
 
 def _chain_row(count: int) -> tuple[str, ...]:
@@ -132,9 +203,9 @@ def _chain_row(count: int) -> tuple[str, ...]:
     first, grown = time.process_time() - begin, peak_memory() - before
     calls = [partial(eurdf.forward_dynamics, robot, q, v)]
     if count <= _MOST_NESTED:
-        model, data = mujoco_model(robot, 1e-3)
-        move(robot, model, data, q, v)
-        calls.append(partial(mujoco.mj_forward, model, data))
+        peer_robot = MuJoCoRobot(robot)
+        peer_robot.move(q, v)
+        calls.append(partial(mujoco.mj_forward, peer_robot.model, peer_robot.data))
     later, *peer = least_times(calls, 5)
     shown = str(count), str(robot.model.nv), duration(first), duration(later)
     return *shown, *([duration(peer[0]), ratio(later, peer[0])] if peer else ["-", "-"]), f"{grown:.0f} MB"

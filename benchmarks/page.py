@@ -6,9 +6,11 @@ import platform
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Mapping
-from importlib.metadata import version
+from collections.abc import Callable, Collection
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+
+from benchmarks.table import MET, MISSED
 
 SECTIONS = {
     "Dynamics": "dynamics",
@@ -17,11 +19,13 @@ SECTIONS = {
     "Inverse kinematics": "inverse_kinematics",
     "Derivatives": "derivatives",
     "Batches": "batch",
+    "What Python costs": "python_cost",
+    "Commands": "commands",
     "Loading": "load",
     "Loading without checks": "reading",
 }
 
-_PACKAGES = ("pin", "mujoco", "numpy")
+_PACKAGES = ("pin", "mujoco", "numpy", "pin-pink", "mink")
 
 
 def measured(name: str) -> str:
@@ -30,33 +34,53 @@ def measured(name: str) -> str:
     return subprocess.run(command, check=True, stdout=subprocess.PIPE, encoding="utf-8").stdout.strip()
 
 
-def write(path: Path, sections: Mapping[str, str] = SECTIONS, measure: Callable[[str], str] = measured) -> None:
-    """Run measurements and write what they found, with date, versions and the kind of machine.
+def write(path: Path, names: Collection[str] = (), measure: Callable[[str], str] = measured) -> None:
+    """Run measurements and write what they found, with their times, versions and the kind of machine.
 
     Args:
         path: The file.
-        sections: For each title the name of the measurement.
+        names: The measurements to run, all by default; the sections of others stay as they are.
         measure: Returns the Markdown of a measurement.
     """
-    parts = [_head(), *(f"## {title}\n\n{measure(name)}" for title, name in sections.items())]
-    path.write_text("\n\n".join(parts) + "\n", encoding="utf-8")
+    text = path.read_text(encoding="utf-8") if names else ""
+    old = {title: section for title, _, section in (part.partition("\n\n") for part in text.split("\n## ")[1:])}
+    parts = []
+    for title, name in SECTIONS.items():
+        if names and name not in names:
+            section = old.get(title, "").strip()
+        else:
+            section = f"{measure(name)}\n\nMeasured on {time.strftime('%Y-%m-%d')}."
+        parts += [f"## {title}\n\n{section}"] * bool(section)
+    path.write_text("\n\n".join([_head(), *parts]) + "\n", encoding="utf-8")
 
 
 def _head() -> str:
-    versions = ", ".join(f"{package} {version(package)}" for package in _PACKAGES)
+    versions = ", ".join(f"{package} {_version(package)}" for package in _PACKAGES)
     return f"""# Benchmarks
 
 How long `eurdf` takes, as ratios to named peers. This page is written by:
 
 ```sh
-python -m benchmarks --page docs/benchmarks.md
+python -m benchmarks --page docs/benchmarks.md                # all of it; takes half an hour
+python -m benchmarks --page docs/benchmarks.md dynamics       # one section
 ```
 
-Measured on {time.strftime("%Y-%m-%d")} on {_machine()}, with Python {platform.python_version()}, {versions}.
+Measured on {_machine()}, with Python {platform.python_version()}, {versions}.
 
 Each ratio comes from one run, in which the functions take turns. Times are the least times of the processor, on one
 thread. A ratio is the time of `eurdf` divided by that of the peer: below 1, `eurdf` is faster. All peers have the
-memory that they need beforehand. A function of `eurdf` checks its arguments and its result; a peer does not."""
+memory that they need beforehand. A function of `eurdf` checks its arguments and its result; a peer does not.
+
+All robots of the collection are measured. A column with a goal says "≤"; {MET} is a goal that is met, {MISSED} one that
+is missed. The package is pure Python: a call takes at least what its calls from Python take, whatever the robot
+([What Python costs](#what-python-costs)), so that small robots have the largest ratios."""
+
+
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return "absent"
 
 
 def _machine() -> str:

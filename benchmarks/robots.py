@@ -1,4 +1,4 @@
-"""Robots that are measured: some of the collection, and chains of four-bars."""
+"""Robots that are measured: the collection, and chains of four-bars."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import build_robot
 
-ROBOTS = ("digit_leg", "digit_2legs", "kangaroo_leg", "stewart_platform", "cassie_leg")
+ROBOTS = tuple(eurdf.collection_names())
 
 #: Sizes of the chains. Peers that need a `pin.Data` of the whole robot are measured on the first one only: that of 100
 #: four-bars takes 1.7 GB, and that of 1,000 a thousand times as much.

@@ -1,9 +1,18 @@
-"""Tables of measurements, as text and in Markdown."""
+"""Tables of measurements, as text and in Markdown, and the goals of ratios in them."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import statistics
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+
+MET, MISSED = "✓", "✗"
+
+# A page shows a longer table folded, below what it amounts to.
+_LONGEST = 12
+
+# Robots that miss a goal and are named.
+_MOST_NAMED = 8
 
 
 @dataclass(frozen=True)
@@ -28,17 +37,54 @@ class Table:
         for line in lines:
             numbers = [cell.rjust(width) for cell, width in zip(line[1:], widths[1:], strict=True)]
             aligned.append("  ".join([line[0].ljust(widths[0]), *numbers]))
-        return "\n".join(([self.title] if self.title else []) + aligned)
+        return "\n".join([*([self.title] if self.title else []), *aligned, *self._summaries()])
 
     def markdown(self) -> str:
         """For a page."""
         ruler = ("---", *(["---:"] * (len(self.columns) - 1)))
         lines = ["| " + " | ".join(line) + " |" for line in (self.columns, ruler, *self.rows)]
-        return "\n".join(([f"{self.title}:", ""] if self.title else []) + lines)
+        if len(self.rows) > _LONGEST:
+            lines = ["<details>", f"<summary>{len(self.rows)} rows</summary>", "", *lines, "", "</details>"]
+        said = [line for summary in self._summaries() for line in (f"- {summary}",)]
+        return "\n".join([*([f"{self.title}:", ""] if self.title else []), *said, *([""] if said else []), *lines])
+
+    def _summaries(self) -> Iterator[str]:
+        """Of each column of ratios its median, and of each goal which rows miss it."""
+        for index, column in enumerate(self.columns):
+            cells = [(row[0], row[index].split()) for row in self.rows]
+            judged = [(name, float(cell[0]), cell[1]) for name, cell in cells if cell[-1:] in ([MET], [MISSED])]
+            if not judged:
+                continue
+            missed = sorted(((ratio, name) for name, ratio, mark in judged if mark == MISSED), reverse=True)
+            named = [f"{name} ({ratio:.3g})" for ratio, name in missed[:_MOST_NAMED]]
+            more = [f"{len(missed) - _MOST_NAMED} more"] if len(missed) > _MOST_NAMED else []
+            but = f"; not by {', '.join(named + more)}" if missed else ""
+            median = statistics.median(ratio for _, ratio, _ in judged)
+            yield f"{column}: met by {len(judged) - len(missed)} of {len(judged)}, median {median:.2f}{but}"
 
 
-def duration(seconds: float) -> str:
-    """A time, in s, ms or µs."""
+@dataclass(frozen=True)
+class Goal:
+    """Times that ours may be at most: the peer's, times a factor, and some seconds."""
+
+    factor: float
+    seconds: float = 0.0
+
+    def of(self, what: str) -> str:
+        """The head of a column."""
+        return f"{what}, ≤ {self.factor:g} ×" + (f" + {self.seconds * 1e6:.0f} µs" if self.seconds else "")
+
+    def cell(self, ours: float, peer: float | None) -> str:
+        """The ratio, and whether the goal is met; a dash without a peer."""
+        if peer is None:
+            return "-"
+        return f"{ratio(ours, peer)} {MET if ours <= self.factor * peer + self.seconds else MISSED}"
+
+
+def duration(seconds: float | None) -> str:
+    """A time, in s, ms or µs; a dash for none."""
+    if seconds is None:
+        return "-"
     if seconds >= 1.0:
         return f"{seconds:.2f} s"
     return f"{seconds * 1e3:.2f} ms" if seconds >= 1e-3 else f"{seconds * 1e6:.1f} µs"
@@ -47,3 +93,8 @@ def duration(seconds: float) -> str:
 def ratio(ours: float, peer: float) -> str:
     """How many times as long as the peer takes."""
     return f"{ours / peer:.2f}"
+
+
+def largest(values: Sequence[float]) -> str:
+    """The largest of some errors; a dash for none."""
+    return f"{max(values):.0e}" if len(values) else "-"

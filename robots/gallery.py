@@ -1,22 +1,27 @@
-"""Writes the gallery of the collection, ``robots/README.md``: ``python -m robots.gallery``.
+"""Writes what shows the whole collection, ``robots/README.md`` and ``collection.json``: ``python -m robots.gallery``.
 
-Everything in it comes from the folders of the robots: pictures, metadata, and the dimensions in their READMEs, which
-`robots.quality` compares with the computed ones.
+Everything in the gallery comes from the folders of the robots: pictures, metadata, and the dimensions in their READMEs,
+which `robots.quality` compares with the computed ones. The other file is the output of ``eurdf robots --json``.
 """
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from pathlib import Path
 
 import yaml
 
+import eurdf
 from eurdf.collection import collection_names
+from eurdf.commands import robots as command
+from eurdf.json_schema import to_json
 from robots.features import features_of
 from robots.quality.readme import stated_dimensions
 
 HERE = Path(__file__).parent
 FILE = HERE / "README.md"
+DIMENSIONS = HERE / command.FILE
 
 _HEAD = """\
 # Robots of the collection
@@ -56,5 +61,20 @@ def _row(name: str) -> str:
     return f"| {' | '.join(cell.replace('|', '/') for cell in cells)} |\n"
 
 
+def dimensions() -> str:
+    """The text of the file with the computed dimensions."""
+    found = command.Collection(tuple(map(_collected, collection_names())))
+    return json.dumps(to_json(found), indent=2) + "\n"
+
+
+def _collected(name: str) -> command.CollectedRobot:
+    robot = eurdf.load(name, geometry=False)
+    analysis, mechanism = eurdf.analyze(robot), robot.mechanism
+    counts = {column: getattr(analysis, column) for column in command.COUNTS if column != "closures"}
+    description = str(mechanism.metadata["description"])
+    return command.CollectedRobot(name, description, mechanism.root, closures=len(mechanism.closures), **counts)
+
+
 if __name__ == "__main__":
+    DIMENSIONS.write_text(dimensions(), encoding="utf-8")
     FILE.write_text(gallery(), encoding="utf-8")

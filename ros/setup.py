@@ -20,7 +20,8 @@ class WithCollection(build_py):
         package, collection = Path(self.build_lib, "eurdf"), Path(self.build_lib, "eurdf", "collection")
         reference = ROOT / "reference" / "eurdf"
         files = [(path, package / path.relative_to(reference)) for path in reference.rglob("*.*")]
-        for pattern in ("robots/*/robot*.urdf", "robots/*/robot*.yaml", "robots/*/README.md", "schema/*.schema.json"):
+        patterns = "robots/collection.json", "robots/*/robot*.urdf", "robots/*/robot*.yaml", "robots/*/README.md"
+        for pattern in (*patterns, "schema/*.schema.json"):
             files += [(path, collection / path.relative_to(ROOT)) for path in ROOT.glob(pattern)]
         for source, target in files:
             if source.is_file() and source.suffix not in (".py", ".pyc"):

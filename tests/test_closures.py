@@ -250,7 +250,7 @@ def test_no_function_of_kinematics_asks_for_a_kind() -> None:
     kinds = "|".join(kind.__name__ for kind in REGISTRY.values())
     asking = files_with(rf"""\b({kinds})\b|["'][36]d["']|residualSize|CONTACT_""")
     assert {path for path in asking if path.startswith("kinematics/")} <= {"kinematics/batch/constraints.py"}
-    by_pinocchio = {f"pinocchio/{name}.py" for name in ("constraint", "constrained_dynamics", "tree_few")}
+    by_pinocchio = {f"pinocchio/{name}.py" for name in ("constraint", "tree_few")}
     assert files_with("CONTACT_[36]D") == by_pinocchio
 
 

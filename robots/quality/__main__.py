@@ -11,12 +11,8 @@ from typing import Any
 # Before NumPy is loaded: the matrices are too small for a thread pool.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from rich import box
-from rich.table import Table
-from rich.text import Text
-
 import eurdf
-from eurdf.commands.terminal import has_boxes, write_json, write_lines, write_rendered
+from eurdf.commands.terminal import Table, write_json, write_lines, write_shown
 from eurdf.diagnostics.wording import visible
 from eurdf.kinematics.sweep import MotionPath, Sweep
 from robots.quality.candidate import Candidate
@@ -53,15 +49,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _show(verdicts: Sequence[Verdict]) -> None:
-    table = _table("robot", *RULES)
-    marks = {None: Text("-", "dim"), True: Text("ok", "green"), False: Text("no", "bold red")}
-    for verdict in verdicts:
-        judged = (marks[None if errors is None else not errors] for errors in verdict.errors.values())
-        table.add_row(Text(verdict.candidate.folder.name, "bold"), *judged)
-    write_rendered(table)
+    marks = {None: ("-", "dim"), True: ("ok", "green"), False: ("no", "bold red")}
+    rows = (
+        (
+            (verdict.candidate.folder.name, "bold"),
+            *(marks[None if errors is None else not errors] for errors in verdict.errors.values()),
+        )
+        for verdict in verdicts
+    )
+    write_shown(Table("robot", *RULES, rows=rows))
     if len(verdicts) == 1 and verdicts[0].errors["motion"] is not None:
         write_lines([[]], sys.stdout)
-        write_rendered(_sweeps(verdicts[0].candidate))
+        write_shown(_sweeps(verdicts[0].candidate))
     for verdict in verdicts:
         for rule, errors in verdict.errors.items():
             where = [(f"{verdict.candidate.folder.name}: ", "bold"), (f"{rule}: ", "red")]
@@ -70,13 +69,14 @@ def _show(verdicts: Sequence[Verdict]) -> None:
 
 def _sweeps(candidate: Candidate) -> Table:
     """The range of motion of each actuator: its bounds, what ends it, and its worst numbers."""
-    table = _table("actuator", "bounds", "reached", "lower end", "upper end", "residual", "correction", "singularity")
+    headings = ("actuator", "bounds", "reached", "lower end", "upper end", "residual", "correction", "singularity")
+    rows = []
     for actuator, found in candidate.sweeps.items():
         if isinstance(found, str):
             continue
         angular, paths = is_angular(candidate.robot, actuator), (found.lower, found.upper)
-        table.add_row(
-            Text(actuator, "bold"),
+        row = (
+            (actuator, "bold"),
             "none" if is_endless(candidate.robot, actuator) else _range(found.bounds, angular),
             _range((path.reached for path in paths), angular),
             *(path.joint or path.end for path in paths),
@@ -84,18 +84,12 @@ def _sweeps(candidate: Candidate) -> Table:
             f"{max(path.correction for path in paths):.1e}",
             f"{min(path.singularity for path in paths):.2f}",
         )
-    return table
+        rows.append(row)
+    return Table(*headings, rows=rows)
 
 
 def _range(coordinates: Iterable[float], angular: bool) -> str:
     return " … ".join(shown(coordinate, angular) for coordinate in coordinates)
-
-
-def _table(*headings: str) -> Table:
-    table = Table(box=box.SIMPLE_HEAD if has_boxes(sys.stdout) else None, show_edge=False, pad_edge=False)
-    for heading in headings:
-        table.add_column(heading)
-    return table
 
 
 def _as_json(verdict: Verdict) -> dict[str, Any]:

@@ -9,16 +9,15 @@ from typing import Any
 import pytest
 
 from benchmarks import derivatives, dynamics, forward_kinematics, inverse_kinematics, simulation
-from benchmarks.robots import ROBOTS
 
 
-def _once(functions: Sequence[Callable[[], Any]], repeats: int = 1) -> list[float]:
+def _once(functions: Sequence[Callable[[], Any]], repeats: int = 1, seconds: float = 0.0) -> list[float]:
     for function in functions:
         function()
     return [1.0] * len(functions)
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", ["digit_leg", "stewart_platform", "tello", "double_wishbone"])
 @pytest.mark.parametrize("measurement", [derivatives, dynamics, forward_kinematics, inverse_kinematics, simulation])
 def test_measurement_runs(measurement: ModuleType, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(measurement, "least_times", _once)

@@ -12,7 +12,8 @@ import pinocchio as pin
 import pytest
 
 import eurdf
-from eurdf.pinocchio import constrained_dynamics, tree
+from eurdf.kinematics import forward_solver
+from eurdf.pinocchio import tree
 from eurdf.pinocchio.springs import NO_SPRINGS
 from eurdf.pinocchio.tree_dynamics import TreeRecursion
 from support import mujoco_witness
@@ -66,7 +67,7 @@ def test_large_robot_moves_as_small_one(name: str, monkeypatch: pytest.MonkeyPat
     u = random.normal(size=len(robot.actuation.idx_v))
     expected = eurdf.forward_dynamics(robot, q, v, u)
     motion = eurdf.simulate(robot, q, v, duration=0.005)
-    for module in (tree, constrained_dynamics):
+    for module in (tree, forward_solver):
         monkeypatch.setattr(module, "MOST_VELOCITIES_WITH_DATA", 0)
     large = eurdf.load(name, geometry=False)
     found = eurdf.forward_dynamics(large, q, v, u)

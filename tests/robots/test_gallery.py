@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import eurdf
 from robots.features import FEATURES, features_of
-from robots.gallery import FILE, gallery
+from robots.gallery import DIMENSIONS, FILE, dimensions, gallery
 from support.places import ROOT
 
 
 def test_gallery_is_current():
     assert FILE.read_text(encoding="utf-8") == gallery(), "run python -m robots.gallery"
+
+
+def test_dimensions_are_current():
+    assert DIMENSIONS.read_text(encoding="utf-8") == dimensions(), "run python -m robots.gallery"
 
 
 def test_each_feature_is_shown_by_a_robot():

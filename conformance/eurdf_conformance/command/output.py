@@ -5,9 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 
-from rich.text import Text
-
-from eurdf.commands.terminal import cell, new_table, write_lines, write_rendered
+from eurdf.commands.terminal import Table, write_lines, write_shown
 from eurdf.diagnostics.text import Line
 from eurdf.diagnostics.wording import visible
 from eurdf_conformance.certificate.certificate import Certificate, Failure
@@ -37,10 +35,10 @@ def show(certificate: Certificate) -> None:
     lines += [[("differs from the known failures: ", "red"), (visible(each), "")] for each in certificate.unexpected]
     if lines:
         write_lines([*lines, []], sys.stdout)
-    table = new_table("level", *(f"version {version}" for version in VERSIONS))
-    for level in Level:
-        table.add_row(cell(level, "bold"), *(_level_cell(certificate.at(version, level)) for version in VERSIONS))
-    write_rendered(table)
+    rows = (
+        ((level, "bold"), *(_level_cell(certificate.at(version, level)) for version in VERSIONS)) for level in Level
+    )
+    write_shown(Table("level", *(f"version {version}" for version in VERSIONS), rows=rows))
     write_lines([[]], sys.stdout)
     style = "bold green" if certificate.certified else "bold red"
     write_lines([[(f"{visible(parser_title(certificate))}: ", "bold"), (headline(certificate), style)]], sys.stdout)
@@ -74,7 +72,7 @@ def _failure_lines(failure: Failure) -> Iterator[Line]:
         yield [(f"    {visible(failure.reproduce)}", "dim")]
 
 
-def _level_cell(result: LevelResult | None) -> Text:
+def _level_cell(result: LevelResult | None) -> tuple[str, str]:
     if result is None or not (result.claimed and result.asked):
-        return cell("not claimed" if result is None else level_words(result), "dim")
-    return cell(level_words(result), "green" if result.certified else "red")
+        return "not claimed" if result is None else level_words(result), "dim"
+    return level_words(result), "green" if result.certified else "red"

@@ -10,7 +10,7 @@ import numpy as np
 
 from eurdf.array import Matrix, Vector
 from eurdf.closures.kind import ClosureKind, RelativeMotions, RelativePoses, no_angle
-from eurdf.closures.se3 import cross, dot, norm
+from eurdf.closures.se3 import dot, norm
 from eurdf.mechanism.constraint import Unit, key
 
 
@@ -40,34 +40,39 @@ class DistanceClosure(ClosureKind):
     @staticmethod
     def residual(poses: RelativePoses, fixed: Vector) -> Matrix:
         """|p| - length (EU-CLO-015)."""
-        return np.asarray(norm(poses.position) - fixed)[..., None]
+        return (poses.once(_direction, fixed)[1] - fixed)[..., None]
 
     @staticmethod
     def jacobian(poses: RelativePoses, fixed: Vector) -> Matrix:
         """[uᵀ, 0]: u is across ω × p."""
-        u, _ = _direction(poses.position)
+        u, _ = poses.once(_direction, fixed)
         return np.concatenate((u, np.zeros_like(u)), axis=-1)[..., None, :]
 
     @staticmethod
     def drift(motions: RelativeMotions, fixed: Vector) -> Matrix:
-        """u · p̈ + |u × ṗ|² / |p|."""
-        u, distance = _direction(motions.poses.position)
-        across = cross(u, motions.velocity)
-        turning = np.divide(dot(across, across), distance, out=np.zeros_like(distance), where=distance > 0.0)
-        return np.asarray(dot(u, motions.acceleration) + turning)[..., None]
+        """u · p̈ + (|ṗ|² - (u · ṗ)²) / |p|."""
+        u, distance = motions.poses.once(_direction, fixed)
+        velocity = motions.velocity
+        across = dot(velocity, velocity) - dot(u, velocity) ** 2
+        if not distance.all():
+            across, distance = np.where(distance > 0.0, across, 0.0), np.where(distance > 0.0, distance, 1.0)
+        return np.asarray(dot(u, motions.acceleration) + across / distance)[..., None]
 
     @staticmethod
     def opening(poses: RelativePoses, fixed: Vector) -> tuple[Vector, Vector]:
         """|r|; the angle is free."""
-        return no_angle(np.abs(norm(poses.position) - fixed))
+        return no_angle(np.abs(poses.once(_direction, fixed)[1] - fixed))
 
 
 KIND = DistanceClosure
 
 
-def _direction(p: Matrix) -> tuple[Matrix, Vector]:
+def _direction(poses: RelativePoses, fixed: Vector) -> tuple[Matrix, Vector]:
     """u (…, 3) and |p| (…)."""
+    p = poses.position
     distance = norm(p)
+    if distance.all():
+        return p / distance[..., None], distance
     u = np.zeros_like(p)
     u[..., 0] = 1.0
     np.divide(p, distance[..., None], out=u, where=distance[..., None] > 0.0)

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from eurdf.array import Matrix, Vector
-from eurdf.closures.kind import ClosureKind, RelativeMotions, RelativePoses
+from eurdf.closures.kind import ClosureKind, Contact, RelativeMotions, RelativePoses
 from eurdf.closures.point import PointClosure
 from eurdf.closures.se3 import log6_second
 from eurdf.mechanism.constraint import Unit
@@ -26,6 +26,10 @@ class FrameClosure(ClosureKind):
     def with_orientation_free(self) -> PointClosure:
         """The 3d closure of the same frames."""
         return PointClosure(self.name, self.a, self.b)
+
+    def contacts(self) -> tuple[Contact]:
+        """The frames."""
+        return (Contact(is_frame=True),)
 
     @staticmethod
     def residual(poses: RelativePoses, fixed: Any) -> Matrix:

@@ -9,11 +9,14 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from eurdf.array import Matrix, Vector
-from eurdf.closures.kind import ClosureKind, RelativeMotions, RelativePoses
+from eurdf.closures.kind import ClosureKind, Contact, RelativeMotions, RelativePoses
 from eurdf.closures.point import PointClosure
 from eurdf.closures.se3 import cross, dot, norm, outer, plane_across, skew, transposed, turned, velocity_of_origin
 from eurdf.mechanism.constraint import ClosureKey, Form, Unit, key
-from eurdf.mechanism.pose import Vector3
+from eurdf.mechanism.pose import Vector3, direction
+
+# Distance of the second contact from the origin, m.
+_ON_AXIS = 0.1
 
 # The sine of θ near half a turn, where the shortest rotation has no derivative, is taken as no less than this.
 _LEAST_SINE = 1e-9
@@ -89,6 +92,19 @@ class HingeClosure(ClosureKind):
     def with_orientation_free(self) -> PointClosure:
         """The 3d closure of the same frames."""
         return PointClosure(self.name, self.a, self.b)
+
+    def contacts(self) -> tuple[Contact, Contact]:
+        """The origin, and a point on the axis."""
+        a, b = ((_ON_AXIS * x, _ON_AXIS * y, _ON_AXIS * z) for x, y, z in map(direction, self.axes))
+        return Contact(), Contact("/axis", a=a, b=b)
+
+    def forces_of_contacts(self) -> Matrix:
+        """The force is the sum of both; the moment Eᵀ (x × f) is that of the force f at x on the axis."""
+        axis = np.array(direction(self.axes[0]))
+        L = np.zeros((5, 6))
+        L[:3, :3] = L[:3, 3:] = np.eye(3)
+        L[3:, 3:] = plane_across(axis).T @ skew(_ON_AXIS * axis)
+        return L
 
     @classmethod
     def prepare(cls, closures: Sequence[HingeClosure]) -> Axes:

@@ -25,6 +25,7 @@ from eurdf.closures.se3 import (
     velocity_of_origin,
 )
 from eurdf.mechanism.constraint import Closure, ClosureKey, Form
+from eurdf.mechanism.pose import Vector3
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -136,6 +137,27 @@ class RelativeMotions(NamedTuple):
         return turned(self.poses.rotation, self.change[..., 3:])
 
 
+class Contact(NamedTuple):
+    """A closure that simulators have: frame B is at frame A, 6 rows, or only a point of B is at one of A, 3 rows.
+
+    Attributes:
+        name: What is added to the name of the closure.
+        is_frame: Whether the orientations agree too.
+        a: The point in the axes of A, m.
+        b: The point in the axes of B, m.
+    """
+
+    name: str = ""
+    is_frame: bool = False
+    a: Vector3 = (0.0, 0.0, 0.0)
+    b: Vector3 = (0.0, 0.0, 0.0)
+
+    @property
+    def rows(self) -> int:
+        """Number of its rows."""
+        return 6 if self.is_frame else 3
+
+
 @dataclass(frozen=True, slots=True)
 class ClosureKind(Closure, ABC):
     """A closure whose residual r is a function of the pose of B in A, and how that is computed for k of its kind.
@@ -173,6 +195,14 @@ class ClosureKind(Closure, ABC):
     def values_of(cls, stated: Mapping[str, Any]) -> Mapping[str, Any]:
         """The values of the fields that a form states, the inverse of `stated`."""
         return stated
+
+    def contacts(self) -> tuple[Contact, ...]:
+        """What holds the same as the closure; nothing if simulators have no such closures."""
+        return ()
+
+    def forces_of_contacts(self) -> Matrix | None:
+        """λ (r,) over the λ of the contacts: (r, rows of the contacts); None if their rows are those of the closure."""
+        return None
 
     @classmethod
     def prepare(cls, closures: Sequence[Self]) -> Any:

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from eurdf.array import Matrix, Vector
-from eurdf.closures.kind import ClosureKind, RelativeMotions, RelativePoses, no_angle
+from eurdf.closures.kind import ClosureKind, Contact, RelativeMotions, RelativePoses, no_angle
 from eurdf.closures.se3 import velocity_of_origin
 from eurdf.mechanism.constraint import Unit
 
@@ -21,6 +21,10 @@ class PointClosure(ClosureKind):
     units: ClassVar[tuple[Unit, ...]] = ("m",) * 3
     text: ClassVar[str] = "the origins of frames A and B coincide"
     since: ClassVar[Literal["1", "2.1"]] = "1"
+
+    def contacts(self) -> tuple[Contact]:
+        """The origins."""
+        return (Contact(),)
 
     @staticmethod
     def residual(poses: RelativePoses, fixed: Any) -> Matrix:

@@ -10,15 +10,13 @@ from typing import TYPE_CHECKING, Any, Literal
 from eurdf.commands.command import JSON, ROBOT, cannot_run, command, flag, option
 from eurdf.commands.output import write_result
 from eurdf.commands.selection import NEUTRAL, named_configuration
-from eurdf.commands.terminal import cell, new_table, write_notes, write_rendered
+from eurdf.commands.terminal import Table, write_notes, write_shown
 from eurdf.errors import CannotRun
 from eurdf.json_schema import Count, NullIfInfinite
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import root_joint
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
     from eurdf.array import Vector
     from eurdf.kinematics.assembly import Assembly
     from eurdf.linking.configurations import BeyondLimit
@@ -246,14 +244,10 @@ def _messages(info: AssemblyInfo, assembly: Assembly, beyond: list[BeyondLimit])
 
 
 def _show(info: AssemblyInfo) -> None:
-    from rich.text import Text
-
-    from eurdf.diagnostics.wording import visible
-
     word, style = ("closed", "green") if info.closes else ("open", "red")
     residual = f", residual {info.residual:.1e}" if math.isfinite(info.residual) else ""
-    heading = Text.assemble((visible(info.name), "bold"), "  ", (word, style), f"{residual}, from {info.start}")
-    write_rendered(heading, *([_joints(info)] if info.joints else []), *([] if info.closes else [_closures(info)]))
+    heading = (info.name, "bold"), "  ", (word, style), f"{residual}, from {info.start}"
+    write_shown(heading, *([_joints(info)] if info.joints else []), *([] if info.closes else [_closures(info)]))
 
 
 def _joints(info: AssemblyInfo) -> Table:
@@ -263,9 +257,9 @@ def _joints(info: AssemblyInfo) -> Table:
         words = ("held", joint.held), ("beyond its limits", joint.beyond_limits), ("actuated", joint.actuated)
         notes = [word for word, applies in words if applies]
         style = "red" if joint.beyond_limits else "cyan"
-        note = cell(", ".join(notes), style)
-        rows.append((cell(joint.name, "bold"), joint.type.value, numbers, _units_shown(joint), note))
-    return new_table("joint", "type", "coordinates", "unit", "", rows=rows)
+        note = (", ".join(notes), style)
+        rows.append(((joint.name, "bold"), joint.type.value, numbers, _units_shown(joint), note))
+    return Table("joint", "type", "coordinates", "unit", "", rows=rows)
 
 
 def _number(value: float) -> str:
@@ -286,6 +280,6 @@ def _closures(info: AssemblyInfo) -> Table:
     rows = []
     for closure in info.closures:
         numbers = (f"{number:.1e}" if math.isfinite(number) else "-" for number in (closure.position, closure.angle))
-        state = cell("closed", "green") if closure.closed else cell("open", "red")
-        rows.append((cell(closure.name, "bold"), *numbers, state))
-    return new_table("closure", "m", "rad", "", rows=rows, right=[1, 2])
+        state = ("closed", "green") if closure.closed else ("open", "red")
+        rows.append(((closure.name, "bold"), *numbers, state))
+    return Table("closure", "m", "rad", "", rows=rows, right=[1, 2])

@@ -5,17 +5,15 @@ from __future__ import annotations
 import math
 import sys
 from collections import Counter
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from eurdf.commands.command import JSON, ROBOT, ROOT, command
 from eurdf.commands.output import write_result
-from eurdf.commands.terminal import cell, new_table, write_lines, write_rendered, write_reports
+from eurdf.commands.terminal import Cell, Table, write_lines, write_reports, write_shown
 from eurdf.reading.robot_source import display_name
 
 if TYPE_CHECKING:
-    from rich.table import Table
-    from rich.text import Text
-
     from eurdf.commands.robot_info import CouplingInfo, RobotInfo
     from eurdf.mechanism.mechanism import Root
 
@@ -52,9 +50,9 @@ def info(options: dict[str, Any], path: str = ROBOT, root: Root | None = ROOT, j
 
 
 def _show(info: RobotInfo) -> None:
-    shown: list[Text | Table] = [_heading(info), _dimensions(info)]
+    shown: list[Table | Sequence[Cell]] = [_heading(info), _dimensions(info)]
     if info.left_out is not None:
-        shown.append(cell(info.left_out, "yellow"))
+        shown.append([(info.left_out, "yellow")])
     for applies, table in (
         (info.closure_list, _closures),
         (info.coupling_list, _couplings),
@@ -67,17 +65,13 @@ def _show(info: RobotInfo) -> None:
     ):
         if applies:
             shown.append(table(info))
-    write_rendered(*shown)
+    write_shown(*shown)
 
 
-def _heading(info: RobotInfo) -> Text:
-    from rich.text import Text
-
-    from eurdf.diagnostics.wording import visible
-
+def _heading(info: RobotInfo) -> Sequence[Cell]:
     format_name = f"Extended URDF {info.version}" if info.version else "URDF"
     mass = f", {info.mass:.6g} kg" if math.isfinite(info.mass) else ""
-    return Text.assemble((visible(info.name), "bold"), f"  {format_name}, {info.root} root{mass}")
+    return (info.name, "bold"), f"  {format_name}, {info.root} root{mass}"
 
 
 def _dimensions(info: RobotInfo) -> Table:
@@ -107,10 +101,8 @@ def _dimensions(info: RobotInfo) -> Table:
     for name, figure, meaning in rows:
         shaky = name == "finite" and figure != info.mobility
         style = styles.get(str(figure), "yellow" if shaky else "bold")
-        cells.append((name, cell("-" if figure is None else str(figure), style), cell(meaning, "dim")))
-    table = new_table("", "", "", rows=cells, right=[1])
-    table.show_header = False
-    return table
+        cells.append((name, ("-" if figure is None else str(figure), style), (meaning, "dim")))
+    return Table("", "", "", rows=cells, right=[1])
 
 
 def _verdict(info: RobotInfo) -> Row:
@@ -149,19 +141,19 @@ def _closures(info: RobotInfo) -> Table:
     rows = []
     for closure in info.closure_list:
         frames = [
-            cell(frame) if frame is not None else cell(f"on {body}", "dim")
+            frame if frame is not None else (f"on {body}", "dim")
             for frame, body in zip(closure.frames, closure.bodies, strict=True)
         ]
         linear, angular = closure.compliance
         compliances = [f"{linear:g} m/N"] * bool(linear) + [f"{angular:g} rad/(N·m)"] * bool(angular)
-        note = cell(f"compliance {', '.join(compliances)}" if compliances else "", "dim")
-        rows.append((cell(closure.name, "bold"), closure.type, *frames, _number(closure.residual), note))
-    return new_table("closure", "type", "frame A", "frame B", "residual", "", rows=rows, right=[4])
+        note = (f"compliance {', '.join(compliances)}" if compliances else "", "dim")
+        rows.append(((closure.name, "bold"), closure.type, *frames, _number(closure.residual), note))
+    return Table("closure", "type", "frame A", "frame B", "residual", "", rows=rows, right=[4])
 
 
 def _couplings(info: RobotInfo) -> Table:
-    rows = ((cell(each.name, "bold"), cell(_relation(each)), _number(each.residual)) for each in info.coupling_list)
-    return new_table("coupling", "relation", "residual", rows=rows, right=[2])
+    rows = (((each.name, "bold"), _relation(each), _number(each.residual)) for each in info.coupling_list)
+    return Table("coupling", "relation", "residual", rows=rows, right=[2])
 
 
 def _relation(coupling: CouplingInfo) -> str:
@@ -178,29 +170,29 @@ def _loops(info: RobotInfo) -> Table:
     counts = ("nv", "nc", "rank", "mobility", "redundant", "uncontrolled")
     rows = (
         (
-            cell(", ".join(loops.closures), "bold"),
+            (", ".join(loops.closures), "bold"),
             *(str(getattr(loops, count)) for count in counts),
             _digits(loops.singularity),
         )
         for loops in info.loop_list
     )
-    return new_table("loops of", *counts, "singularity", rows=rows, right=range(1, 8))
+    return Table("loops of", *counts, "singularity", rows=rows, right=range(1, 8))
 
 
 def _motions(info: RobotInfo) -> Table:
     counts = Counter(motion.joints for motion in info.motion_list)
-    rows = [
-        cell(", ".join(joints) + (f"  ({count} motions)" if count > 1 else ""))
+    rows: list[Cell] = [
+        ", ".join(joints) + (f"  ({count} motions)" if count > 1 else "")
         for joints, count in counts.most_common(_MOST_MOTIONS)
     ]
     if len(counts) > _MOST_MOTIONS:
-        rows.append(cell(f"and {len(counts) - _MOST_MOTIONS} more", "dim"))
-    return new_table("uncontrolled motion of", rows=((row,) for row in rows))
+        rows.append((f"and {len(counts) - _MOST_MOTIONS} more", "dim"))
+    return Table("uncontrolled motion of", rows=((row,) for row in rows))
 
 
 def _dependent(info: RobotInfo) -> Table:
-    rows = ((cell(", ".join(joints), "yellow"),) for joints in info.dependent_list)
-    return new_table("actuators that depend on one another through the closures", rows=rows)
+    rows = (((", ".join(joints), "yellow"),) for joints in info.dependent_list)
+    return Table("actuators that depend on one another through the closures", rows=rows)
 
 
 def _joints(info: RobotInfo) -> Table:
@@ -216,19 +208,19 @@ def _joints(info: RobotInfo) -> Table:
             name = "" if motor.name == joint.name else f" as {motor.name}"
             control = "" if motor.control is None else f", {motor.control[0]:g} to {motor.control[1]:g}"
             notes.insert(0, f"actuated{name}{control}")
-        note = cell("; ".join(notes), "dim" if motor is None else "cyan")
-        links = cell(joint.parent), cell(joint.child)
-        rows.append((cell(joint.name, "bold"), joint.type.value, *links, str(joint.nv), note))
-    return new_table("joint", "type", "parent", "child", "nv", "", rows=rows, right=[4])
+        note = ("; ".join(notes), "dim" if motor is None else "cyan")
+        links = joint.parent, joint.child
+        rows.append(((joint.name, "bold"), joint.type.value, *links, str(joint.nv), note))
+    return Table("joint", "type", "parent", "child", "nv", "", rows=rows, right=[4])
 
 
 def _frames(info: RobotInfo) -> Table:
-    return new_table("frame", "on", rows=((cell(each.name, "bold"), cell(each.body)) for each in info.frame_list))
+    return Table("frame", "on", rows=(((each.name, "bold"), each.body) for each in info.frame_list))
 
 
 def _configurations(info: RobotInfo) -> Table:
-    rows = ((cell(each.name, "bold"), _number(each.residual)) for each in info.configuration_list)
-    return new_table("configuration", "residual", rows=rows, right=[1])
+    rows = (((each.name, "bold"), _number(each.residual)) for each in info.configuration_list)
+    return Table("configuration", "residual", rows=rows, right=[1])
 
 
 def _number(value: float) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 import os
+import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +20,7 @@ from eurdf.commands.command import (
     option,
 )
 from eurdf.commands.output_file import writing
-from eurdf.commands.terminal import cell, new_table, write_notes, write_rendered
+from eurdf.commands.terminal import Table, write_lines, write_notes, write_shown
 
 if TYPE_CHECKING:
     from eurdf.array import Matrix, Vector
@@ -93,33 +94,32 @@ def serial(
 
 
 def _show(twin: SerialTwin) -> None:
-    from rich.text import Text
-
     lost, units = twin.neglected, twin.workspace.units
     angles = [unit == "rad" for unit in units]
     torques = ["N·m" if angle else "N" for angle in angles]
     speeds = [f"{unit}/s" for unit in units]
     inertias = ["kg·m²" if angle else "kg" for angle in angles]
     rows = [
-        (cell("position", "bold"), _ranges(twin.position, units)),
-        (cell("torque", "bold"), _numbers(twin.torque, torques)),
-        (cell("velocity", "bold"), _numbers(twin.velocity, speeds)),
-        (cell("armature", "bold"), _numbers(twin.armature, inertias)),
-        (cell("exact armature"), _ranges(lost.armature, inertias)),
-        *([] if lost.torque is None else [(cell("torque alone"), _ranges(lost.torque, torques))]),
-        *([] if lost.velocity is None else [(cell("velocity alone"), _ranges(lost.velocity, speeds))]),
-        (cell("error of gravity, at most"), _numbers(lost.gravity, torques)),
+        (("position", "bold"), _ranges(twin.position, units)),
+        (("torque", "bold"), _numbers(twin.torque, torques)),
+        (("velocity", "bold"), _numbers(twin.velocity, speeds)),
+        (("armature", "bold"), _numbers(twin.armature, inertias)),
+        ("exact armature", _ranges(lost.armature, inertias)),
+        *([] if lost.torque is None else [("torque alone", _ranges(lost.torque, torques))]),
+        *([] if lost.velocity is None else [("velocity alone", _ranges(lost.velocity, speeds))]),
+        ("error of gravity, at most", _numbers(lost.gravity, torques)),
     ]
     columns = range(1, len(twin.joints) + 1)
-    table = new_table("", *twin.joints, rows=((label, *numbers) for label, numbers in rows), right=columns)
+    table = Table("", *twin.joints, rows=((label, *numbers) for label, numbers in rows), right=columns)
     names = ", ".join(twin.bodies)
-    summary = (
-        f"{lost.mass:.4g} kg are lumped onto others: {names}\n"
+    summary = [
+        f"{lost.mass:.4g} kg are lumped onto others: {names}",
         f"the box of positions has {100.0 * lost.covered:.0f} % of the workspace; "
-        f"the inertia matrix errs by up to {100.0 * lost.inertia:.0f} %\n"
-        f"polynomials of degree {twin.map.degree} err by up to {twin.map.error.max():.2g} in the motors' positions"
-    )
-    write_rendered(table, Text(summary))
+        f"the inertia matrix errs by up to {100.0 * lost.inertia:.0f} %",
+        f"polynomials of degree {twin.map.degree} err by up to {twin.map.error.max():.2g} in the motors' positions",
+    ]
+    write_shown(table)
+    write_lines([[], *([(line, "")] for line in summary)], sys.stdout)
 
 
 def _numbers(values: Vector, units: Sequence[str]) -> list[str]:

@@ -8,11 +8,11 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import TYPE_CHECKING, Any, TextIO, TypeAlias
 
 if TYPE_CHECKING:
-    from rich.console import Console, RenderableType
-    from rich.table import Table
+    from rich.console import Console
+    from rich.table import Table as RichTable
     from rich.text import Text
 
     from eurdf.diagnostics import Diagnostic
@@ -123,47 +123,98 @@ def progress_bar(what: str, wanted: bool = True) -> Iterator[Callable[[float, fl
         yield lambda done, whole: bar.update(task, completed=done, total=whole)
 
 
-def write_rendered(*renderables: RenderableType) -> None:
-    """Write rich renderables to the standard output, separated by empty lines; no line is a command of a workflow."""
+def write_shown(*shown: Table | Sequence[Cell]) -> None:
+    """Write tables and lines to the standard output, separated by empty lines; none is a command of a workflow.
+
+    Only on a terminal does it load rich, which takes longer than most commands have to write.
+    """
     from eurdf.diagnostics.wording import no_command
 
-    console = _console(sys.stdout)
-    with console.capture() as captured:
-        console.print(renderables[0])
-        for renderable in renderables[1:]:
-            console.print()
-            console.print(renderable)
-    sys.stdout.write("".join(no_command(line.rstrip()) + "\n" for line in captured.get().splitlines()))
+    if is_terminal(sys.stdout):
+        console = _console(sys.stdout)
+        with console.capture() as captured:
+            for number, each in enumerate(shown):
+                if number:
+                    console.print()
+                console.print(each.styled() if isinstance(each, Table) else _styled(each))
+        lines = captured.get().splitlines()
+    else:
+        plain: Iterator[list[str]] = (each.lines() if isinstance(each, Table) else [_plain(each)] for each in shown)
+        lines = [line for each in plain for line in ["", *each]][1:]
+    sys.stdout.write("".join(no_command(line.rstrip()) + "\n" for line in lines))
 
 
-def new_table(*headings: str, rows: Iterable[Iterable[Any]] = (), right: Iterable[int] = ()) -> Table:
-    """A table for the standard output, with lines on a terminal; the columns ``right`` are aligned to the right."""
-    from rich import box
-    from rich.table import Table
-
-    table = Table(
-        box=box.SIMPLE_HEAD if has_boxes(sys.stdout) else None,
-        border_style="dim",
-        header_style="dim",
-        show_edge=False,
-        pad_edge=False,
-    )
-    for heading in headings:
-        table.add_column(heading, overflow="fold")
-    for column in right:
-        table.columns[column].justify = "right"
-    for row in rows:
-        table.add_row(*row)
-    return table
+#: A text, or a text and its rich style; control characters are made visible where it is written.
+Cell: TypeAlias = "str | Sequence[str]"
 
 
-def cell(text: str, style: str = "") -> Text:
-    """A table cell: text without markup, with control characters made visible."""
-    from rich.text import Text
+class Table:
+    """A table for the standard output, with lines on a terminal.
 
+    Args:
+        headings: Of the columns; if all are empty, the table has none.
+        rows: The cells of each row.
+        right: The columns that are aligned to the right.
+        whole: The columns that a narrow terminal cuts rather than folds.
+    """
+
+    def __init__(
+        self, *headings: str, rows: Iterable[Iterable[Cell]], right: Iterable[int] = (), whole: Iterable[int] = ()
+    ) -> None:
+        self.headings, self.rows, self.right, self.whole = headings, [[*row] for row in rows], {*right}, {*whole}
+
+    def lines(self) -> list[str]:
+        """As text in columns."""
+        from eurdf.diagnostics.text import cells
+
+        rows = [[_plain([cell]) for cell in row] for row in self.rows]
+        if any(self.headings):
+            rows.insert(0, [_plain([heading]) for heading in self.headings])
+        widths = [max(map(cells, column)) for column in zip(*rows, strict=True)]
+
+        def padded(column: int, text: str) -> str:
+            space = " " * (widths[column] - cells(text))
+            return space + text if column in self.right else text + space
+
+        return ["  ".join(padded(*each) for each in enumerate(row)) for row in rows]
+
+    def styled(self) -> RichTable:
+        """For a terminal."""
+        from rich import box
+        from rich.table import Table as RichTable
+
+        table = RichTable(
+            box=box.SIMPLE_HEAD if has_boxes(sys.stdout) else None,
+            border_style="dim",
+            header_style="dim",
+            show_edge=False,
+            pad_edge=False,
+            show_header=any(self.headings),
+        )
+        for number, heading in enumerate(self.headings):
+            justify: Any = "right" if number in self.right else "left"
+            table.add_column(_styled([heading]), overflow="fold", justify=justify, no_wrap=number in self.whole)
+        for row in self.rows:
+            table.add_row(*(_styled([cell]) for cell in row))
+        return table
+
+
+def _pieces(cells: Iterable[Cell]) -> Iterator[tuple[str, str]]:
     from eurdf.diagnostics.wording import visible
 
-    return Text(visible(text), style=style)
+    for cell in cells:
+        text, style = (cell, "") if isinstance(cell, str) else cell
+        yield visible(text), style
+
+
+def _plain(cells: Iterable[Cell]) -> str:
+    return "".join(text for text, _ in _pieces(cells))
+
+
+def _styled(cells: Iterable[Cell]) -> Text:
+    from rich.text import Text
+
+    return Text.assemble(*_pieces(cells))
 
 
 def _console(stream: TextIO) -> Console:

@@ -13,12 +13,10 @@ from typing import TYPE_CHECKING, Any
 from eurdf.commands.command import JSON, ROBOT, SERIAL_JOINTS, SERIAL_MOTORS, cannot_run, command, flag, option
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import refuse_to_replace, write_new, writing
-from eurdf.commands.terminal import cell, new_table, write_notes, write_rendered
+from eurdf.commands.terminal import Table, write_notes, write_shown
 from eurdf.errors import CannotRun
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
     from eurdf.array import Vector
     from eurdf.commands.transmission_info import LimitsInfo, PoseInfo, TransmissionInfo
     from eurdf.pinocchio.robot import Robot
@@ -225,19 +223,15 @@ def _has_rotors(pose: PoseInfo) -> bool:
 
 
 def _show(info: TransmissionInfo) -> None:
-    from rich.text import Text
-
-    from eurdf.diagnostics.wording import visible
-
     names = (", ".join(axis.name for axis in axes) for axes in (info.motors, info.joints))
-    motors, joints = map(visible, names)
-    heading = Text.assemble((visible(info.name), "bold"), f"  motors {motors}, joints {joints}")
+    motors, joints = names
+    heading = (info.name, "bold"), f"  motors {motors}, joints {joints}"
     if len(info.poses) == 1:
         (pose,) = info.poses
         tables = [_map_table(info, pose), *([_joint_table(info, pose)] if pose.limits or pose.inertia else [])]
-        write_rendered(heading, *tables)
+        write_shown(heading, *tables)
     else:
-        write_rendered(heading, *_grid_tables(info))
+        write_shown(heading, *_grid_tables(info))
 
 
 def _map_table(info: TransmissionInfo, pose: PoseInfo) -> Table:
@@ -246,11 +240,11 @@ def _map_table(info: TransmissionInfo, pose: PoseInfo) -> Table:
     of, by = (info.joints, info.motors) if backward else (info.motors, info.joints)
     positions, matrix = (pose.joints, pose.B_J) if backward else (pose.motors or (), pose.G)
     rows = (
-        (cell(axis.name, "bold"), _number(position), axis.unit, *(map(_number, row) if row else ["-"] * len(by)))
+        ((axis.name, "bold"), _number(position), axis.unit, *(map(_number, row) if row else ["-"] * len(by)))
         for axis, position, row in zip(of, positions, matrix or [()] * len(of), strict=True)
     )
     headings = ("joint" if backward else "motor", "position", "unit", *(f"per {axis.name}" for axis in by))
-    return new_table(*headings, rows=rows)
+    return Table(*headings, rows=rows)
 
 
 def _joint_table(info: TransmissionInfo, pose: PoseInfo) -> Table:
@@ -268,7 +262,7 @@ def _joint_table(info: TransmissionInfo, pose: PoseInfo) -> Table:
 
 def _table_of_joints(heading: str, info: TransmissionInfo, rows: Iterable[tuple[str, list[str]]]) -> Table:
     names = [axis.name for axis in info.joints]
-    return new_table(heading, *names, rows=((label, *cells) for label, cells in rows), right=range(1, len(names) + 1))
+    return Table(heading, *names, rows=((label, *cells) for label, cells in rows), right=range(1, len(names) + 1))
 
 
 _INERTIA = {"rad": "kg·m²", "m": "kg"}
@@ -297,8 +291,6 @@ def _with_units(values: Sequence[float], units: Sequence[str]) -> list[str]:
 
 
 def _grid_tables(info: TransmissionInfo) -> list[Any]:
-    from rich.text import Text
-
     poses = info.poses
     counts = f"{len(poses)} poses, {sum(pose.reached for pose in poses)} of them reached within all position limits"
     units = [axis.unit for axis in info.joints]
@@ -319,7 +311,7 @@ def _grid_tables(info: TransmissionInfo) -> list[Any]:
         if values
     ]
     headings = ("", *(f"{axis.name}: least to most" for axis in info.joints))
-    tables: list[Any] = [Text(counts), *([new_table(*headings, rows=rows)] if rows else [])]
+    tables: list[Any] = [[counts], *([Table(*headings, rows=rows)] if rows else [])]
     if info.common:
         tables.append(_table_of_joints("at all poses reached", info, _limit_rows(info.common, units)))
     return tables

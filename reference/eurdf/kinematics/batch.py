@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar, get_args
 
 import numpy as np
+import numpy.typing as npt
 from pinocchio import LOCAL
 
 from eurdf.array import Indices, Mask, Matrix, Vector
@@ -96,10 +97,14 @@ class InverseKinematics(Solutions[InverseKinematicsReason]):
 
     Attributes:
         q: The configurations (B, nq) nearest to the targets: closed and within the limits, if such were found.
+        starts: For each element how often the search started again from another configuration (B,).
+        same_branch: Whether each is on the branch of its start for certain (B,).
         position_error: Distances (B, F) of the origins of the frames from those of the targets, m, in their order.
         angle_error: Angles (B, F) between their axes and those of the targets, rad; 0 for targets that are positions.
     """
 
+    starts: Indices
+    same_branch: Mask
     position_error: Matrix
     angle_error: Matrix
 
@@ -370,7 +375,7 @@ def inverse_kinematics(
     *,
     limits: bool = True,
     tolerance: float = 1e-8,
-    restarts: int = 10,
+    restarts: int = 20,
     block: int | None = None,
     threads: int = 1,
     executor: Executor | None = None,
@@ -413,15 +418,15 @@ def inverse_kinematics(
     arrays = [part for goal in goals for part in (goal.position, goal.rotation) if part is not None]
     numbers = 2 * model.numbers + 40 * len(goals) * model.tree.nv
     found = blocks(numbers, block, threads, executor, progress).map(_searched, task, (q, *arrays))
-    at, position, angle, residual, code = found
+    at, position, angle, residual, code, starts_tried, same_branch = found
     reason = tuple(_INVERSE_REASONS[each] for each in code.tolist())
-    return InverseKinematics(at, code == 0, residual, reason, position, angle)
+    return InverseKinematics(at, code == 0, residual, reason, starts_tried, same_branch, position, angle)
 
 
-def _searched(task: InverseTask, q: Matrix, *arrays: Matrix) -> tuple[Matrix, Matrix, Matrix, Vector, Indices]:
+def _searched(task: InverseTask, q: Matrix, *arrays: Matrix) -> tuple[npt.NDArray[Any], ...]:
     parts = iter(arrays)
     goals = [Target(next(parts), next(parts) if is_pose else None) for is_pose in task.poses]
     found = search(task, goals, q)
     code = np.array([_INVERSE_REASONS.index(reason) for reason in found.reason], dtype=np.intp)
     residual = np.linalg.norm(task.problem.residual(found.q), axis=1)
-    return found.q, found.position, found.angle, residual, code
+    return found.q, found.position, found.angle, residual, code, found.starts, found.same_branch

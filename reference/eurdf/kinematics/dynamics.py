@@ -83,10 +83,11 @@ def forward_dynamics(
     with the least norm, in units of the characteristic length.
 
     Pinocchio's proximal solver is used (Carpentier, Budhiraja, Mansard, *Proximal and sparse resolution of constrained
-    dynamic equations*, 2021) if it has the constraints and joints of the robot, the closures are closed to 1e-9 and
-    K v = 0, the dimensionless K Kᵀ has a condition number of at most 1e6, and the solution satisfies both equations to
-    1e-9. Otherwise the equations are solved by elimination, which is slower: redundant rows that differ by rounding
-    would lock the mechanism, and Pinocchio needs inertia at every joint, even at one that the closures do not let move.
+    dynamic equations*, 2021) if no joint mimics another, the closures are closed to 1e-9 and K v = 0, the dimensionless
+    K Kᵀ has a condition number of at most 1e6, and the solution satisfies both equations to 1e-9; its decomposition
+    also gives the forces of the constraints that it has no model for. Otherwise the equations are solved by
+    elimination, which is slower: redundant rows that differ by rounding would lock the mechanism, and Pinocchio needs
+    inertia at every joint, even at one that the closures do not let move.
 
     M includes the armature. Limits of joints and motors are ignored.
 
@@ -102,8 +103,9 @@ def forward_dynamics(
             rest, since sign(0) = 0.
         gains: Baumgarte gains kp (1/s²) and kd (1/s), which close an open mechanism; kd = 2 √kp for critical damping.
             The default is the gains of the constraint models, which are zero unless set.
-        data: A `pin.Data` of the model to compute in. By default one is kept with the robot for the next call; a robot
-            with more than 130 velocities does without, joint by joint, since it would take 64 nv³ bytes.
+        data: A `pin.Data` of the model to compute in. By default one is kept with the robot for the next call. It takes
+            64 nv³ bytes: a robot with more than 64 velocities is divided into limbs that share no closed loop, each
+            with one of its own, and one with more than 130 that cannot be divided does without, joint by joint.
 
     Raises:
         ValueError: A vector has a wrong shape or is not finite, or a frame is unknown.

@@ -186,7 +186,13 @@ class Evaluator(_ByConfiguration):
     def drift(self, q: Matrix, v: Matrix) -> Matrix:
         """r̈ = K̇ v (B, m) at q (B, nq) while every joint keeps its velocity v (B, nv)."""
         d = np.zeros((len(q), self.m))  # that of couplings is zero
-        motions: Any = self._pairs.motions(q, v) if self._groups else None
+        if not self._groups:
+            return d
+        if not self._few or len(q) != 1:
+            motions = self._pairs.motions(q, v)
+        else:  # poses that the residual and K have used
+            at = self.at(q)
+            motions = self._pairs.motions(at.q, v)._replace(poses=at.poses)
         for group in self._groups:
             own = motions if self._is_plain else motions.of(group.pairs)
             d[:, group.rows] = group.kind.drift(own, group.fixed).reshape(len(q), group.m)

@@ -56,8 +56,8 @@ class FrameError:
 _SENTENCES: dict[InverseKinematicsReason, str] = {
     "closures open": "closures stay open",
     "joint limits": "joints are at their limits",
-    "singular": "the configuration is singular, at the edge of the workspace",
-    "out of reach": "target out of reach (local minimum)",
+    "tolerance": "as near as rounding and the closed loops allow; use a larger tolerance",
+    "local minimum": "no motion from the configuration found brings the frames nearer; another start may",
     "steps": "the maximum number of steps was reached; start nearer, or allow more restarts",
 }
 
@@ -67,12 +67,16 @@ class InverseKinematics:
     """The result of `inverse_kinematics`.
 
     Attributes:
-        q: The configuration (nq,) nearest to the targets: closed and within the limits, if such a one was found.
+        q: The configuration (nq,) nearest to the targets that was found: closed and within the limits, if one was.
         converged: Whether every frame is at its target, and every loop closed, within the tolerances.
         errors: How far each frame is from its target, in the order of the targets.
         open: How far each closure is open at q, in file order.
         iterations: Number of steps tried.
-        reason: Why it did not converge; None if it did.
+        tolerance: Bound of the errors, m and rad, that was asked for.
+        starts: Number of other configurations that the search started from again.
+        same_branch: Whether q is on the branch of q0 for certain: every step to it was so short that closing the loops
+            after it moved the joints little. If not, a part of the motion may have to lead through a dead point.
+        reason: Why it did not converge; None if it did. No reason shows that the target is out of reach.
         at_limits: The joints that are at their limits at q and would have to exceed them to come nearer.
     """
 
@@ -81,6 +85,9 @@ class InverseKinematics:
     errors: tuple[FrameError, ...]
     open: tuple[Opening, ...]
     iterations: int
+    tolerance: float = 1e-8
+    starts: int = 0
+    same_branch: bool = True
     reason: InverseKinematicsReason | None = None
     at_limits: tuple[JointAtLimit, ...] = ()
 
@@ -90,8 +97,10 @@ class InverseKinematics:
             is_open = ", ".join(str(found) for found in self.open if found.is_open)
             parts += [f"open: {is_open}"] if is_open else []
             parts += [f"at their limits: {', '.join(map(str, self.at_limits))}"] if self.at_limits else []
-            parts += [f"off target: {', '.join(map(str, self.errors))}"]
-        return f"<InverseKinematics: {'; '.join(parts)}; {self.iterations} iterations>"
+            parts += [f"off target: {', '.join(map(str, self.errors))} (tolerance {self.tolerance:.3g} m and rad)"]
+        parts += [] if self.same_branch else ["perhaps on another branch than q0"]
+        again = f" from {1 + self.starts} starts" if self.starts else ""
+        return f"<InverseKinematics: {'; '.join(parts)}; {self.iterations} iterations{again}>"
 
 
 def inverse_kinematics(
@@ -101,7 +110,7 @@ def inverse_kinematics(
     *,
     limits: bool = True,
     tolerance: float = 1e-8,
-    restarts: int = 10,
+    restarts: int = 20,
 ) -> InverseKinematics:
     """Move frames of the closed mechanism to targets.
 
@@ -109,8 +118,9 @@ def inverse_kinematics(
     for targets that are poses), subject to r(q) = 0 and the joint limits. L is the characteristic length of the robot's
     loops (1 m without loops). Every step is a damped Gauss-Newton step y along the closed configurations, v = Z y with
     K Z = 0, bounded by the limits (active set), after which `assemble` closes the loops. So loops are closed and limits
-    respected at every step, even if the targets cannot be reached. If a descent ends off target, others start around
-    q0. Springs have no effect: they may be deflected in the result.
+    respected at every step, even if the targets cannot be reached. If a descent ends off target, others start from
+    configurations around q0: first from those on its branch, which paths along closed configurations lead to, then from
+    any. Springs have no effect: they may be deflected in the result.
 
     Source: `closedLoopInverseKinematics` of the toolbox of Batto, De Matteïs and Mansard, 2025, which passes the loops
     to a general solver as equality constraints.
@@ -126,11 +136,11 @@ def inverse_kinematics(
         limits: Whether to respect the position limits of joints whose coordinates are angles or lengths. Limits of
             mimic joints are ignored. Limits that are both 0 are no range (`urdf-no-range`).
         tolerance: Bound of the distance of a frame from its target, m and rad. Loops are closed to 1e-10 if possible.
-        restarts: Maximum number of restarts while frames are off target. The time is bounded by ``restarts`` + 2
-            descents of at most 60 steps.
+        restarts: Maximum number of restarts while frames are off target by more than 1e-6; a quarter of them on the
+            branch of q0. The time is bounded by ``restarts`` + 2 descents of at most 60 steps.
 
     Returns:
-        The configuration found. The result is deterministic.
+        The configuration found: how near it is, and what was tried. The result is deterministic.
 
     Raises:
         ValueError: ``q0`` is not a configuration; ``targets`` is not a mapping; a frame is unknown or ambiguous; a
@@ -163,6 +173,9 @@ def inverse_kinematics(
         errors=tuple(map(FrameError, checked, found.position[0].tolist(), found.angle[0].tolist())),
         open=is_open,
         iterations=int(found.iterations[0]),
+        tolerance=tolerance,
+        starts=int(found.starts[0]),
+        same_branch=bool(found.same_branch[0]),
         reason=found.reason[0],
         at_limits=at_limits,
     )

@@ -17,6 +17,7 @@ from eurdf.closures.se3 import velocity_of_origin
 from eurdf.kinematics.bounded_step import bounded_step, damped_step_within
 from eurdf.kinematics.closing import Closed, close
 from eurdf.kinematics.descend import next_damping
+from eurdf.kinematics.path import Elements, follow, is_short
 from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import (
@@ -31,7 +32,6 @@ from eurdf.kinematics.rank import (
     largest,
     norms,
     numbers,
-    numerical_ranks,
     product,
     some,
     square,
@@ -45,28 +45,30 @@ from eurdf.kinematics.tolerances import (
     IDLE,
     LEAST_GAIN,
     LEAST_SHARE,
+    LONGEST_MOTION,
     MORE_DAMPING,
     MOST_IDLE_STEPS,
     MOST_STEPS,
+    NOTHING,
     RESTARTS,
     SOLVED,
 )
 from eurdf.mechanism.joint import LIMIT_TOLERANCE
 
-#: Why inverse kinematics did not converge: closures stay open; joints at their limits keep the frames off target; the
-#: configuration is singular, at the edge of the workspace; the target is out of reach; or the
-#: maximum number of steps was reached.
-InverseKinematicsReason = Literal["closures open", "joint limits", "singular", "out of reach", "steps"]
+#: Why inverse kinematics did not converge: closures stay open; joints at their limits keep the frames from coming
+#: nearer; the frames are as near as rounding and the loops, closed to 1e-10, allow; no motion brings them nearer, from
+#: there or from where other descents ended; or the maximum number of steps was reached. None of them shows that no
+#: configuration has the frames at their targets.
+InverseKinematicsReason = Literal["closures open", "joint limits", "tolerance", "local minimum", "steps"]
 
-# As `IDLE`, in the last descent, after which the target is out of reach.
+# As `IDLE`, in the last descent.
 _IDLE_AT_LAST = 1e-8
 # Distance of the restarts from the start (rad, or characteristic lengths); the last one is repeated.
 _SPREADS = (0.2, 0.5, 1.0, 2.0)
-# The gradient of the squared error counts as zero below this fraction of |A| |e|; |A| is at least its smallest value
-# met.
+# Smallest step on the way to a restart, as a part of it.
+_SHORTEST_STEP = 2.0**-5
+# The gradient of the squared error counts as zero below this fraction of |A| |e|.
 _FLAT = 0.02
-# A configuration is singular if the smallest singular value of A is below this fraction of its largest value met.
-_SINGULAR = 0.05
 
 
 class Target(NamedTuple):
@@ -90,7 +92,7 @@ class InverseTask(NamedTuple):
         poses: Of each frame whether its targets are poses.
         limits: The position limits to respect, or None.
         tolerance: Bound of the distance of a frame from its target, m and rad.
-        restarts: Maximum number of restarts.
+        restarts: Maximum number of restarts: the first quarter on the branch of the start, the others around it.
     """
 
     problem: Problem
@@ -109,6 +111,8 @@ class SearchResult(NamedTuple):
         position: Distances (B, F) of the origins of the frames from those of the targets, m.
         angle: Angles (B, F) between their axes and those of the targets, rad; 0 for targets that are positions.
         iterations: Numbers (B,) of steps tried.
+        starts: Numbers (B,) of descents from other configurations.
+        same_branch: Whether (B,) each step to q was short enough to stay on the branch of the start.
         reason: For each element why it did not converge; None if it did.
         at_limits: For each element the joints that are at their limits and would have to exceed them to come nearer.
     """
@@ -117,6 +121,8 @@ class SearchResult(NamedTuple):
     position: Matrix
     angle: Matrix
     iterations: Indices
+    starts: Indices
+    same_branch: Mask
     reason: list[InverseKinematicsReason | None]
     at_limits: list[tuple[JointAtLimit, ...]]
 
@@ -139,15 +145,15 @@ class _Search:
         # Rows of the errors in the order of the frames: those of its position, then those of its rotation.
         near = task.tolerance / self._spaces.length, task.tolerance
         self._near = np.array([bound for is_pose in task.poses for bound in near[: 1 + is_pose]]) ** 2
+        self._nearly = np.maximum(self._near, CLOSED**2)  # no other start would come nearer
         self._turns, self._rows = any(task.poses), 6 * len(task.poses)
         # Of the rows of a position and a rotation for each frame those that count.
         self._used: Indices | slice = slice(None)
         if not all(task.poses):
             counts = [each for is_pose in task.poses for each in (True, is_pose) for _ in range(3)]
             self._used = np.flatnonzero(counts)
-        self._iterations = np.zeros(count, dtype=np.intp)
-        self._begun: list[tuple[Indices, Matrix]] = []  # elements and where descents of them began
-        self._farthest: dict[int, tuple[int, int, float]] = {}
+        self._iterations, self._starts = np.zeros((2, count), dtype=np.intp)
+        self._same_branch, self._exhausted = np.ones(count, dtype=bool), np.zeros(count, dtype=bool)
         self._may_be_certain = not task.problem.stacks  # of many groups of loops, each is decomposed by itself
 
     def run(self, start: Matrix) -> SearchResult:
@@ -161,7 +167,7 @@ class _Search:
         if np.count_nonzero(done):
             done[done] = self._problem.closes(start[done], CLOSED)
             if np.count_nonzero(done) == B:
-                return SearchResult(best, *self._distances(errors), self._iterations, reason, at_limits)
+                return self._result(best, errors, reason, at_limits)
         going = np.flatnonzero(~done)
         first = self._close(clipped[going], RESTARTS)
         best[going] = first.q
@@ -171,31 +177,90 @@ class _Search:
         for element in is_open.tolist():
             reason[element] = "closures open"
         place, going = first.q[first.closes], going[first.closes]
-        best[going], errors[going] = self._descend(place, going, IDLE)
-        off = going[~self._reached(errors[going])]
-        random = np.random.default_rng(0) if len(off) else None  # making it takes as long as a step
+        best[going], errors[going], self._same_branch[going] = self._descend(place, going, IDLE)
+        far = going[~self._reached(errors[going], self._nearly)]
+        random = np.random.default_rng(0) if len(far) else None  # making it takes as long as a step
+        on_branch = (task.restarts + 3) // 4  # so many restarts stay on it
         for attempt in range(task.restarts):
-            if random is None or not len(off):
+            if random is None or not len(far):
                 break
-            spread = _SPREADS[min(attempt, len(_SPREADS) - 1)]
+            stays = attempt < on_branch
+            spread = _SPREADS[min(attempt if stays else attempt - on_branch, len(_SPREADS) - 1)]
             away = self._spaces.scale * random.uniform(-spread, spread, self._problem.tree.nv)
-            again = self._close(self._moved(place[np.searchsorted(going, off)], np.tile(away, (len(off), 1))))
-            own = off[again.closes]
-            end, e = self._descend(again.q[again.closes], own, IDLE)
+            own, begin = far, place[np.searchsorted(going, far)]
+            if stays:
+                begin = self._wandered(begin, np.tile(away, (len(far), 1)), spread)
+            else:
+                again = self._close(self._moved(begin, np.tile(away, (len(far), 1))))
+                own, begin = far[again.closes], again.q[again.closes]
+            end, e, stayed = self._descend(begin, own, IDLE)
+            self._starts[own] += 1
             better = squares(e) < squares(errors[own])
-            best[own[better]], errors[own[better]] = end[better], e[better]
-            off = off[~self._reached(errors[off])]
+            changed = own[better]
+            best[changed], errors[changed] = end[better], e[better]
+            self._same_branch[changed] = stayed[better] & stays
+            far = far[~self._reached(errors[far], self._nearly)]
+        off = going[~self._reached(errors[going])]
         if len(off):
-            best[off], errors[off] = self._descend(best[off], off, _IDLE_AT_LAST)
+            best[off], errors[off], stayed = self._descend(best[off], off, _IDLE_AT_LAST)
+            self._same_branch[off] &= stayed
             for element in off[~self._reached(errors[off])].tolist():
                 reason[element], at_limits[element] = self._why_off_target(best[[element]], element)
-        return SearchResult(best, *self._distances(errors), self._iterations, reason, at_limits)
+        return self._result(best, errors, reason, at_limits)
+
+    def _result(
+        self,
+        q: Matrix,
+        errors: Matrix,
+        reason: list[InverseKinematicsReason | None],
+        at_limits: list[tuple[JointAtLimit, ...]],
+    ) -> SearchResult:
+        position, angle = self._distances(errors)
+        return SearchResult(q, position, angle, self._iterations, self._starts, self._same_branch, reason, at_limits)
+
+    def _wandered(self, q: Matrix, away: Matrix, spread: float) -> Matrix:
+        """Where paths along the closed configurations lead (b, nq), as far as their steps surely stay on the branch.
+
+        Args:
+            q: Closed configurations (b, nq) to start from.
+            away: Velocities (b, nv); the paths follow the nearest ones that keep the loops closed.
+            spread: How far the joint that moves most is to move, dimensionless.
+        """
+        q, scale = np.array(q), self._spaces.scale
+        away *= column(spread / at_least(largest(self._kept_closed(q, away) / scale), NOTHING))
+
+        def advance(on: Elements, done: Numbers, h: Numbers) -> tuple[Numbers, Numbers]:
+            here = q[on]
+            v = self._kept_closed(here, away[on])
+            motion = v / scale
+            fastest = largest(motion)
+            h = choose(fastest * h > LONGEST_MOTION, LONGEST_MOTION / at_least(fastest, NOTHING), h)
+            there = self._moved(here, column(h) * v)
+            closed = self._close(there)
+            accepted = as_numbers(closed.closes) & is_short(self._problem, there, closed.q, h * h * square(motion))
+            q[on] = np.where(column(accepted), closed.q, here)
+            return h, accepted
+
+        follow(advance, len(q), shortest=_SHORTEST_STEP)
+        return q
+
+    def _kept_closed(self, q: Matrix, v: Matrix) -> Matrix:
+        """The velocities (b, nv) nearest to the given ones, dimensionless, that keep the loops closed."""
+        if not len(self._spaces.row_scale):
+            return v
+        scale, nearest = self._spaces.scale, np.empty(v.shape)
+        for space in self._spaces.each(self._problem.jacobian(q)):
+            Z = space.free / scale[:, None]
+            nearest[space.which] = scale * times(Z, times(Z.swapaxes(1, 2), v[space.which] / scale))
+        return nearest
 
     def _close(self, q: Matrix, restarts: int = 0) -> Closed:
         return close(self._problem, q, SOLVED, restarts, self._task.limits)
 
-    def _descend(self, q: Matrix, which: Indices, idle_below: float) -> tuple[Matrix, Matrix]:
+    def _descend(self, q: Matrix, which: Indices, idle_below: float) -> tuple[Matrix, Matrix, Mask]:
         """Where descents of some elements from closed configurations (b, nq) end, and the errors (b, k) there.
+
+        And whether (b,) each of their steps was short enough to stay on the branch.
 
         Args:
             q: Where to start (b, nq).
@@ -203,16 +268,15 @@ class _Search:
             idle_below: A step that reduces the squared error by less than this fraction is idle.
         """
         e, at = self._error(q, which)
-        end, errors = np.array(q), np.array(e)
+        end, errors, stayed = np.array(q), np.array(e), np.ones(len(q), dtype=bool)
         on, cost = np.arange(len(q)), square(e)
         damping, idle = numbers(len(q), FIRST_DAMPING), numbers(len(q), 0)
         E: Matrix | None = None
         for step in range(MOST_STEPS + 1):
             going = as_numbers(~self._reached(e)) & (idle <= MOST_IDLE_STEPS)
-            if not step and some(going):
-                self._begun.append((which, q) if every(going) else (which[going], q[going]))
             if step == MOST_STEPS or not (len(on) and every(going)):
                 end[on], errors[on] = q, e
+                self._exhausted[which[on]] = step == MOST_STEPS and going
                 if step == MOST_STEPS or not some(going):
                     break
                 on, q, e, cost, damping, idle = on[going], q[going], e[going], cost[going], damping[going], idle[going]
@@ -224,10 +288,11 @@ class _Search:
             worth = expected > LEAST_GAIN * cost
             if not every(worth):
                 end[on], errors[on] = q, e
+                self._exhausted[which[on]] = False
                 if not some(worth):
                     break
                 on, q, e, cost, damping, idle = on[worth], q[worth], e[worth], cost[worth], damping[worth], idle[worth]
-                E, there, expected = E[worth], there[worth], expected[worth]
+                E, v, there, expected = E[worth], v[worth], there[worth], expected[worth]
             self._iterations[which[on]] += 1
             closed = self._close(there)
             e_there, at = self._error(closed.q, which[on])
@@ -235,6 +300,8 @@ class _Search:
             gain = choose(closes, (cost - reached) / expected, 0.0)
             idle = choose(closes & (reached < (1.0 - idle_below) * cost), 0, idle + 1)
             accepted = gain > LEAST_SHARE
+            short = is_short(self._problem, there, closed.q, square(v / self._spaces.scale))
+            stayed[on] &= choose(accepted, short, True)
             damping = choose(accepted, next_damping(damping, gain), MORE_DAMPING * damping)
             if every(accepted):
                 q, e, cost, E = closed.q, e_there, reached, None
@@ -244,7 +311,7 @@ class _Search:
                 q, e = np.where(accepted[:, None], closed.q, q), np.where(accepted[:, None], e_there, e)
                 cost = np.where(accepted, reached, cost)
                 E[accepted] = self._jacobian(self._task.frames.at(q[accepted]), e[accepted])
-        return end, errors
+        return end, errors, stayed
 
     def _steps(self, q: Matrix, e: Matrix, E: Matrix, damping: Numbers) -> tuple[Matrix, Matrix]:
         """The v (b, nv) with K v = 0 that minimise |E v + e|² + λ|v|² within the limits; at most 1 rad or length.
@@ -324,47 +391,21 @@ class _Search:
 
     def _why_off_target(self, q: Matrix, element: int) -> tuple[InverseKinematicsReason, tuple[JointAtLimit, ...]]:
         """Why no descent of one element continues from a closed configuration (1, nq) at which frames are off."""
-        which, limits = np.array([element]), self._task.limits
-        for elements, begun in self._begun:
-            own = np.flatnonzero(elements == element)
-            if len(own):
-                e, at = self._error(begun[own], which)
-                E = self._jacobian(at, e)
-                self._look_at_rank(begun[own], E, element)
-        errors, at = self._error(q, which)
-        E, e = self._jacobian(at, errors), errors[0]
-        values = self._look_at_rank(q, E, element)
+        limits, (errors, at) = self._task.limits, self._error(q, np.array([element]))
+        if self._reached(errors, self._nearly)[0]:
+            return "tolerance", ()
         Z = self._spaces.at(self._problem.jacobian(q)[0]).free
-        _, rank, smallest = self._farthest[element]
-        slope = (E[0] @ Z).T @ e
-        size = max(values.max(initial=0.0), smallest) * np.linalg.norm(e)
+        A, e = self._jacobian(at, errors)[0] @ Z, errors[0]
+        slope = A.T @ e
+        flat = _FLAT * np.linalg.norm(A, 2) * np.linalg.norm(e) if A.size else np.inf
         at_limits = () if limits is None else limits.pressed(q[0], -Z @ slope)
-        if np.linalg.norm(slope) <= _FLAT * size:
-            singular = rank > 0 and not values[rank - 1] > _SINGULAR * smallest
-            return ("singular" if singular else "out of reach"), ()
-        if at_limits:
+        if at_limits and np.linalg.norm(slope) > flat:
             G, h = self._bounds(q[0], Z / self._spaces.scale[:, None])
             at_bounds = h <= LIMIT_TOLERANCE
             down = bounded_step(np.eye(len(slope)), slope, G[at_bounds], np.zeros(int(at_bounds.sum())))
-            if np.linalg.norm(down) <= _FLAT * size:
+            if np.linalg.norm(down) <= flat:
                 return "joint limits", at_limits
-        return "steps", at_limits
-
-    def _look_at_rank(self, q: Matrix, E: Matrix, element: int) -> Vector:
-        """Keep the largest rank of Ẽ P that an element has met, and the largest of its smallest singular values then.
-
-        Only configurations with the fewest free motions count: at singular loops, there are more, and the rank can be
-        larger. The singular values at this one (1, nq) are returned.
-        """
-        K = self._problem.jacobian(q)
-        (_, A, Z), *_ = self._free_motions(K, E)
-        free = K.shape[2] - K.shape[1] if Z is None else Z.shape[2]
-        values = np.linalg.svd(A[0], compute_uv=False) if A.size else np.empty(0)
-        rank = int(numerical_ranks(values[None])[0])
-        met = -free, rank, float(values[rank - 1]) if rank else 0.0
-        before = self._farthest.get(element, (-self._problem.tree.nv, 0, 0.0))
-        self._farthest[element] = max(before, met)
-        return np.asarray(values[:free])
+        return ("steps" if self._exhausted[element] else "local minimum"), ()
 
     def _moved(self, q: Matrix, v: Matrix) -> Matrix:
         return self._clipped(self._problem.tree.integrate(q, v))
@@ -407,7 +448,7 @@ class _Search:
         both = np.sqrt(np.add.reduce(np.square(self._by_frame(e)), axis=3))
         return self._spaces.length * both[:, :, 0], both[:, :, 1]
 
-    def _reached(self, e: Matrix) -> Mask:
-        """Whether (b,) every frame is at its target within the tolerance."""
+    def _reached(self, e: Matrix, near: Vector | None = None) -> Mask:
+        """Whether (b,) every frame is at its target within the tolerance, or within other bounds, squared."""
         squared = np.add.reduce(np.square(e).reshape(len(e), len(self._near), 3), axis=2)
-        return np.asarray(np.logical_and.reduce(squared <= self._near, axis=1))
+        return np.asarray(np.logical_and.reduce(squared <= (self._near if near is None else near), axis=1))

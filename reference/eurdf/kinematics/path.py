@@ -101,9 +101,7 @@ def follow_given(
         expected = tree.integrate(here, column(h) * v)
         expected[:, coordinates] = at
         closed = close(problem, expected, tolerance)
-        corrected = square(tree.difference(expected, closed.q) / scale)
-        allowed = at_least((MOST_CORRECTION * h) ** 2 * square(motion), LEAST_CORRECTION**2)
-        accepted = as_numbers(closed.closes) & (corrected <= allowed)
+        accepted = as_numbers(closed.closes) & is_short(problem, expected, closed.q, h * h * square(motion))
         if every(accepted):
             q[on] = closed.q
             return h, accepted
@@ -113,6 +111,19 @@ def follow_given(
         return choose(lost, 0.0, h), accepted
 
     return q, follow(advance, len(first), shortest=shortest), stopped
+
+
+def is_short(problem: Problem, expected: Matrix, closed: Matrix, squared: Numbers) -> Numbers:
+    """Whether steps were short enough to stay on the branch: closing the loops after them moved the joints little.
+
+    Args:
+        problem: The robot.
+        expected: Where the steps led (B, nq).
+        closed: The configurations (B, nq) after the loops were closed.
+        squared: Squared norms (B,) of the steps, dimensionless.
+    """
+    corrected = square(problem.tree.difference(expected, closed) / problem.spaces.scale)
+    return corrected <= at_least(MOST_CORRECTION**2 * squared, LEAST_CORRECTION**2)
 
 
 def _followed(problem: Problem, q: Matrix, driven: Matrix, free: Problem | None) -> Matrix:

@@ -15,6 +15,7 @@ from typing import Any, TypeGuard, TypeVar
 import numpy as np
 
 from eurdf.array import Matrix
+from eurdf.blas import MANY_VELOCITIES, ONE_THREAD
 from eurdf.pinocchio.memory import Cached
 
 _FLOATS = np.dtype(np.float64)
@@ -55,11 +56,8 @@ def checked_array(name: str, given: Any, *shapes: tuple[int, ...]) -> Matrix:
 
 def all_finite(values: Matrix) -> bool:
     """Whether all numbers are finite."""
-    # The squares tell it sooner, unless they overflow; unlike dot, vdot does not warn. For many values BLAS would start
-    # threads, which wait long for each other on a busy machine.
-    if values.size < _MANY and math.isfinite(np.vdot(values, values)):
-        return True
-    return bool(np.isfinite(values).all())
+    # The squares tell it sooner, unless they overflow; unlike dot, vdot does not warn. Many BLAS divides among threads.
+    return (values.size < _MANY and math.isfinite(np.vdot(values, values))) or bool(np.isfinite(values).all())
 
 
 def checked_count(name: str, given: Any, least: int) -> int:
@@ -107,12 +105,19 @@ def checked_data(model: Any, data: Any) -> Any:
 
 
 def accepting(function: Callable[..., _Result], as_robot: Callable[[Any], Any]) -> Callable[..., _Result]:
-    """A function whose first argument, the robot, may also be something of which a robot is made first."""
+    """A function whose first argument, the robot, may also be something of which a robot is made first.
+
+    While it computes, BLAS has one thread, if the robot is large.
+    """
 
     @wraps(function)
     def of_any(robot: Any, *args: Any, **options: Any) -> _Result:
-        # That it is a robot is known sooner than that it is a path.
-        return function(robot if isinstance(robot, Cached) else as_robot(robot), *args, **options)
+        if not isinstance(robot, Cached):  # which is known sooner than that it is a path
+            robot = as_robot(robot)
+        if robot.tree.nv < MANY_VELOCITIES:
+            return function(robot, *args, **options)
+        with ONE_THREAD:
+            return function(robot, *args, **options)
 
     return of_any
 

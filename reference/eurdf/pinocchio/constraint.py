@@ -2,30 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable
 
 import numpy as np
 import pinocchio as pin
 
-from eurdf.closures.frame import FrameClosure
-from eurdf.closures.hinge import HingeClosure
-from eurdf.closures.point import PointClosure
+from eurdf.closures.kind import ClosureKind, Contact
 from eurdf.errors import NoConstraintModel
+from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Constraint
-from eurdf.mechanism.pose import Vector3, direction
 from eurdf.pinocchio.tree import Tree
 from eurdf.pinocchio.tree_few import Site
 
-#: Number of constraint models of each kind of constraint.
-_NUMBER: Mapping[type[Constraint], int] = {PointClosure: 1, FrameClosure: 1, HingeClosure: 2}
 
-#: Distance of the point on the axis of a hinge from its origin, m.
-_ON_AXIS = 0.1
-
-
-def number_of_models(constraint: Constraint) -> int:
-    """Number of constraint models that Pinocchio needs for a constraint; 0 if it has none for its kind."""
-    return _NUMBER.get(type(constraint), 0)
+def contacts_of(constraint: Constraint) -> tuple[Contact, ...]:
+    """What Pinocchio has a constraint model for each of; nothing if it has none for the kind of the constraint."""
+    return constraint.contacts() if isinstance(constraint, ClosureKind) else ()
 
 
 def build_constraint_models(constraints: Iterable[Constraint], tree: Tree) -> list[pin.RigidConstraintModel]:
@@ -40,24 +32,25 @@ def build_constraint_models(constraints: Iterable[Constraint], tree: Tree) -> li
     """
     constraint_models = []
     for constraint in constraints:
-        if not number_of_models(constraint):
+        own = models_of(constraint, tree.model, tree.site)
+        if not own:
             raise NoConstraintModel(constraint.name, constraint.type)
-        ends = [tree.site(anchor) for anchor in constraint.anchors]
-        contact = pin.ContactType.CONTACT_6D if isinstance(constraint, FrameClosure) else pin.ContactType.CONTACT_3D
-        constraint_models.append(_model(constraint.name, contact, tree, ends))
-        if isinstance(constraint, HingeClosure):
-            on_axis = [_along(end, axis) for end, axis in zip(ends, constraint.axes, strict=True)]
-            constraint_models.append(_model(f"{constraint.name}/axis", contact, tree, on_axis))
+        constraint_models += own
     return constraint_models
 
 
-def _along(frame: Site, axis: Vector3) -> Site:
-    """The frame, moved along an axis of its own."""
-    return Site(frame.joint, frame.placement * pin.SE3(np.eye(3), _ON_AXIS * np.array(direction(axis))))
-
-
-def _model(name: str, contact: pin.ContactType, tree: Tree, ends: Iterable[Site]) -> pin.RigidConstraintModel:
-    joints_and_placements = (each for end in ends for each in end)
-    constraint_model = pin.RigidConstraintModel(contact, tree.model, *joints_and_placements, pin.ReferenceFrame.LOCAL)
-    constraint_model.name = name
-    return constraint_model
+def models_of(
+    constraint: Constraint, model: pin.Model, site: Callable[[Anchor], Site]
+) -> list[pin.RigidConstraintModel]:
+    """Those of one constraint, whose frames are at some sites of a model; none for a kind that Pinocchio lacks."""
+    found = []
+    for contact in contacts_of(constraint):
+        ends = []
+        for anchor, point in zip(constraint.anchors, (contact.a, contact.b), strict=True):
+            joint, placement = site(anchor)
+            ends += [joint, placement * pin.SE3(np.eye(3), np.array(point))]
+        type_ = pin.ContactType.CONTACT_6D if contact.is_frame else pin.ContactType.CONTACT_3D
+        constraint_model = pin.RigidConstraintModel(type_, model, *ends, pin.ReferenceFrame.LOCAL)
+        constraint_model.name = constraint.name + contact.name
+        found.append(constraint_model)
+    return found

@@ -26,6 +26,9 @@ class TreeDynamics:
         self.model, self.data = model, data
         self._springs = springs
 
+    def update(self) -> None:
+        """Take over what was changed in the model."""
+
     def inverse_dynamics(self, q: Vector, v: Vector, a: Vector) -> Vector:
         """The generalized force (nv,) M a + h that the acceleration a (nv,) takes; with a = 0 the bias h."""
         return np.array(pin.rnea(self.model, self.data, q, v, a))

@@ -31,8 +31,8 @@ class Site(NamedTuple):
 
 Pair = tuple[Site, Site]
 
-# A model of several clusters has at most this many velocities, ...
-_BUNDLED = 40
+#: A model of several clusters has at most this many velocities, ...
+BUNDLED = 40
 # ... and that of one cluster at most this many: its `pin.Data` takes 14 MB.
 _LARGEST = 60
 
@@ -172,16 +172,16 @@ class FewPairs:
 
     def motions(self, q: Matrix, v: Matrix) -> RelativeMotions:
         """How the pairs move at q (B, nq) while every joint keeps its velocity v (B, nv)."""
-        rotation, position = np.empty((len(q), self.count, 3, 3)), np.empty((len(q), self.count, 3))
-        logarithm, twist, change = np.empty((3, len(q), self.count, 6))
-        self._at = None, 0
-        for element in range(len(q)):
-            for bundle in self._bundles:
-                for pair, aMb, xi, rate in bundle.motions(q[element], v[element]):
-                    at = element, pair
-                    rotation[at], position[at], logarithm[at] = aMb.rotation, aMb.translation, pin.log6(aMb).vector
-                    twist[at], change[at] = xi.vector, rate.vector
-        return RelativeMotions(PoseArrays(rotation, position, logarithm), twist, change)
+        if len(q) == 1 and len(self._bundles) == 1:
+            found = self._bundles[0].motions(q[0], v[0])[:, None]
+        else:
+            found = np.empty((2, len(q), self.count, 6))
+            for element in range(len(q)):
+                for bundle in self._bundles:
+                    found[:, element, bundle.which] = bundle.motions(q[element], v[element])
+        if len(q) != 1 or self._at[0] is not q:
+            self._at = None, 0
+        return RelativeMotions(self.at(q), *found)
 
 
 def _bundled(model: pin.Model, paths: Iterable[set[int]]) -> Iterator[tuple[list[int], set[int]]]:
@@ -215,7 +215,7 @@ def _bundled(model: pin.Model, paths: Iterable[set[int]]) -> Iterator[tuple[list
             raise NotImplementedError("these loops share too many joints")
         if not all(model.nvs[joint] for joint in joints):
             raise NotImplementedError("mimic joints have columns of their own in Pinocchio's Jacobians")
-        if size and own and size + own > _BUNDLED:
+        if size and own and size + own > BUNDLED:
             yield open_
             open_, size = ([], set()), 0
         open_[0].extend(which)
@@ -249,6 +249,11 @@ class _Bundle:
         self.which = which
         self._pairs = [tuple(Site(index.get(end.joint, 0), end.placement) for end in pairs[each]) for each in which]
         self._model, self._data = small, small.createData()
+        # References to what Pinocchio writes, since each attribute takes time.
+        oMi, v, a = self._data.oMi, self._data.v, self._data.a
+        ends = {end.joint for pair in self._pairs for end in pair} - {0}
+        self._ends = [(joint, oMi[joint], v[joint], a[joint]) for joint in ends]
+        self._still = pin.SE3.Identity(), pin.Motion.Zero(), pin.Motion.Zero()
         self._coordinates = _joined(model.idx_qs, model.nqs, joints)
         self._velocities = _joined(model.idx_vs, model.nvs, joints)
         column = {velocity: at for at, velocity in enumerate(velocities)}
@@ -297,22 +302,24 @@ class _Bundle:
             self._within[key] = as_slice(chosen), slice(first, last)
         return self._within[key]
 
-    def motions(self, q: Vector, v: Vector) -> Iterator[tuple[int, Any, Any, Any]]:
-        """Of each pair its index, ᴬM_B, the twist ξ of B against A in the axes of B, and ξ̇.
+    def motions(self, q: Vector, v: Vector) -> Matrix:
+        """The twists ξ of B against A in the axes of B, and ξ̇: (2, k, 6).
 
-        With V and A the twists and spatial accelerations of the frames, each in its own axes, and M = ᴬM_B,
-        ξ = V_B - Ad(M⁻¹) V_A, and ξ̇ = A_B - Ad(M⁻¹) A_A + ξ × Ad(M⁻¹) V_A.
+        With V and A the twists and spatial accelerations of the joints of both frames, in the axes of the world, and
+        M the pose of B there, ξ = Ad(M⁻¹) (V_B - V_A) and ξ̇ = Ad(M⁻¹) (A_B - A_A - V_B × (V_B - V_A)).
         """
         data = self._data
         pin.forwardKinematics(self._model, data, q[self._coordinates], v[self._velocities], np.zeros(self._model.nv))
-        for which, ends in zip(self.which, self._pairs, strict=True):
-            (oMa, twist_a, change_a), (oMb, twist_b, change_b) = (
-                (data.oMi[joint] * jMf, jMf.actInv(data.v[joint]), jMf.actInv(data.a[joint])) for joint, jMf in ends
-            )
-            aMb = oMa.actInv(oMb)
-            carried = aMb.actInv(twist_a)
-            twist = twist_b - carried
-            yield which, aMb, twist, change_b - aMb.actInv(change_a) + twist.cross(carried)
+        moves = {0: self._still}
+        for joint, oMi, own, change in self._ends:
+            moves[joint] = oMi, oMi.act(own), oMi.act(change)
+        twists, changes = [], []
+        for (a, _), (b, jMb) in self._pairs:
+            (_, twist_a, change_a), (oMi, twist_b, change_b) = moves[a], moves[b]
+            oMb, twist = oMi * jMb, twist_b - twist_a
+            twists.append(oMb.actInv(twist).vector)
+            changes.append(oMb.actInv(change_b - change_a - twist_b.cross(twist)).vector)
+        return np.array((twists, changes))
 
 
 def as_slice(indices: Indices) -> slice | Indices:

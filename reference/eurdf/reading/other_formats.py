@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any, NamedTuple
-
-from lxml import etree
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from eurdf.diagnostics import FileError, Place
+
+if TYPE_CHECKING:
+    from lxml import etree
 
 _CLOSURES = (
     "write each loop under 'closures' in the description: "
