@@ -141,7 +141,7 @@ def descend(
             else:
                 stale = stale[going]
         if stale is None:
-            A = [group.jacobian(each) for group, each in zip(groups, at, strict=True)]
+            A = list(map(Group.jacobian, groups, at))
         elif some(stale):
             for group, own in zip(groups, A, strict=True):
                 own[stale] = group.among(stale).jacobian_at(q[stale])
