@@ -97,7 +97,7 @@ def test_alike_groups_together_equal_each_by_itself(
     path = write(tmp_path, *four_bars(25, in_series))
     found = []
     for many in (3, 1000):
-        monkeypatch.setattr("eurdf.kinematics.problem._MANY", many)
+        monkeypatch.setattr("eurdf.kinematics.problem.MANY_ALIKE", many)
         loaded = eurdf.load(path, geometry=False)
         random = np.random.default_rng(0)
         away = np.tile([0.9, -0.7, 1.9], 25) + random.uniform(-spread, spread, loaded.model.nv)

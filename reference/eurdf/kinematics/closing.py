@@ -14,7 +14,7 @@ import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix
 from eurdf.kinematics.descend import Descended, descend, evaluated
-from eurdf.kinematics.group import Pairs, Stack
+from eurdf.kinematics.group import Stack, StackElements
 from eurdf.kinematics.position_limit import PositionLimits
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import norms
@@ -165,7 +165,7 @@ class _Closing:
     def _descend_pairs(self, stack: Stack, is_open: Mask, away: list[Matrix] | None, longest: Indices) -> None:
         """Descend the open groups (B, g) of a stack at once, and keep where they lead."""
         index, element = np.nonzero(is_open.T)  # by group, as what is drawn
-        pairs = Pairs(stack, self._q, element, index)
+        pairs = StackElements(stack, self._q, element, index)
         place = pairs.start()
         if away is not None:
             drawn = [away[member] for member in stack.members.tolist() if len(away[member])]

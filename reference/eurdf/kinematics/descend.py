@@ -101,7 +101,7 @@ def descend(
 
     Args:
         problem: The robot, or a stack of its groups.
-        groups: The groups, each a `Group`; of a stack its `Pairs`, which are the elements.
+        groups: The groups, each a `Group`; of a stack its `StackElements`, which are the elements.
         q: Where to start (B, nq).
         tolerance: A descent ends where the norm of the residual is at most this, m and rad.
         limits: The position limits to respect, or None.
@@ -141,7 +141,7 @@ def descend(
             else:
                 stale = stale[going]
         if stale is None:
-            A = list(map(Group.jacobian, groups, at))
+            A = [group.jacobian(each) for group, each in zip(groups, at, strict=True)]
         elif some(stale):
             for group, own in zip(groups, A, strict=True):
                 own[stale] = group.among(stale).jacobian_at(q[stale])

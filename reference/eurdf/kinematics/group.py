@@ -181,19 +181,19 @@ class Stack:
         x, sure = least_solution(A.reshape(-1, *A.shape[2:]), b.reshape(-1, *b.shape[2:]), norm.ravel())
         return x.reshape(*A.shape[:2], *x.shape[1:]), sure.reshape(A.shape[:2])
 
-    def exceeds(self, own: Matrix, groups: Sequence[Pairs], limits: PositionLimits) -> bool:
+    def exceeds(self, own: Matrix, groups: Sequence[StackElements], limits: PositionLimits) -> bool:
         """As `Problem.exceeds`, at own coordinates (E, c) of pairs."""
         (pairs,) = groups
         return pairs.exceeds(own, limits)
 
-    def moved(self, own: Matrix, groups: Sequence[Pairs], steps: Sequence[Matrix]) -> Matrix:
+    def moved(self, own: Matrix, groups: Sequence[StackElements], steps: Sequence[Matrix]) -> Matrix:
         """As `Problem.moved`: own coordinates (E, c) of pairs after their steps (E, n)."""
         (pairs,), (step,) = groups, steps
         return pairs.moved(own, step)
 
 
-class Pairs:
-    """Pairs of a configuration and a group of a stack. They descend as a `Group` whose elements they are.
+class StackElements:
+    """StackElements of a configuration and a group of a stack. They descend as a `Group` whose elements they are.
 
     Attributes:
         element: Which of the configurations (E,).
@@ -210,9 +210,9 @@ class Pairs:
         self._velocities, self._coordinates = stack.velocities[index], stack.coordinates[index]
         self.row_scale, self.unit = stack.row_scale[index], stack.unit[index]
 
-    def among(self, which: Mask) -> Pairs:
+    def among(self, which: Mask) -> StackElements:
         """Some of them."""
-        return Pairs(self._stack, self._q, self.element[which], self.index[which])
+        return StackElements(self._stack, self._q, self.element[which], self.index[which])
 
     def start(self) -> Matrix:
         """Their own coordinates (E, c)."""

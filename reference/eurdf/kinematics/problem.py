@@ -12,16 +12,13 @@ from eurdf.kinematics.evaluate import evaluator, few_tree, many_tree
 from eurdf.kinematics.group import Group, Stack
 from eurdf.kinematics.loop import LoopGroup, independent_groups, merged, moving_velocities
 from eurdf.kinematics.tangent_space import TangentSpaces
-from eurdf.kinematics.tolerances import MOST_VELOCITIES_AT_ONCE
+from eurdf.kinematics.tolerances import MANY_ALIKE, MOST_VELOCITIES_AT_ONCE
 from eurdf.pinocchio.memory import working_memory
 from eurdf.pinocchio.tree_few import as_slice
 
 if TYPE_CHECKING:
     from eurdf.kinematics.position_limit import PositionLimits
     from eurdf.pinocchio.robot import Robot
-
-# From so many groups of a large robot on that are alike, they are evaluated and solved at once.
-_MANY = 3
 
 # Cost of the residual and Jacobian of one closure, in multiplications.
 _WORK_OF_A_CLOSURE = 3e5
@@ -101,7 +98,7 @@ class Problem:
         return tuple(
             Stack.of_groups(self.tree, members, groups, self._group(robot, merged([g.loops for g in groups]), True))
             for members in alike.values()
-            if len(members) >= _MANY
+            if len(members) >= MANY_ALIKE
             for groups in [[self.groups[member] for member in members]]
         )
 

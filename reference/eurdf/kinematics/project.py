@@ -19,7 +19,7 @@ from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.named import Named, velocity_of
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.residual import acceleration_drift, residual_and_jacobian
-from eurdf.kinematics.tangent_space import Part, TangentSpaces, metric
+from eurdf.kinematics.tangent_space import SpacePart, TangentSpaces, metric
 from eurdf.kinematics.tolerances import RESTARTS, SOLVED
 from eurdf.pinocchio.arguments import checked_tolerance
 from eurdf.pinocchio.memory import working_memory
@@ -152,7 +152,7 @@ def _step(task: ProjectionTask, q: Matrix, here: Matrix) -> tuple[Matrix, Vector
 
 
 def _derivatives(
-    task: ProjectionTask, q: Matrix, here: Matrix, K: Matrix, parts: Sequence[Part]
+    task: ProjectionTask, q: Matrix, here: Matrix, K: Matrix, parts: Sequence[SpacePart]
 ) -> tuple[list[Matrix], list[Matrix]]:
     """Of each part the slope (b, g, f) and the second derivative (b, g, f, f) of the distance along its basis.
 

@@ -14,14 +14,11 @@ from eurdf.kinematics.loop import LoopGroup, independent_groups
 from eurdf.kinematics.named import Named, velocity_of
 from eurdf.kinematics.rank import inverses, least_by_squares, least_by_values, norms, numerical_ranks, product
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
-from eurdf.kinematics.tolerances import CERTAIN, MOST_VELOCITIES_AT_ONCE
+from eurdf.kinematics.tolerances import CERTAIN, MANY_ALIKE, MOST_VELOCITIES_AT_ONCE
 from eurdf.pinocchio.arguments import checked_array
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
-
-# From so many blocks of one shape on, they are decomposed together; of fewer, each alone takes less time.
-_MANY = 3
 
 _ALONE = np.zeros(1, dtype=np.intp)
 
@@ -40,7 +37,7 @@ class _Block(NamedTuple):
     inverse: Matrix
 
 
-class Part(NamedTuple):
+class SpacePart(NamedTuple):
     """Tangent spaces of b elements in g groups of loops with as many rows m, velocities n and free motions f.
 
     Attributes:
@@ -102,12 +99,12 @@ class TangentSpace:
             inverse[:, group.velocities[:, None], group.rows] = scale[group.velocities, None] * own * rows[group.rows]
         return inverse[0] if self._alone else inverse
 
-    def parts(self, together: bool = False) -> list[Part]:
+    def parts(self, together: bool = False) -> list[SpacePart]:
         """The space by groups of loops that are alike, without what is outside of the loops; or all of it as one."""
         scale, row_scale = self._spaces.scale, self._spaces.row_scale
         if together:
             Z, inverse = (np.reshape(each, (-1, 1, *each.shape[-2:])) for each in (self.basis, self.inverse))
-            return [Part(np.arange(len(scale))[None], np.arange(len(row_scale))[None], Z, inverse)]
+            return [SpacePart(np.arange(len(scale))[None], np.arange(len(row_scale))[None], Z, inverse)]
         alike: dict[tuple[int, int, int], list[_Block]] = {}
         for block in self._blocks:
             alike.setdefault((*block.free.shape[1:], len(block.group.rows)), []).append(block)
@@ -118,7 +115,7 @@ class TangentSpace:
             unit, free = scale[velocities][:, :, None], np.stack([block.free for block in blocks], axis=1)
             Z = free if (unit == 1.0).all() else np.linalg.qr(unit * free)[0]
             inverse = unit * np.stack([block.inverse for block in blocks], axis=1) * row_scale[rows][:, None]
-            found.append(Part(velocities, rows, Z, inverse))
+            found.append(SpacePart(velocities, rows, Z, inverse))
         return found
 
     def nearest(self, W: Matrix, v: Vector) -> Vector:
@@ -145,8 +142,8 @@ class TangentSpace:
         return whole[0] if self._alone else whole
 
 
-class Blocks(NamedTuple):
-    """Blocks of K that have the same numbers m of rows and n of velocities.
+class AlikeBlocks(NamedTuple):
+    """AlikeBlocks of K that have the same numbers m of rows and n of velocities.
 
     Attributes:
         rows: Their rows (g, m).
@@ -165,7 +162,7 @@ class Blocks(NamedTuple):
     is_whole: bool
 
     @classmethod
-    def of_units(cls, rows: Indices, velocities: Indices, row_scale: Vector, scale: Vector) -> Blocks:
+    def of_units(cls, rows: Indices, velocities: Indices, row_scale: Vector, scale: Vector) -> AlikeBlocks:
         """Take where the blocks are, and the units of all rows and velocities."""
         weights, unit = row_scale[rows], scale[velocities]
         with np.errstate(over="ignore", invalid="ignore"):  # lengths such as 1e200 m
@@ -206,13 +203,13 @@ class TangentSpaces:
         self.alike = [
             (
                 groups,
-                Blocks.of_units(
+                AlikeBlocks.of_units(
                     np.array([group.rows for group in groups]), np.array([group.velocities for group in groups]), *units
                 ),
             )
             for groups in alike.values()
         ]
-        self.whole = Blocks.of_units(np.arange(len(units[0]))[None], np.arange(len(units[1]))[None], *units)
+        self.whole = AlikeBlocks.of_units(np.arange(len(units[0]))[None], np.arange(len(units[1]))[None], *units)
 
     @cached_property
     def dimensionless(self) -> Matrix:
@@ -251,7 +248,7 @@ class TangentSpaces:
         """The spaces of so many K, by their ranks, from their dimensionless blocks."""
         decomposed: list[tuple[LoopGroup, _Decomposed]] = []
         for (groups, _), own in zip(self.alike, blocks, strict=True):
-            if count == 1 and len(groups) < _MANY:
+            if count == 1 and len(groups) < MANY_ALIKE:
                 each_of = [_decomposed(block[None]) for block in own[0]]
             else:
                 parts = _decomposed(own.reshape(-1, *own.shape[2:]))
@@ -269,7 +266,7 @@ class TangentSpaces:
 
 
 class _Decomposed(NamedTuple):
-    """Blocks (b, m, n) of K, decomposed.
+    """AlikeBlocks (b, m, n) of K, decomposed.
 
     Attributes:
         right: Orthonormal bases (b, n, n): after the first columns, as many as the rank, they span the free motions.

@@ -56,6 +56,8 @@ RESTARTS = 20
 MOST_WORK = 1e10
 #: Above this many velocities, all loops with one damping take longer than each group of loops with its own.
 MOST_VELOCITIES_AT_ONCE = 60
+#: From so many groups of loops on that are alike, computing them together takes less time than each alone.
+MANY_ALIKE = 3
 
 # Steps along a path.
 
