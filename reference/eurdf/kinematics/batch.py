@@ -18,8 +18,8 @@ from pinocchio import LOCAL
 
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.errors import NumericalOverflow
-from eurdf.kinematics.assembly import close
 from eurdf.kinematics.blocks import Progress, blocks, checked_configurations, checked_rows, shape_of, starts
+from eurdf.kinematics.closing import close
 from eurdf.kinematics.evaluate import Evaluator, evaluator, frames
 from eurdf.kinematics.forward import driving_many, given_many, goals, in_equilibrium, moved_many
 from eurdf.kinematics.frame_jacobian import checked_reference

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
-from eurdf.kinematics.assembly import close
+from eurdf.kinematics.closing import close
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import Numbers, as_numbers, at_least, choose, column, every, largest, numbers, some, square
 from eurdf.kinematics.tolerances import (

@@ -57,8 +57,10 @@ RESTARTS = 20
 #: Bound of the multiplications in the steps of one assembly, about five seconds. Groups with hundreds of shared joints
 #: end before all restarts; a group with a single step above this bound is not tried.
 MOST_WORK = 1e10
-#: Above this many velocities, closing all loops at once takes longer than one group after the other.
+#: Above this many velocities, all loops with one damping take longer than each group of loops with its own.
 MOST_VELOCITIES_AT_ONCE = 60
+#: From so many groups of loops on that are alike, computing them together takes less time than each alone.
+MANY_ALIKE = 3
 
 # Steps along a path.
 
