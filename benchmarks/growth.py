@@ -1,12 +1,15 @@
-"""How time grows with the size of a robot: reading and loading by links; load, check, assemble and analyze by loops.
+"""How time grows with the size of a robot: reading and loading by links; all else by loops.
 
 Links are in chains of ten; Pinocchio's own parser, which recurses, crashes on one chain of 10,000. Loops are those of
-100 to 1,000 independent four-bars, side by side on the ground or each on the rocker of the one before. The exponent p
-of time ~ loops^p is fitted: 1 is linear. The models of Pinocchio are quadratic by themselves, and measured apart.
+independent four-bars, side by side on the ground or each on the rocker of the one before: 100 to 1,000 for what is done
+once, 10 to 300 for what is done at each configuration. The exponent p of time ~ loops^p is fitted: 1 is linear; the
+steepest one is that of two neighbouring sizes. The models of Pinocchio are quadratic by themselves, and measured apart;
+so are its dynamics of chains in series.
 """
 
 from __future__ import annotations
 
+import itertools
 import tempfile
 import time
 from collections.abc import Callable, Sequence
@@ -17,6 +20,8 @@ import pinocchio as pin
 
 import eurdf
 from benchmarks.loops import four_bars
+from benchmarks.robots import chain
+from eurdf.kinematics.evaluate import frames
 from eurdf.linking.robot_files import read_robot
 from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.joint import Joint
@@ -28,6 +33,7 @@ from eurdf.pinocchio.tree import build_tree
 
 SIZES = (10, 100, 1000, 4000)
 LOOPS = (100, 200, 500, 1000)
+MOVING_LOOPS = (10, 30, 100, 300)
 
 
 def forest(links: int, length: int = 10) -> str:
@@ -141,7 +147,53 @@ def by_loops() -> None:
         print(f"{'exponent':>8} " + " ".join(f"{p:11.2f}" for p in fitted))
 
 
+def motions(robot: eurdf.Robot, dynamics: bool) -> dict[str, Callable[[], object]]:
+    """What is done at each configuration of a chain, by name."""
+    q, random, nv = eurdf.assemble(robot).q, np.random.default_rng(0), robot.model.nv
+    near = q + random.uniform(-0.05, 0.05, nv)
+    others = itertools.cycle((q, near))  # that of the last call is remembered
+    v = eurdf.project_velocity(robot, q, random.uniform(-1.0, 1.0, nv))
+    given = q[robot.actuation.idx_q] + 0.05
+    frame = robot.mechanism.bodies[-1].name
+    there = frames(robot, [frame], few=True).at(eurdf.forward_kinematics(robot, given, q)[None])
+    targets = {frame: pin.SE3(there.rotation[0, 0], there.position[0, 0])}
+    found: dict[str, Callable[[], object]] = {
+        "residual": lambda: eurdf.residual(robot, next(others)),
+        "K": lambda: eurdf.residual_and_jacobian(robot, next(others)),
+        "assemble": lambda: eurdf.assemble(robot, near),
+        "forward": lambda: eurdf.forward_kinematics(robot, given, q),
+        "inverse": lambda: eurdf.inverse_kinematics(robot, targets, q),
+        "project q": lambda: eurdf.project_configuration(robot, near),
+        "project v": lambda: eurdf.project_velocity(robot, q, v),
+    }
+    if dynamics:
+        a = eurdf.forward_dynamics(robot, q, v).a
+        found["forward dyn."] = lambda: eurdf.forward_dynamics(robot, q, v)
+        found["inverse dyn."] = lambda: eurdf.inverse_dynamics(robot, q, v, a)
+        found["10 steps"] = lambda: eurdf.simulate(robot, q, v, duration=1e-2)
+    return found
+
+
+def by_motion() -> None:
+    """Print tables, in ms, and the exponents."""
+    for in_series in (False, True):
+        times: dict[str, list[float]] = {}
+        for count in MOVING_LOOPS:
+            for name, function in motions(chain(count, in_series), not in_series).items():
+                times.setdefault(name, []).append(best(function, 0.3))
+        print(f"\nfour-bars {'in series' if in_series else 'side by side'}, ms")
+        print(
+            f"{'loops':>12} " + " ".join(f"{count:>9}" for count in MOVING_LOOPS) + f" {'exponent':>9} {'steepest':>9}"
+        )
+        for name, own in times.items():
+            pairs = zip(itertools.pairwise(MOVING_LOOPS), itertools.pairwise(own), strict=True)
+            steepest = max(exponent(*pair) for pair in pairs)
+            cells = " ".join(f"{seconds * 1e3:9.3f}" for seconds in own)
+            print(f"{name:>12} {cells} {exponent(MOVING_LOOPS, own):9.2f} {steepest:9.2f}")
+
+
 def main() -> None:
     """Print the tables."""
     by_links()
     by_loops()
+    by_motion()

@@ -8,6 +8,7 @@ import struct
 import tempfile
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -417,16 +418,26 @@ def test_angles_of_description_in_degrees_are_reported(tmp_path: Path, yaml: str
     assert [(each.code, each.pointer) for each in found] == ([("x-angle-in-degrees", pointer)] if pointer else [])
 
 
-def test_robot_in_millimetres_is_reported_once(advice) -> None:
-    def scaled(urdf: str) -> str:
-        tree = etree.fromstring(urdf.encode())
-        for origin in tree.iter("origin"):
-            if origin.get("xyz"):
-                origin.set("xyz", " ".join(repr(1000.0 * float(number)) for number in origin.get("xyz").split()))
-        return etree.tostring(tree).decode()
+def scaled(urdf: str, size: float) -> str:
+    tree = etree.fromstring(urdf.encode())
+    for origin in tree.iter("origin"):
+        if origin.get("xyz"):
+            origin.set("xyz", " ".join(repr(size * float(number)) for number in origin.get("xyz").split()))
+    return etree.tostring(tree).decode()
 
+
+@pytest.mark.parametrize(("size", "expected"), [(1e-4, 1), (1e-2, 0)])
+def test_robot_below_a_millimetre_is_reported(advice, size: float, expected: int) -> None:
+    found = [each for each in advice("five_bar_6d", urdf=partial(scaled, size=size)) if each.code == "x-tiny-robot"]
+    assert len(found) == expected
+    for each in found:
+        assert "and no length of the robot is larger" in each.message
+        assert each.pointer.endswith("/origin/@xyz")
+
+
+def test_robot_in_millimetres_is_reported_once(advice) -> None:
     for name in ("talos_leg", "delta", "stewart_platform"):
-        found = advice(name, urdf=scaled)
+        found = advice(name, urdf=partial(scaled, size=1000.0))
         lengths = [each for each in found if each.code == "x-length-in-millimetres"]
         assert len(lengths) == 1
         assert "all links weigh" in lengths[0].message

@@ -149,7 +149,7 @@ def test_impossible_loops_are_given_up_in_time(tmp_path: Path, monkeypatch: pyte
     robot = load_changed(tmp_path, '<origin xyz="0.6 -0.3 0.1"/>', '<origin xyz="60 -0.3 0.1"/>', assembled=False)
     whole = eurdf.assemble(robot)
     assert not whole.closes
-    monkeypatch.setattr("eurdf.kinematics.assembly.MOST_WORK", 1e6)
+    monkeypatch.setattr("eurdf.kinematics.closing.MOST_WORK", 1e6)
     cut = eurdf.assemble(robot)
     assert not cut.closes
     assert cut.iterations < whole.iterations / 4

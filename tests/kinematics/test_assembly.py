@@ -318,3 +318,20 @@ def test_published_robot_that_cannot_close_ends_in_bounded_steps() -> None:
     assert assembly.residual == pytest.approx(FACTS["kangaroo_like"]["residual"], rel=0.05)
     closed = [opening.name for opening in assembly.open if max(opening.position, opening.angle) < 1e-9]
     assert 0 < len(closed) < len(assembly.open)
+
+
+@given(size=st.floats(-6.5, 4.0), seed=st.integers(0, 2**32 - 1))
+@settings(max_examples=30, deadline=None)
+def test_closed_loops_are_closed_relative_to_the_size_of_the_robot(size: float, seed: int) -> None:
+    linkage = n_bar(4, "3d", away=0.7, size=10.0**size)
+    assembly = assemble(linkage, 0.7 + np.random.default_rng(seed).uniform(-0.3, 0.3, 3))
+    assert assembly.closes
+    assert assembly.open[0].position <= 1e-6 * 10.0**size
+
+
+@pytest.mark.parametrize("size", [4e-7, 1e-4, 1.0])
+def test_loop_that_is_too_short_does_not_close_at_any_size(size: float) -> None:
+    bars = [("R", (0.0, 0.0, 0.0), Z), ("R", (1.0, 0.0, 0.0), Z)]
+    linkage = loop(bars, "3d", (2.0, 0.0, 0.0), size=size)
+    assembly = assemble(pulled_apart(linkage, translation(2.5 * size, 0.0, 0.0)))
+    assert (assembly.closes, assembly.converged) == (False, False)

@@ -253,6 +253,17 @@ def test_numbers_that_overflow_leave_others_alone() -> None:
     assert moved_by.converged[[0, 2]].all()
 
 
+@pytest.mark.parametrize(("name", "reason"), [("delta", "blocked"), ("digit_leg", None)])
+def test_joints_do_not_go_round_thousands_of_times(name: str, reason: str | None) -> None:
+    # Not step by step: outside of the loops, as the first joint of the leg is, in one; in them, not at all.
+    robot = robot_called(name)
+    values, _ = eurdf.split_configuration(robot, eurdf.assemble(robot).q)
+    many = np.tile(values, (3, 1))
+    many[1, 0] = 1e9
+    found = eurdf.batch.forward_kinematics(robot, many)
+    assert found.reason == (None, reason, None)
+
+
 def test_values_beyond_a_dead_point_say_whether_the_loops_close_there() -> None:
     robot = four_bar(2.5, 2.5, 2.0, "rocker_pin")
     q0 = eurdf.assemble(robot, np.array([1.0, -0.5, 1.7])).q

@@ -85,6 +85,33 @@ def test_kinematics_of_hundred_four_bars_needs_small_data_only(tmp_path: Path, m
     assert max(made) <= 60
 
 
+# -- groups that are alike --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("limits", [False, True])
+@pytest.mark.parametrize(("in_series", "spread"), [(True, 0.3), (False, 2.0)])
+def test_alike_groups_together_equal_each_by_itself(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, in_series: bool, spread: float, limits: bool
+) -> None:
+    """From afar, some of them start again. Where a loop can move, rounding decides how far damped steps move it."""
+    path = write(tmp_path, *four_bars(25, in_series))
+    found = []
+    for many in (3, 1000):
+        monkeypatch.setattr("eurdf.kinematics.problem.MANY_ALIKE", many)
+        loaded = eurdf.load(path, geometry=False)
+        random = np.random.default_rng(0)
+        away = np.tile([0.9, -0.7, 1.9], 25) + random.uniform(-spread, spread, loaded.model.nv)
+        first = eurdf.assemble(loaded, loaded.tree.integrate(loaded.tree.neutral(), away), limits=limits)
+        assert first.closes
+        away = random.uniform(-0.05, 0.05, loaded.model.nv)
+        given = loaded.tree.integrate(first.q, away)[loaded.actuation.idx_q]
+        moved = eurdf.forward_kinematics(loaded, given, first.q)
+        found.append((first.q, first.iterations, moved, eurdf.kinematics.dq_dq_actuated(loaded, moved)))
+        assert len(Problem(loaded).stacks) == (many == 3)
+    for one, other in zip(*found, strict=True):
+        np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-5)
+
+
 # -- the bounds of EU-FIL-002 --------------------------------------------------------------------------------------
 
 
@@ -134,7 +161,7 @@ def test_loops_sharing_too_many_joints_are_skipped(tmp_path: Path, monkeypatch: 
 
 
 def test_skipped_check_is_no_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("eurdf.kinematics.assembly.MOST_WORK", 100.0)
+    monkeypatch.setattr("eurdf.kinematics.closing.MOST_WORK", 100.0)
     path = write(tmp_path, *four_bars(2, in_series=True))
     assert [found.code for found in eurdf.check(path).diagnostics] == ["x-loops-not-checked"]
     loaded = eurdf.load(path, geometry=False)
@@ -152,7 +179,7 @@ def test_large_group_does_not_keep_others_open(tmp_path: Path, monkeypatch: pyte
     loaded = eurdf.load(write(tmp_path, description + around, urdf), geometry=False)
     # A step of the large group exceeds the bound, and all steps of the small ones do not.
     monkeypatch.setattr("eurdf.kinematics.problem._WORK_OF_A_CLOSURE", 1.0)
-    monkeypatch.setattr("eurdf.kinematics.assembly.MOST_WORK", 900.0)
+    monkeypatch.setattr("eurdf.kinematics.closing.MOST_WORK", 900.0)
     assembly = eurdf.assemble(loaded)
     assert assembly.reason == "not decided"
     assert [opening.name for opening in assembly.open if not opening.is_open] == ["loop3", "loop4"]
@@ -233,7 +260,7 @@ def test_search_that_is_cut_short_decides_nothing(tmp_path: Path, monkeypatch: p
     assert whole.reason == "not closed"
     # Enough for the first descents, but not for all restarts.
     work = Problem(loaded).work
-    monkeypatch.setattr("eurdf.kinematics.assembly.MOST_WORK", 65 * work)
+    monkeypatch.setattr("eurdf.kinematics.closing.MOST_WORK", 65 * work)
     cut = eurdf.assemble(loaded)
     assert 10 < cut.iterations < whole.iterations
     assert cut.reason == "not decided"

@@ -11,6 +11,7 @@ import pytest
 
 import eurdf
 from eurdf.errors import StepTooLongWarning
+from eurdf.kinematics.equation_of_motion import EquationOfMotion
 from eurdf.kinematics.project import project_velocity
 from eurdf.kinematics.simulation import simulate
 
@@ -89,3 +90,22 @@ def test_robot_at_rest_is_not_warned_of(duration: float) -> None:
     motion = quiet(robot, q, duration=duration)
     assert motion.energy_error == pytest.approx(0.0, abs=1e-12)
     assert motion.energy_exchanged == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", ["bennett", "excavator", "spherical_four_bar"])
+def test_steps_of_redundant_rows_equal_elimination(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Between steps, redundant rows contradict each other, and no row may lock the mechanism."""
+    eliminated: list[int] = []
+    found, eliminate = [], EquationOfMotion.eliminate
+    monkeypatch.setattr(EquationOfMotion, "eliminate", lambda *given: (eliminated.append(0), eliminate(*given))[1])
+    for by_rows in (True, False):
+        robot = eurdf.load(name, geometry=False)
+        q = eurdf.assemble(robot).q
+        v = project_velocity(robot, q, np.random.default_rng(0).uniform(-1.0, 1.0, robot.model.nv))
+        if not by_rows:
+            monkeypatch.setattr("eurdf.kinematics.independence.Independence.combinations", lambda _: None)
+        found.append(quiet(robot, q, v, duration=0.05, step=1e-3))
+        assert bool(eliminated) != by_rows
+    np.testing.assert_allclose(found[0].q, found[1].q, rtol=0.0, atol=1e-9)
+    np.testing.assert_allclose(found[0].v, found[1].v, rtol=0.0, atol=1e-8)
+    assert found[0].energy_error < 1e-6 * found[0].energy_exchanged

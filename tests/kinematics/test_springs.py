@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import eurdf
-from eurdf.kinematics.assembly import close
+from eurdf.kinematics.closing import close
 from eurdf.kinematics.split import split_configuration
 from eurdf.kinematics.springs import spring_equilibrium
 from support.described import load

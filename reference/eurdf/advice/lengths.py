@@ -1,4 +1,4 @@
-"""Advice on lengths that are so large that they are likely in millimetres."""
+"""Advice on lengths that are so large that they are likely in millimetres, and on robots below a millimetre."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 
+from eurdf.closures import CLOSED
 from eurdf.diagnostics import Diagnostics, Place
 from eurdf.format.urdf.data import Urdf
 from eurdf.linking.mesh_files import place_of_file
@@ -24,12 +25,18 @@ _TIMES = 100.0
 # In kg for each metre of the median of the distances between joints: what weighs more, as a crane does, may be so long.
 _HEAVY = 10.0
 
+# A robot all of whose lengths are below this, in m, is not much larger than closures may be open.
+_SHORT = 1e-3
+
 # A length in m, what it is the length of, and its place.
 _Found = tuple[float, str, Callable[[], Place]]
 
 
 def advise_on_lengths(read: ReadRobot, meshes: Mapping[str, Mesh], diagnostics: Diagnostics) -> None:
-    """Report lengths that are likely in millimetres: of the whole robot, or else single ones far beyond the others."""
+    """Report lengths that are likely in millimetres: of the whole robot, or else single ones far beyond the others.
+
+    And a robot with loops that is smaller than a millimetre.
+    """
     urdf = read.urdf
     joints = [found for found in _between_joints(urdf) if found[0] > 0.0]
     if not joints:
@@ -45,8 +52,17 @@ def advise_on_lengths(read: ReadRobot, meshes: Mapping[str, Mesh], diagnostics: 
             message = f"{what} is {length:.4g} m; the median for all joints is {median:.4g} m{weight}"
             diagnostics.report("x-length-in-millimetres", message, place, _hint(length))
         return
-    in_meshes = list(_of_meshes(urdf, meshes))
-    for of_a_kind in ([*joints, *_centres_of_mass(urdf)], list(_of_description(read)), in_meshes):
+    in_meshes, in_urdf, in_yaml = (
+        list(_of_meshes(urdf, meshes)),
+        [*joints, *_centres_of_mass(urdf)],
+        list(_of_yaml(read)),
+    )
+    length, what, place = max((*in_urdf, *in_yaml), key=lambda found: found[0])
+    if length < _SHORT and read.mechanism.constraints:
+        message = f"{what} is {length:.4g} m, and no length of the robot is larger"
+        hint = f"lengths are in m; closures may be open by {CLOSED:g} m, so state so small a robot in a larger unit"
+        diagnostics.report("x-tiny-robot", message, place, hint)
+    for of_a_kind in (in_urdf, in_yaml, in_meshes):
         long = [found for found in of_a_kind if max(_LONG, _TIMES * median) < found[0] <= _MOST]
         if not long:
             continue
@@ -86,7 +102,7 @@ def _centres_of_mass(urdf: Urdf) -> Iterator[_Found]:
             )
 
 
-def _of_description(read: ReadRobot) -> Iterator[_Found]:
+def _of_yaml(read: ReadRobot) -> Iterator[_Found]:
     """The positions of the frames that the description gives."""
     if read.yaml is None:
         return

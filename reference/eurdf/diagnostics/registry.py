@@ -181,6 +181,7 @@ closure-cannot-close       EU-CLO-006 error   No configuration closes the loops.
 advice:
 x-angle-in-degrees         An angle is probably in degrees, because it is large.
 x-length-in-millimetres    A length is probably in millimetres, because it is large.
+x-tiny-robot               No length of a robot with closures reaches a millimetre.
 x-quaternion-order         A quaternion is probably in the order w, x, y, z.
 x-no-actuator              A robot with closures has no actuator.
 x-shaky-loops              Loops can move to first order only; they are rigid.

@@ -18,8 +18,8 @@ from pinocchio import LOCAL
 
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.errors import NumericalOverflow
-from eurdf.kinematics.assembly import close
 from eurdf.kinematics.blocks import Progress, blocks, checked_configurations, checked_rows, shape_of, starts
+from eurdf.kinematics.closing import close
 from eurdf.kinematics.evaluate import Evaluator, evaluator, frames
 from eurdf.kinematics.forward import driving_many, given_many, goals, in_equilibrium, moved_many
 from eurdf.kinematics.frame_jacobian import checked_reference
@@ -357,7 +357,7 @@ def actuated_jacobian(
     driven = for_many(robot, robot.actuation.idx_v.tolist())
     task = JacobianTask(model, driven, frames(robot, [frame], few=False), checked_reference(reference), W)
     rows = checked_configurations(robot, "q", q)
-    work = blocks(model.numbers + 20 * model.tree.nv, block, threads, executor, progress)
+    work = blocks(2 * model.numbers + 40 * model.tree.nv, block, threads, executor, progress)
     jacobian, dependent = work.map(actuated_jacobians, task, (rows,))
     finite = np.isfinite(jacobian).all(axis=(1, 2))
     jacobian[dependent | ~finite] = np.nan

@@ -13,8 +13,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
+from eurdf.kinematics.group import Stack
 from eurdf.kinematics.position_limit import PositionLimits
-from eurdf.kinematics.problem import Group, Problem
+from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import (
     Numbers,
     at_least,
@@ -89,8 +90,8 @@ def next_damping(damping: Numbers, gain: Numbers) -> Numbers:
 
 
 def descend(
-    problem: Problem,
-    groups: Sequence[Group],
+    problem: Problem | Stack,
+    groups: Sequence[Any],
     q: Matrix,
     tolerance: float,
     limits: PositionLimits | None = None,
@@ -99,8 +100,8 @@ def descend(
     """Steps of groups that go together, with one damping.
 
     Args:
-        problem: The robot.
-        groups: The groups.
+        problem: The robot, or a stack of its groups.
+        groups: The groups, each a `Group`; of a stack its `StackElements`, which are the elements.
         q: Where to start (B, nq).
         tolerance: A descent ends where the norm of the residual is at most this, m and rad.
         limits: The position limits to respect, or None.
@@ -134,15 +135,16 @@ def descend(
                 break
             on, q, r, A, b = on[going], q[going], *([each[going] for each in of] for of in (r, A, b))
             error, squared, damping, more, idle = error[going], squared[going], damping[going], more[going], idle[going]
+            groups = [group.among(going) for group in groups]
             if stale is None:
-                at = [group.evaluator.at(q) for group in groups]
+                at = [group.at(q) for group in groups]
             else:
                 stale = stale[going]
         if stale is None:
             A = [group.jacobian(each) for group, each in zip(groups, at, strict=True)]
         elif some(stale):
             for group, own in zip(groups, A, strict=True):
-                own[stale] = group.jacobian_at(q[stale])
+                own[stale] = group.among(stale).jacobian_at(q[stale])
         steps, trial = _steps(problem, groups, A, b, q, damping * squared, limits)
         expected, before = squared - _predicted(A, steps, b), squared
         at, r_there, b_there, error_there, reached = evaluated(groups, trial)
@@ -166,12 +168,12 @@ def descend(
     return ended
 
 
-def evaluated(groups: Sequence[Group], q: Matrix) -> tuple[list[Any], list[Matrix], list[Matrix], Numbers, Numbers]:
+def evaluated(groups: Sequence[Any], q: Matrix) -> tuple[list[Any], list[Matrix], list[Matrix], Numbers, Numbers]:
     """Of each group its state and its residual, as it is and dimensionless; the squares of the norms of all of both."""
     states, residuals, scaled, error, squared = [], [], [], 0.0, 0.0
     for group in groups:
-        at = group.evaluator.at(q)
-        r = group.evaluator.residual(at)
+        at = group.at(q)
+        r = group.residual_of(at)
         b = group.row_scale * r
         states.append(at)
         residuals.append(r)
@@ -197,8 +199,8 @@ def _predicted(A: Sequence[Matrix], steps: Sequence[Matrix], b: Sequence[Matrix]
 
 
 def _steps(
-    problem: Problem,
-    groups: Sequence[Group],
+    problem: Problem | Stack,
+    groups: Sequence[Any],
     A: Sequence[Matrix],
     b: Sequence[Matrix],
     q: Matrix,
@@ -212,9 +214,9 @@ def _steps(
     free = _damped(A, b, damping)
     steps = _shortened(free)
     there = problem.moved(q, groups, steps)
-    if limits is None or not limits.are_exceeded(there):
+    if limits is None or not problem.exceeds(there, groups, limits):
         return steps, there
-    rooms = [limits.room(q, group.own) for group in groups]
+    rooms = [group.room(q, limits) for group in groups]
     rooms = [(down / group.unit, up / group.unit) for (down, up), group in zip(rooms, groups, strict=True)]
     _stay_within(A, b, np.array(damping, ndmin=1), free, rooms)
     steps = [np.minimum(np.maximum(step, down), up) for step, (down, up) in zip(_shortened(free), rooms, strict=True)]

@@ -39,6 +39,7 @@ class ForwardSolver:
         self.rows = tuple(loop.rows for loop in find_loops(robot))
         self._whole: LimbSolver | None = None
         self._limbs: list[LimbSolver] = []
+        self._combinations: Matrix | None = None  # of redundant rows, as many as are independent
         self._own: TreeDynamics | None = None
         if not robot.constraints or len(robot.model.mimicking_joints):
             return
@@ -84,6 +85,7 @@ class ForwardSolver:
         dynamics: TreeDynamics,
         *,
         nearly_closed: bool = False,
+        within_step: bool = False,
     ) -> Acceleration:
         """Solve M a + h = τ + Kᵀ λ and K a + K̇ v = -kd K v - kp r.
 
@@ -96,12 +98,13 @@ class ForwardSolver:
             dynamics: Those of the tree.
             nearly_closed: Whether a drift will do that equals K̇ v only where the constraints hold and K v = 0, as
                 between the steps of an integration, which start and end there.
+            within_step: Whether the state is one between these steps, and the step began at the last one that was not.
 
         Raises:
             UndeterminedMotion: A joint without inertia can move.
             NumericalOverflow: The result is not finite.
         """
-        solution = self.beyond_doubt(q, v, force, gains, dynamics, nearly_closed=nearly_closed)
+        solution = self.beyond_doubt(q, v, force, gains, dynamics, nearly_closed=nearly_closed, within_step=within_step)
         if solution is None:
             solution = _eliminated(robot, q, v, force, gains, dynamics)
         return solution
@@ -115,6 +118,7 @@ class ForwardSolver:
         dynamics: TreeDynamics,
         *,
         nearly_closed: bool = False,
+        within_step: bool = False,
     ) -> Acceleration | None:
         """The solution by Pinocchio's solver, as `solve`; None if it has none, or if the solution is in doubt.
 
@@ -125,13 +129,21 @@ class ForwardSolver:
             return self._by_limbs(q, v, force, gains, dynamics, nearly_closed)
         if solver is None or dynamics.data is None:
             return None
-        a, on_a, J, target = solver.solve(q, v, force, gains, dynamics.data, is_own)
+        found = solver.solve(q, v, force, gains, dynamics.data, is_own)
+        if not within_step:
+            self._combinations = None
+        elif self._combinations is not None:
+            return solver.by_combinations(found, force, dynamics.data, self._combinations)
+        a, on_a, J, target = found
         if not nearly_closed and not solver.is_closed(J, v):
             return None
         if not keeps(a, J, target) or not _balances(dynamics, q, v, a, force, on_a.dot(J)):
             return None
         least = solver.least_forces(J, on_a)
-        return None if least is None else Acceleration(a, solver.in_order(-least))
+        if least is None:
+            return None
+        self._combinations = solver.combinations()
+        return Acceleration(a, solver.in_order(-least))
 
     def _by_limbs(
         self, q: Vector, v: Vector, force: Vector, gains: list[Gains], dynamics: TreeDynamics, nearly_closed: bool

@@ -26,12 +26,14 @@ class _Kept(NamedTuple):
         size: Frobenius' norm of the dimensionless A.
         bound: Its smallest singular value that is not zero, or a bound of it from below.
         null: Orthonormal basis (nc, k) of its left null space: the combinations of rows that are redundant.
+        chosen: Orthonormal rows (rank, nc), which span the other combinations.
     """
 
     K: Matrix
     size: float
     bound: float
     null: Matrix
+    chosen: Matrix
 
 
 class Independence:
@@ -62,7 +64,9 @@ class Independence:
             return False
         if not norm(square.ravel()) * inverse <= INDEPENDENT:
             return False
-        self._kept = _Kept(np.array(K), norm(A.ravel()), 1.0 / math.sqrt(inverse), np.empty((len(K), 0)))
+        self._kept = _Kept(
+            np.array(K), norm(A.ravel()), 1.0 / math.sqrt(inverse), np.empty((len(K), 0)), np.eye(len(K))
+        )
         return True
 
     def least_forces(self, K: Matrix, lambdas: Vector) -> Vector | None:
@@ -85,8 +89,15 @@ class Independence:
         rank = int(np.count_nonzero(values > ZERO * largest))
         if not 0.0 < largest < math.inf or values[rank - 1] ** 2 * INDEPENDENT < largest**2:
             return None
-        kept = self._kept = _Kept(np.array(K), norm(A.ravel()), float(values[rank - 1]), left[:, rank:])
+        kept = self._kept = _Kept(
+            np.array(K), norm(A.ravel()), float(values[rank - 1]), left[:, rank:], left[:, :rank].T
+        )
         return self._without(kept.null, lambdas)
+
+    def combinations(self) -> Matrix | None:
+        """Combinations (rank, nc) of the rows that are independent in the K decomposed last; None if all rows are."""
+        kept = self._kept
+        return kept.chosen * self._row_scale if kept is not None and kept.null.shape[1] else None
 
     def _is_near(self, kept: _Kept, K: Matrix) -> bool:
         """Whether K has at least the rank of the kept one beyond doubt."""

@@ -14,8 +14,8 @@ import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.closures.se3 import velocity_of_origin
-from eurdf.kinematics.assembly import Closed, close
 from eurdf.kinematics.bounded_step import bounded_step, damped_step_within
+from eurdf.kinematics.closing import Closed, close
 from eurdf.kinematics.descend import next_damping
 from eurdf.kinematics.path import Elements, follow, is_short
 from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits
@@ -154,7 +154,7 @@ class _Search:
             self._used = np.flatnonzero(counts)
         self._iterations, self._starts = np.zeros((2, count), dtype=np.intp)
         self._same_branch, self._exhausted = np.ones(count, dtype=bool), np.zeros(count, dtype=bool)
-        self._may_be_certain = True
+        self._may_be_certain = not task.problem.stacks  # of many groups of loops, each is decomposed by itself
 
     def run(self, start: Matrix) -> SearchResult:
         """The configurations found from start (B, nq)."""
@@ -165,7 +165,7 @@ class _Search:
         errors, _ = self._error(start, np.arange(B))
         done = np.logical_and.reduce(clipped == start, axis=1) & self._reached(errors)
         if np.count_nonzero(done):
-            done[done] = self._problem.closes(start[done], CLOSED)
+            done[done] = self._problem.closes(start[done])
             if np.count_nonzero(done) == B:
                 return self._result(best, errors, reason, at_limits)
         going = np.flatnonzero(~done)

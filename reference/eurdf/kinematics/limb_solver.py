@@ -13,14 +13,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eurdf.array import Indices, Matrix, Vector
+from eurdf.kinematics.equation_of_motion import Acceleration
 from eurdf.kinematics.evaluate import Evaluator
 from eurdf.kinematics.independence import Independence, norm
 from eurdf.kinematics.loop import find_loops
-from eurdf.kinematics.rank import inverses
+from eurdf.kinematics.rank import inverses, solutions
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.kinematics.tolerances import CLOSED_FOR_FORCES, FORCES_SOLVED
 from eurdf.pinocchio.constrained_dynamics import ConstrainedDynamics, ConstrainedMotion, Gains
 from eurdf.pinocchio.constraint import contacts_of
+from eurdf.pinocchio.tree_dynamics import whole_matrix
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.limbs import Limb
@@ -113,6 +115,27 @@ class LimbSolver:
     def least_forces(self, J: Matrix, on_a: Vector) -> Vector | None:
         """The f of least norm with the same Jᵀ f; None if the rank of J is in doubt."""
         return self._independence.least_forces(J, on_a) if len(on_a) else on_a
+
+    def combinations(self) -> Matrix | None:
+        """Combinations of redundant rows, as many as are independent where forces were last; None if all rows are."""
+        return self._independence.combinations() if len(self.rows) else None
+
+    def by_combinations(
+        self, found: ConstrainedMotion, force: Vector, data: Any, chosen: Matrix
+    ) -> Acceleration | None:
+        """The solution in which combinations (rank, m) of the rows hold; None if it misses an equation.
+
+        Where the constraints do not quite hold, redundant rows contradict each other: Pinocchio's solver would lock the
+        mechanism.
+        """
+        J, target, M = chosen.dot(found.J), chosen.dot(found.target), whole_matrix(data.M)
+        n, given = len(M), np.concatenate((force - data.nle, target))
+        equations = np.zeros((len(given), len(given)))
+        equations[:n, :n], equations[:n, n:], equations[n:, :n] = M, -J.T, J
+        x = solutions(equations, given)
+        if not is_rounding(norm(equations.dot(x) - given), norm(given)):
+            return None
+        return Acceleration(x[:n], self.in_order(-chosen.T.dot(x[n:])))
 
     def is_closed(self, J: Matrix, v: Vector) -> bool:
         """Whether the constraints hold, and so do their rates, where `solve` was last, of the robot's v (nv,)."""

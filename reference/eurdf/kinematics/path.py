@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
-from eurdf.kinematics.assembly import close
+from eurdf.kinematics.closing import close
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import Numbers, as_numbers, at_least, choose, column, every, largest, numbers, some, square
 from eurdf.kinematics.tolerances import (
@@ -86,12 +87,20 @@ def follow_given(
     path = tree.difference(first, goal)  # zero except for the given joints
     driven, ends = path[:, problem.given], goal[:, coordinates]
     q, stopped = np.array(first), np.zeros(len(first), dtype=bool)
+    distant = np.abs(path / scale) > LONGEST_MOTION / SHORTEST_STEP  # even in the shortest steps
+    is_distant = np.count_nonzero(distant) > 0
+    if is_distant:
+        outside = np.zeros(tree.nv, dtype=bool)  # where a joint moves nothing else, however far it goes
+        outside[problem.spaces.outside] = True
+        turns = np.abs(path / scale) > 2.0 * math.pi / SHORTEST_STEP  # and more than one in the shortest step
+        driven[(turns & ~outside).any(axis=1)] = np.nan
+        distant &= outside
 
     def advance(on: Elements, done: Numbers, h: Numbers) -> tuple[Numbers, Numbers]:
         here = q[on]
         v = _followed(problem, here, driven[on], free)
         motion = v / scale
-        fastest = largest(motion)
+        fastest = largest(np.where(distant[on], 0.0, motion) if is_distant else motion)
         while some(far := (fastest * h > LONGEST_MOTION) & (h > shortest)):
             h = choose(far, 0.5 * h, h)
         to, at = done + h, ends[on]
@@ -107,7 +116,7 @@ def follow_given(
             return h, accepted
         q[on] = np.where(column(accepted), closed.q, here)
         lost = fastest != fastest  # NaN
-        stopped[on] = lost
+        stopped[on] = lost & np.isfinite(driven[on]).all(axis=1)
         return choose(lost, 0.0, h), accepted
 
     return q, follow(advance, len(first), shortest=shortest), stopped

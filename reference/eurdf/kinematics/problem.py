@@ -3,102 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eurdf.array import Indices, Mask, Matrix, Vector
+from eurdf.array import Mask, Matrix
 from eurdf.kinematics.evaluate import evaluator, few_tree, many_tree
+from eurdf.kinematics.group import Group, Stack
 from eurdf.kinematics.loop import LoopGroup, independent_groups, merged, moving_velocities
-from eurdf.kinematics.rank import least_solution, norms, product
 from eurdf.kinematics.tangent_space import TangentSpaces
-from eurdf.kinematics.tolerances import MOST_VELOCITIES_AT_ONCE
+from eurdf.kinematics.tolerances import CLOSED, MANY_ALIKE, MOST_VELOCITIES_AT_ONCE, SMALL
 from eurdf.pinocchio.memory import working_memory
 from eurdf.pinocchio.tree_few import as_slice
 
 if TYPE_CHECKING:
+    from eurdf.kinematics.position_limit import PositionLimits
     from eurdf.pinocchio.robot import Robot
 
 # Cost of the residual and Jacobian of one closure, in multiplications.
 _WORK_OF_A_CLOSURE = 3e5
-
-
-@dataclass(frozen=True, eq=False)
-class Group:
-    """Loops that are closed together, and the velocities that close them.
-
-    Attributes:
-        loops: The loops.
-        by: Indices in v of the given velocities that move them.
-        evaluator: Evaluates their constraints by their own velocities, followed by the given ones.
-        row_scale: Factors (m,) that make their rows dimensionless.
-        unit: Unit (n,) of each of their own velocities.
-        spread: Ratio of the largest unit of all these velocities to the smallest.
-        work: Multiplications for the smaller of A Aᵀ and Aᵀ A, and for the evaluation of A.
-        own: Indices in v of the velocities that close them.
-        held: A direction (n,) of unit length along which no step moves, or None.
-    """
-
-    loops: LoopGroup
-    by: Indices
-    evaluator: Any
-    row_scale: Vector
-    unit: Vector
-    spread: float
-    work: float
-    own: slice | Indices
-    held: Vector | None = None
-
-    @cached_property
-    def rows(self) -> slice | Indices:
-        """Which rows of the robot's residual are theirs."""
-        return as_slice(self.loops.rows)
-
-    @cached_property
-    def closures(self) -> slice | Indices:
-        """Which of the robot's constraints are theirs."""
-        return as_slice(np.array(self.loops.closures, dtype=np.intp))
-
-    @cached_property
-    def factors(self) -> Matrix:
-        """Factors (m, n) that make K dimensionless."""
-        with np.errstate(over="ignore", invalid="ignore"):
-            return self.row_scale[:, None] * self.unit
-
-    def residual(self, q: Matrix) -> Matrix:
-        """Rows (B, m) at q (B, nq), m and rad."""
-        return np.asarray(self.evaluator.residual(self.evaluator.at(q)))
-
-    def jacobian(self, at: Any) -> Matrix:
-        """Their derivative (B, m, n) at configurations that the evaluator was given, dimensionless."""
-        K = self.evaluator.jacobian(at)
-        A: Matrix = (K[:, :, : len(self.unit)] if len(self.by) else K) * self.factors
-        return A if self.held is None else A - (A @ self.held)[:, :, None] * self.held
-
-    def jacobian_at(self, q: Matrix) -> Matrix:
-        """The same at q (B, nq)."""
-        return self.jacobian(self.evaluator.at(q))
-
-    def following(self, q: Matrix, driven: Matrix | None, whole: Matrix | None = None) -> tuple[Matrix, Mask]:
-        """Their own velocities (B, n, k) for given ones (B, g, k), and where (B,) these exist beyond doubt.
-
-        They are the least ones, in rad/s and m/s, for each unit velocity if none are given. ``whole`` is
-        K (B, nc, nv) of the robot, if it is known.
-        """
-        if whole is None:
-            K = self.evaluator.jacobian(self.evaluator.at(q))
-        else:
-            K = whole[:, self.loops.rows[:, None], np.concatenate((self.loops.velocities, self.by))]
-        K = K * self.row_scale[:, None]
-        norm = self.spread * norms(K)
-        own, by = K[:, :, : len(self.unit)], K[:, :, len(self.unit) :]
-        return least_solution(own, -by if driven is None else -product(by, driven), norm)
-
-    def holding(self, direction: Vector) -> Group:
-        """The same group, whose derivative is zero along a direction (n,) of unit length: no step moves along it."""
-        return replace(self, held=direction)
 
 
 class Problem:
@@ -116,7 +39,8 @@ class Problem:
         work: Multiplications in a step of all groups.
         at_once: Whether all loops descend with one damping, before each group does by itself.
         together: The loops as they descend with one damping, if they do.
-        parts: The same loops as their constraints are evaluated fastest: all at once, but in large robots by group.
+        stacks: Many groups of a large robot that are alike, for few elements.
+        parts: The same loops as their constraints are evaluated fastest: all at once, in large robots those alike.
     """
 
     def __init__(self, robot: Robot, given: Sequence[int] = (), *, few: bool = True) -> None:
@@ -135,13 +59,17 @@ class Problem:
         self.work = sum(group.work for group in self.groups)
         small = self.tree.nv <= MOST_VELOCITIES_AT_ONCE
         self.at_once = small and len(loops) > 1
-        self.parts = self.groups
+        self.stacks = self._stacks(robot) if few and not small else ()
+        stacked = {member for stack in self.stacks for member in stack.members.tolist()}
+        self.parts = tuple(stack.part for stack in self.stacks)
+        self.parts += tuple(group for index, group in enumerate(self.groups) if index not in stacked)
         if len(loops) > 1 and (small or not few):
             self.parts = (self._group(robot, merged(loops), few),)
         # One matrix of all loops takes less time for one element; for many, small ones do.
-        self.together = self.parts if few else self.groups
+        self.together = self.parts if few and small else self.groups
+        self._followers = self.parts[len(self.stacks) :] if few else self.groups
         # But their K takes less time to evaluate at once.
-        self._is_evaluated_whole = len(self.parts) < len(self.together)
+        self._is_evaluated_whole = not few and len(self.parts) < len(self.groups)
 
     def _group(self, robot: Robot, loops: LoopGroup, few: bool) -> Group:
         moving = moving_velocities(robot, loops.closures)
@@ -158,6 +86,20 @@ class Problem:
             float(units.max() / units.min()) if len(units) else 1.0,
             float(m) * n * min(m, n) + _WORK_OF_A_CLOSURE * len(loops.closures),
             as_slice(loops.velocities),
+        )
+
+    def _stacks(self, robot: Robot) -> tuple[Stack, ...]:
+        alike: dict[tuple[int, ...], list[int]] = {}
+        for index, group in enumerate(self.groups):
+            loops = group.loops
+            if len(group.unit):
+                size = len(loops.rows), len(loops.velocities), len(loops.coordinates), len(loops.closures)
+                alike.setdefault((*size, len(group.by)), []).append(index)
+        return tuple(
+            Stack.of_groups(self.tree, members, groups, self._group(robot, merged([g.loops for g in groups]), True))
+            for members in alike.values()
+            if len(members) >= MANY_ALIKE
+            for groups in [[self.groups[member] for member in members]]
         )
 
     @property
@@ -196,10 +138,18 @@ class Problem:
             K[:, part.loops.rows[:, None], np.concatenate((part.loops.velocities, part.by))] = block
         return K
 
-    def closes(self, q: Matrix, enough: float) -> Mask:
-        """Whether (B,) every constraint is open by at most ``enough``, m and rad, at q (B, nq); NaN is not closed."""
+    def closes(self, q: Matrix, tolerance: float = 0.0) -> Mask:
+        """Whether (B,) every constraint is closed at q (B, nq); NaN is not.
+
+        It is if it is open by at most `CLOSED`, less in small robots, or by the tolerance, m and rad.
+        """
         lengths, angles = self.openings(q)
-        return np.asarray(np.logical_and.reduce((lengths <= enough) & (angles <= enough), axis=1))
+        short = lengths <= max(CLOSED * min(1.0, self.spaces.length / SMALL), tolerance)
+        return np.asarray(np.logical_and.reduce(short & (angles <= max(CLOSED, tolerance)), axis=1))
+
+    def exceeds(self, q: Matrix, groups: Sequence[Group], limits: PositionLimits) -> bool:
+        """Whether a configuration (B, nq) to which groups have moved is beyond a limit."""
+        return limits.are_exceeded(q)
 
     def moved(self, q: Matrix, groups: Sequence[Group], steps: Sequence[Matrix]) -> Matrix:
         """Configurations (B, nq) after steps (B, n) of groups; lengths are in characteristic lengths."""
@@ -220,7 +170,13 @@ class Problem:
                 return driven @ D[0].T, sure
         v[:, self.given] = driven
         whole = self.jacobian(q) if self._is_evaluated_whole else None
-        for group in self.together:
+        for stack in self.stacks:
+            drive = v[:, stack.by]
+            if np.count_nonzero(drive):
+                solutions, are_sure = stack.following(q, drive[..., None])
+                v[:, stack.velocities] = solutions[..., 0]
+                sure &= (are_sure | ~drive.any(axis=2)).all(axis=1)
+        for group in self._followers:
             if len(group.by) and len(group.unit):
                 drive = driven if len(group.by) == len(self.given) else v[:, group.by]
                 if np.count_nonzero(drive):
@@ -235,7 +191,12 @@ class Problem:
         D, sure = np.empty((len(q), *self._unit_motions.shape)), np.ones(len(q), dtype=bool)
         D[:] = self._unit_motions
         whole = self.jacobian(q) if self._is_evaluated_whole else None
-        for group in self.together:
+        for stack in self.stacks:
+            if stack.by.shape[1]:
+                solutions, are_sure = stack.following(q, None)
+                D[:, stack.velocities[:, :, None], self._place[stack.by][:, None]] = solutions
+                sure &= are_sure.all(axis=1)
+        for group in self._followers:
             if len(group.by) and len(group.unit):
                 solution, is_sure = group.following(q, None, whole)
                 D[:, group.loops.velocities[:, None], self._place[group.by]] = solution

@@ -6,19 +6,20 @@ and Mansard, 2025.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.errors import NotClosable
-from eurdf.kinematics.assembly import assembled, close, start
+from eurdf.kinematics.assembly import assembled, start
+from eurdf.kinematics.closing import close
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.named import Named, velocity_of
 from eurdf.kinematics.problem import Problem
-from eurdf.kinematics.rank import are_finite
 from eurdf.kinematics.residual import acceleration_drift, residual_and_jacobian
-from eurdf.kinematics.tangent_space import TangentSpace, TangentSpaces, metric, nearest
+from eurdf.kinematics.tangent_space import SpacePart, TangentSpaces, metric
 from eurdf.kinematics.tolerances import RESTARTS, SOLVED
 from eurdf.pinocchio.arguments import checked_tolerance
 from eurdf.pinocchio.memory import working_memory
@@ -76,7 +77,7 @@ class ProjectionTask(NamedTuple):
 
     Attributes:
         problem: The robot.
-        W: The metric (nv, nv).
+        W: The metric (nv, nv), or its diagonal (nv,).
         tolerance: Bound of each row of the residual for closed loops, m or rad.
     """
 
@@ -120,13 +121,18 @@ def nearest_closed(task: ProjectionTask, q: Matrix) -> tuple[Matrix, Mask]:
 def _distance(task: ProjectionTask, q: Matrix, at: Matrix) -> Vector:
     """½ xᵀ W x (B,), x = at ⊖ q."""
     x = task.problem.tree.difference(q, at)
-    return np.asarray(0.5 * ((x @ task.W) * x).sum(axis=1))
+    return np.asarray(0.5 * (_weighted(task.W, x) * x).sum(axis=1))
 
 
 def _gradient(task: ProjectionTask, q: Matrix, at: Matrix) -> Matrix:
     """The derivative (B, nv) of `_distance` by the motion of ``at``."""
     tree = task.problem.tree
-    return np.asarray(tree.difference_derivative_times(q, at, tree.difference(q, at) @ task.W))
+    return np.asarray(tree.difference_derivative_times(q, at, _weighted(task.W, tree.difference(q, at))))
+
+
+def _weighted(W: Matrix, x: Matrix) -> Matrix:
+    """W x (B, nv), of a symmetric W."""
+    return x * W if W.ndim == 1 else x @ W
 
 
 def _step(task: ProjectionTask, q: Matrix, here: Matrix) -> tuple[Matrix, Vector]:
@@ -136,36 +142,44 @@ def _step(task: ProjectionTask, q: Matrix, here: Matrix) -> tuple[Matrix, Vector
     v, gain = np.zeros((len(q), problem.tree.nv)), np.zeros(len(q))
     for space in problem.spaces.each(K):
         own: Indices = space.which
-        slope, H = _second_derivatives(task, q[own], here[own], K[own], space)
-        step = _downhill(H, slope)
-        v[own] = (space.basis[:, :, : step.shape[1]] @ step[:, :, None])[:, :, 0]
-        gain[own] = -(slope * step).sum(axis=1)
+        # With a diagonal metric, groups of loops do not depend on each other, and the others have no slope.
+        parts = space.parts(together=task.W.ndim == 2)
+        slopes, second = _derivatives(task, q[own], here[own], K[own], parts)
+        for part, slope, step in zip(parts, slopes, _downhill(second, slopes), strict=True):
+            v[own[:, None, None], part.velocities] = (part.basis @ step[..., None])[..., 0]
+            gain[own] -= (slope * step).sum(axis=(1, 2))
     return v, gain
 
 
-def _second_derivatives(
-    task: ProjectionTask, q: Matrix, here: Matrix, K: Matrix, space: TangentSpace
-) -> tuple[Matrix, Matrix]:
-    """Slope (b, m) and second derivative (b, m, m) of the distance along the columns of a basis.
+def _derivatives(
+    task: ProjectionTask, q: Matrix, here: Matrix, K: Matrix, parts: Sequence[SpacePart]
+) -> tuple[list[Matrix], list[Matrix]]:
+    """Of each part the slope (b, g, f) and the second derivative (b, g, f, f) of the distance along its basis.
 
-    If W is diagonal, these are the columns that move loops: the others have no slope. What one group of loops changes
-    then does not depend on the others, so that one motion of all of them shows it.
+    One motion of all parts shows a column of each, since they do not depend on each other.
     """
-    problem, Z, motions = task.problem, space.basis, space.motions
-    if np.count_nonzero(task.W) > len(task.W):
-        motions = [[(column, slice(None))] for column in range(Z.shape[2])]
-    g = _gradient(task, q, here)
-    multipliers = g[:, None] @ space.inverse
-    normal = g - (multipliers @ K)[:, 0]
-    Z = Z[:, :, : sum(map(len, motions))]
-    change = np.zeros(Z.shape)
-    for own in motions:
-        beside = problem.tree.integrate(here, _DIFFERENCE * Z[:, :, [column for column, _ in own]].sum(axis=2))
-        along = (multipliers @ problem.jacobian(beside))[:, 0]
-        rate = (_gradient(task, q, beside) - along - normal) / _DIFFERENCE
-        for column, velocities in own:
-            change[:, velocities, column] = rate[:, velocities]
-    return (g[:, None] @ Z)[:, 0], Z.swapaxes(1, 2) @ change
+    problem, g = task.problem, _gradient(task, q, here)
+    slopes, normals = [], []
+    for part in parts:
+        own = g[:, part.velocities][:, :, None]
+        multipliers = own @ part.inverse
+        normals.append((multipliers, own - multipliers @ part.of(K)))
+        slopes.append((own @ part.basis)[:, :, 0])
+    changes = [np.empty(part.basis.shape) for part in parts]
+    for column in range(max((part.basis.shape[3] for part in parts), default=0)):
+        moving = [index for index, part in enumerate(parts) if column < part.basis.shape[3]]
+        v = np.zeros(g.shape)
+        for index in moving:
+            v[:, parts[index].velocities] = parts[index].basis[..., column]
+        beside = problem.tree.integrate(here, _DIFFERENCE * v)
+        there, K_there = _gradient(task, q, beside), problem.jacobian(beside)
+        for index in moving:
+            part, (multipliers, normal) = parts[index], normals[index]
+            along = multipliers @ part.of(K_there)
+            change = there[:, part.velocities][:, :, None] - along - normal
+            changes[index][..., column] = change[:, :, 0] / _DIFFERENCE
+    second = [part.basis.swapaxes(2, 3) @ change for part, change in zip(parts, changes, strict=True)]
+    return slopes, second
 
 
 @overflow_refused("the velocity")
@@ -190,7 +204,7 @@ def project_velocity(robot: Robot, q: Named, v: Named, *, weights: Named | Matri
     W = metric(robot, weights)
     v = velocity_of(robot, v)
     _, K = residual_and_jacobian(robot, start(robot, q, "q"))
-    projected = nearest(robot.cached(TangentSpaces).at(K).basis, W, v)
+    projected = robot.cached(TangentSpaces).at(K).nearest(W, v)
     finite("the velocity", projected)
     return projected
 
@@ -224,15 +238,21 @@ def project_acceleration(
     _, K = residual_and_jacobian(robot, q)
     space = robot.cached(TangentSpaces).at(K)
     forced = -space.inverse @ acceleration_drift(robot, q, v)
-    projected = forced + nearest(space.basis, W, a - forced)
+    projected = forced + space.nearest(W, a - forced)
     finite("the acceleration", projected)
     return projected
 
 
-def _downhill(H: Matrix, slope: Matrix) -> Matrix:
-    """The Newton steps -H⁻¹ slope (b, m), with H (b, m, m) made positive definite if it is not."""
-    H = np.where(are_finite(H)[:, None, None], H, 0.0)
-    values, vectors = np.linalg.eigh(0.5 * (H + H.swapaxes(1, 2)))
-    values = np.abs(values)
-    values = np.maximum(values, np.maximum(1e-3 * values.max(axis=1, initial=0.0), 1e-300)[:, None])
-    return -np.asarray(vectors @ ((slope[:, None] @ vectors)[:, 0] / values)[:, :, None])[:, :, 0]
+def _downhill(second: Sequence[Matrix], slopes: Sequence[Matrix]) -> list[Matrix]:
+    """The Newton steps -H⁻¹ slope (b, g, f) of each part, with H (b, g, f, f) made positive definite if it is not."""
+    found, most = [], np.zeros(len(slopes[0]) if slopes else 0)
+    for H in second:
+        H = np.where(np.isfinite(H).all(axis=(2, 3), keepdims=True), H, 0.0)
+        values, vectors = np.linalg.eigh(0.5 * (H + H.swapaxes(2, 3)))
+        found.append((np.abs(values), vectors))
+        most = np.maximum(most, found[-1][0].max(axis=(1, 2), initial=0.0))
+    least = np.maximum(1e-3 * most, 1e-300)[:, None, None]
+    return [
+        -(vectors @ ((slope[:, :, None] @ vectors)[:, :, 0] / np.maximum(values, least))[..., None])[..., 0]
+        for (values, vectors), slope in zip(found, slopes, strict=True)
+    ]

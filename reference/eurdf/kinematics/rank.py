@@ -204,17 +204,12 @@ def least_solution(A: Matrix, b: Matrix, norm: Vector) -> tuple[Matrix, Mask]:
         norm: As in `certain_inverse`.
     """
     B, m, n = A.shape
-    x, sure = np.zeros((B, n, b.shape[2])), np.zeros(B, dtype=bool)
-    if m <= n:
-        transposed = A.swapaxes(1, 2)
-        gram = product(A, transposed)
-        inverse, sure = certain_inverse(gram, norm)
-        if some(sure):
-            y = product(inverse, b)
-            y += product(inverse, b - product(gram, y))
-            x = product(transposed, y)
-            if every(sure):
-                return x, sure
+    if m > n:
+        x, sure = np.zeros((B, n, b.shape[2])), np.zeros(B, dtype=bool)
+    else:
+        x, sure = least_by_squares(A, b, norm)
+        if every(sure):
+            return x, sure
     doubtful = ~sure & np.isfinite(norm)  # and with it A
     if not some(doubtful):
         return x, sure
@@ -229,6 +224,29 @@ def least_solution(A: Matrix, b: Matrix, norm: Vector) -> tuple[Matrix, Mask]:
     redundant = values <= ZERO * values[:, :1]
     x[which], sure[which] = own, certain & (counts | redundant).all(axis=1)
     return x, sure
+
+
+def least_by_squares(A: Matrix, b: Matrix, norm: Vector) -> tuple[Matrix, Mask]:
+    """As `least_solution`, from A Aᵀ; and where (B,) the rows of A are independent for certain. Else x is arbitrary."""
+    transposed = A.swapaxes(1, 2)
+    gram = product(A, transposed)
+    inverse, sure = certain_inverse(gram, norm)
+    if not some(sure):
+        return np.zeros((len(A), A.shape[2], b.shape[2])), sure
+    y = product(inverse, b)
+    y += product(inverse, b - product(gram, y))
+    return product(transposed, y), sure
+
+
+def least_by_values(A: Matrix, b: Matrix) -> Matrix:
+    """A⁺ b (B, n, k) with the `numerical_ranks` of A."""
+    left, values, right = np.linalg.svd(A, full_matrices=False)
+    most = values[:, :1]
+    counts = values > np.maximum(CERTAIN * most, NOTHING)
+    if np.count_nonzero(values > ZERO * most) > np.count_nonzero(counts):  # else the gap between them is the widest
+        counts = np.arange(values.shape[1]) < numerical_ranks(values)[:, None]
+    values[~counts] = np.inf
+    return product(right.swapaxes(1, 2), product(left.swapaxes(1, 2), b) / values[:, :, None])
 
 
 def damped_step(A: Matrix, e: Matrix, damping: Vector) -> Matrix:

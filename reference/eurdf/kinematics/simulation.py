@@ -17,7 +17,7 @@ from eurdf.kinematics.finite import overflow_refused
 from eurdf.kinematics.forward_solver import ForwardSolver
 from eurdf.kinematics.independence import norm
 from eurdf.kinematics.named import Named, velocity_of
-from eurdf.kinematics.tangent_space import TangentSpaces
+from eurdf.kinematics.tangent_space import LeastSolutions, TangentSpaces
 from eurdf.kinematics.tolerances import DIVERGED
 from eurdf.pinocchio.memory import working_memory
 
@@ -153,7 +153,7 @@ class _Integration:
         self._robot, self._tree, self._solver = robot, robot.tree, solver
         self._control, self._callers, self._applied, self._step = control, callers, applied, step
         self._gains = solver.gains.now()
-        self._spaces = robot.cached(TangentSpaces)
+        self._least = LeastSolutions(robot.cached(TangentSpaces))
 
     def advanced(self, t: float, q: Vector, v: Vector) -> tuple[Vector, Vector, float]:
         """Configuration and velocity after a step from time t, and the work done meanwhile."""
@@ -182,7 +182,9 @@ class _Integration:
         applied = self._applied.at(q, v, u)
         force = self._applied.with_springs(q, applied)
         # Between the steps, any smooth drift will do that equals K̇ v where the loops are closed.
-        a, _ = self._solver.solve(self._robot, q, v, force, self._gains, self._solver.own, nearly_closed=True)
+        a, _ = self._solver.solve(
+            self._robot, q, v, force, self._gains, self._solver.own, nearly_closed=True, within_step=moved
+        )
         # The derivative of x = q ⊖ begin is the inverse of that of begin ⊕ x.
         rate = self._tree.difference_derivative(begin, q) @ v if moved else v
         return rate, a, float(applied @ v)
@@ -195,11 +197,11 @@ class _Integration:
         for _ in range(newton_steps):
             if norm(r) <= _CLOSED:
                 break
-            q = tree.normalized(tree.integrate(q, -self._spaces.least(K, r)))
+            q = tree.normalized(tree.integrate(q, -self._least.of(K, r)))
             if not norm(q) < math.inf:
                 raise SimulationDiverged(t, self._step)
             r, K = self._solver.closures(self._robot, q)
-        return q, v - self._spaces.least(K, K @ v)
+        return q, v - self._least.of(K, K @ v)
 
     def energies(self, q: Vector, v: Vector) -> tuple[float, float]:
         """Kinetic and potential energy, J."""

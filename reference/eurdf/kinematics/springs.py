@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from eurdf.array import Indices, Matrix, Vector
-from eurdf.kinematics.assembly import close
+from eurdf.kinematics.closing import close
 from eurdf.kinematics.named import Named, configuration_of
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import numerical_rank

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -13,16 +12,13 @@ from eurdf.array import Indices, Matrix, Vector
 from eurdf.kinematics.finite import finite
 from eurdf.kinematics.loop import LoopGroup, independent_groups
 from eurdf.kinematics.named import Named, velocity_of
-from eurdf.kinematics.rank import are_finite, inverses, least_solution, numerical_ranks, product
+from eurdf.kinematics.rank import inverses, least_by_squares, least_by_values, norms, numerical_ranks, product
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
-from eurdf.kinematics.tolerances import CERTAIN
+from eurdf.kinematics.tolerances import CERTAIN, MANY_ALIKE, MOST_VELOCITIES_AT_ONCE
 from eurdf.pinocchio.arguments import checked_array
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
-
-# From so many blocks of one shape on, they are decomposed together; of fewer, each alone takes less time.
-_MANY = 3
 
 _ALONE = np.zeros(1, dtype=np.intp)
 
@@ -39,6 +35,26 @@ class _Block(NamedTuple):
     group: LoopGroup
     free: Matrix
     inverse: Matrix
+
+
+class SpacePart(NamedTuple):
+    """Tangent spaces of b elements in g groups of loops with as many rows m, velocities n and free motions f.
+
+    Attributes:
+        velocities: Indices (g, n) in v.
+        rows: Their rows (g, m) of K.
+        basis: Z (b, g, n, f), orthonormal.
+        inverse: K⁺ (b, g, n, m).
+    """
+
+    velocities: Indices
+    rows: Indices
+    basis: Matrix
+    inverse: Matrix
+
+    def of(self, K: Matrix) -> Matrix:
+        """The blocks (b, g, m, n) of K (b, nc, nv)."""
+        return K[:, self.rows[:, :, None], self.velocities[:, None]]
 
 
 class TangentSpace:
@@ -83,16 +99,35 @@ class TangentSpace:
             inverse[:, group.velocities[:, None], group.rows] = scale[group.velocities, None] * own * rows[group.rows]
         return inverse[0] if self._alone else inverse
 
-    @property
-    def motions(self) -> list[list[tuple[int, Indices | slice]]]:
-        """The columns of the bases that move loops, with the velocities of their group: of each group one at a time."""
-        found: list[list[tuple[int, Indices | slice]]] = []
-        column = 0
+    def parts(self, together: bool = False) -> list[SpacePart]:
+        """The space by groups of loops that are alike, without what is outside of the loops; or all of it as one."""
+        scale, row_scale = self._spaces.scale, self._spaces.row_scale
+        if together:
+            Z, inverse = (np.reshape(each, (-1, 1, *each.shape[-2:])) for each in (self.basis, self.inverse))
+            return [SpacePart(np.arange(len(scale))[None], np.arange(len(row_scale))[None], Z, inverse)]
+        alike: dict[tuple[int, int, int], list[_Block]] = {}
         for block in self._blocks:
-            for index in range(block.free.shape[2]):
-                found += [[]] * (index == len(found))
-                found[index] = [*found[index], (column + index, block.group.velocities)]
-            column += block.free.shape[2]
+            alike.setdefault((*block.free.shape[1:], len(block.group.rows)), []).append(block)
+        found = []
+        for blocks in alike.values():
+            velocities = np.array([block.group.velocities for block in blocks])
+            rows = np.array([block.group.rows for block in blocks])
+            unit, free = scale[velocities][:, :, None], np.stack([block.free for block in blocks], axis=1)
+            Z = free if (unit == 1.0).all() else np.linalg.qr(unit * free)[0]
+            inverse = unit * np.stack([block.inverse for block in blocks], axis=1) * row_scale[rows][:, None]
+            found.append(SpacePart(velocities, rows, Z, inverse))
+        return found
+
+    def nearest(self, W: Matrix, v: Vector) -> Vector:
+        """The v' = Z y (nv,) nearest to v in the metric W: Z (Zᵀ W Z)⁻¹ Zᵀ W v."""
+        if W.ndim == 2:
+            Z = self.basis
+            return np.asarray(Z @ np.linalg.solve(Z.T @ W @ Z, Z.T @ (W @ v)), dtype=np.float64)
+        found = np.array(v, dtype=np.float64)  # what is outside of the loops is free
+        for part in self.parts():
+            (Z,), own = part.basis, part.velocities
+            across = (W[own][:, :, None] * Z).swapaxes(1, 2)
+            found[own] = (Z @ np.linalg.solve(across @ Z, across @ v[own][:, :, None]))[:, :, 0]
         return found
 
     def _whole(self, bases: Sequence[Matrix]) -> Matrix:
@@ -107,6 +142,38 @@ class TangentSpace:
         return whole[0] if self._alone else whole
 
 
+class AlikeBlocks(NamedTuple):
+    """AlikeBlocks of K that have the same numbers m of rows and n of velocities.
+
+    Attributes:
+        rows: Their rows (g, m).
+        velocities: Their velocities (g, n).
+        weights: Factors (g, m) that make the rows dimensionless.
+        unit: Units (g, n) of the velocities.
+        factors: Factors (g, m, n) that make K dimensionless.
+        is_whole: Whether the only block is K itself.
+    """
+
+    rows: Indices
+    velocities: Indices
+    weights: Matrix
+    unit: Matrix
+    factors: Matrix
+    is_whole: bool
+
+    @classmethod
+    def of_units(cls, rows: Indices, velocities: Indices, row_scale: Vector, scale: Vector) -> AlikeBlocks:
+        """Take where the blocks are, and the units of all rows and velocities."""
+        weights, unit = row_scale[rows], scale[velocities]
+        with np.errstate(over="ignore", invalid="ignore"):  # lengths such as 1e200 m
+            factors = weights[:, :, None] * unit[:, None]
+        return cls(rows, velocities, weights, unit, factors, factors.shape == (1, len(row_scale), len(scale)))
+
+    def of(self, K: Matrix) -> Matrix:
+        """The blocks (…, g, m, n) of K (…, nc, nv)."""
+        return K[..., None, :, :] if self.is_whole else K[..., self.rows[:, :, None], self.velocities[:, None]]
+
+
 class TangentSpaces:
     """Computes tangent spaces of one robot; its structure is analysed once. Plain data, which can be pickled.
 
@@ -116,6 +183,8 @@ class TangentSpaces:
         row_scale: Factors (nc,) that make the rows of K dimensionless.
         outside: Indices of the velocities outside of all loops.
         all_turn: Whether every unit is 1: none of a velocity of a loop is a length.
+        alike: Groups of loops with as many rows and velocities, and their blocks of K.
+        whole: K as one block.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -130,26 +199,23 @@ class TangentSpaces:
                 outside[group.velocities] = False
                 alike.setdefault((len(group.rows), len(group.velocities)), []).append(group)
         self.outside = np.flatnonzero(outside)
-        self._alike = [
-            (groups, np.array([group.rows for group in groups]), np.array([group.velocities for group in groups]))
+        units = self.row_scale, self.scale
+        self.alike = [
+            (
+                groups,
+                AlikeBlocks.of_units(
+                    np.array([group.rows for group in groups]), np.array([group.velocities for group in groups]), *units
+                ),
+            )
             for groups in alike.values()
         ]
+        self.whole = AlikeBlocks.of_units(np.arange(len(units[0]))[None], np.arange(len(units[1]))[None], *units)
 
     @cached_property
     def dimensionless(self) -> Matrix:
         """Factors (nc, nv) that make K dimensionless."""
         with np.errstate(over="ignore", invalid="ignore"):  # lengths such as 1e200 m
             return self.row_scale[:, None] * self.scale
-
-    def least(self, K: Matrix, b: Vector) -> Vector:
-        """K⁺ b (nv,), as `at` has it, but without a decomposition where the rows of K (nc, nv) are independent."""
-        A = K * self.dimensionless
-        norm = math.sqrt(float(np.vdot(A, A)))
-        if math.isfinite(norm):
-            solution, sure = least_solution(A[None], (self.row_scale * b)[None, :, None], np.array([norm]))
-            if sure[0]:
-                return self.scale * solution[0, :, 0]
-        return self.at(K).inverse @ b
 
     def at(self, K: Matrix) -> TangentSpace:
         """The tangent space for the constraint Jacobian K (nc, nv).
@@ -160,41 +226,47 @@ class TangentSpaces:
         Raises:
             NumericalOverflow: K is not finite.
         """
-        A = K * self.dimensionless
-        finite("the constraint Jacobian", A)
-        (space,) = self._spaces(A[None], alone=True)
+        blocks = self._blocks(K[None])
+        finite("the constraint Jacobian", *blocks)
+        (space,) = self._spaces(blocks, 1, alone=True)
         return space
 
     def each(self, K: Matrix) -> Iterator[TangentSpace]:
         """The tangent spaces for K (B, nc, nv): those of one dimension together. A K that is not finite has no rank."""
-        A = K * self.dimensionless
-        ok = are_finite(A)
-        return self._spaces(A if ok.all() else np.where(ok[:, None, None], A, 0.0), alone=False)
+        blocks, ok = self._blocks(K), np.ones(len(K), dtype=bool)
+        for block in blocks:
+            ok &= np.isfinite(block).all(axis=(1, 2, 3))
+        if not ok.all():
+            blocks = [np.where(ok[:, None, None, None], block, 0.0) for block in blocks]
+        return self._spaces(blocks, len(K), alone=False)
 
-    def _spaces(self, A: Matrix, alone: bool) -> Iterator[TangentSpace]:
-        """The spaces of dimensionless K (B, nc, nv), by their ranks."""
+    def _blocks(self, K: Matrix) -> list[Matrix]:
+        """The dimensionless blocks (B, g, m, n) of K (B, nc, nv) of the groups that are alike."""
+        return [alike.of(K) * alike.factors for _, alike in self.alike]
+
+    def _spaces(self, blocks: Sequence[Matrix], count: int, alone: bool) -> Iterator[TangentSpace]:
+        """The spaces of so many K, by their ranks, from their dimensionless blocks."""
         decomposed: list[tuple[LoopGroup, _Decomposed]] = []
-        for groups, rows, velocities in self._alike:
-            own = A[:, rows[:, :, None], velocities[:, None]]  # (B, groups, m, n)
-            if len(A) == 1 and len(groups) < _MANY:
-                found = [_decomposed(block[None]) for block in own[0]]
+        for (groups, _), own in zip(self.alike, blocks, strict=True):
+            if count == 1 and len(groups) < MANY_ALIKE:
+                each_of = [_decomposed(block[None]) for block in own[0]]
             else:
                 parts = _decomposed(own.reshape(-1, *own.shape[2:]))
-                found = [parts.of(slice(first, None, len(groups))) for first in range(len(groups))]
-            decomposed += zip(groups, found, strict=True)
-        ranks = np.array([each.rank for _, each in decomposed], dtype=np.intp).reshape(len(decomposed), len(A)).T
-        for of_kind in np.unique(ranks, axis=0) if len(A) > 1 else ranks:
-            which = np.flatnonzero((ranks == of_kind).all(axis=1)) if len(A) > 1 else _ALONE
-            chosen = which if len(which) < len(A) else slice(None)
-            blocks = [
+                each_of = [parts.of(slice(first, None, len(groups))) for first in range(len(groups))]
+            decomposed += zip(groups, each_of, strict=True)
+        ranks = np.array([each.rank for _, each in decomposed], dtype=np.intp).reshape(len(decomposed), count).T
+        for of_kind in np.unique(ranks, axis=0) if count > 1 else ranks:
+            which = np.flatnonzero((ranks == of_kind).all(axis=1)) if count > 1 else _ALONE
+            chosen = which if len(which) < count else slice(None)
+            found = [
                 _Block(group, each.right[chosen, :, rank:], each.inverse[chosen])
                 for (group, each), rank in zip(decomposed, of_kind.tolist(), strict=True)
             ]
-            yield TangentSpace(which, blocks, self, alone)
+            yield TangentSpace(which, found, self, alone)
 
 
 class _Decomposed(NamedTuple):
-    """Blocks (b, m, n) of K, decomposed.
+    """AlikeBlocks (b, m, n) of K, decomposed.
 
     Attributes:
         right: Orthonormal bases (b, n, n): after the first columns, as many as the rank, they span the free motions.
@@ -232,8 +304,42 @@ def _decomposed(A: Matrix) -> _Decomposed:
     return _Decomposed(right, product(right[:, :, :k] * reciprocal[:, None], left[:, :, :k].swapaxes(1, 2)), rank)
 
 
+class LeastSolutions:
+    """The v = K⁺ b of least norm, dimensionless, for one K after the other; those are near one another."""
+
+    def __init__(self, spaces: TangentSpaces) -> None:
+        self._by_group = [blocks for _, blocks in spaces.alike]
+        # While the rows are independent, those of a small robot are solved all at once.
+        self._blocks = [spaces.whole] if len(spaces.scale) <= MOST_VELOCITIES_AT_ONCE else self._by_group
+        self._redundant: set[int] = set()  # the blocks some of whose rows depended on each other
+
+    def of(self, K: Matrix, b: Vector) -> Vector:
+        """K⁺ b (nv,), of K (nc, nv) and b (nc,).
+
+        Raises:
+            NumericalOverflow: K is not finite.
+        """
+        v = np.zeros(K.shape[1])
+        for index, block in enumerate(self._blocks):
+            A, rows = block.of(K) * block.factors, (block.weights * b[block.rows])[:, :, None]
+            norm = norms(A)
+            if not np.isfinite(norm).all():
+                finite("the constraint Jacobian", A)
+            if index not in self._redundant:
+                x, sure = least_by_squares(A, rows, norm)
+                if np.count_nonzero(sure) < len(A):
+                    self._redundant.add(index)
+            if index in self._redundant:
+                if self._blocks is not self._by_group:
+                    self._blocks, self._redundant = self._by_group, set()
+                    return self.of(K, b)
+                x = least_by_values(A, rows)
+            v[block.velocities] = block.unit * x[:, :, 0]
+        return v
+
+
 def metric(robot: Robot, weights: Named | Matrix | None) -> Matrix:
-    """The matrix W (nv, nv) of the norm |v|² = vᵀ W v.
+    """The matrix W of the norm |v|² = vᵀ W v: (nv, nv), or its diagonal (nv,) if it is diagonal.
 
     Args:
         robot: The robot.
@@ -245,11 +351,16 @@ def metric(robot: Robot, weights: Named | Matrix | None) -> Matrix:
     """
     nv = robot.tree.nv
     if weights is None:
-        return np.eye(nv)
+        return np.ones(nv)
     if isinstance(weights, Mapping):
         weights = velocity_of(robot, weights, "weights", others=1.0)
-    given = checked_array("weights", weights, (nv,), (nv, nv))
-    W = np.diag(given) if given.ndim == 1 else given
+    W = checked_array("weights", weights, (nv,), (nv, nv))
+    if W.ndim == 2 and np.count_nonzero(W) <= nv and W.diagonal().all():
+        W = np.array(W.diagonal())
+    if W.ndim == 1:
+        if not (W > 0.0).all():
+            raise ValueError("weights are not positive definite")
+        return W
     if np.abs(W - W.T).max(initial=0.0) > 1e-9 * np.abs(W).max(initial=0.0):
         raise ValueError("weights are not a symmetric matrix")
     try:
@@ -259,13 +370,13 @@ def metric(robot: Robot, weights: Named | Matrix | None) -> Matrix:
     return W
 
 
+def weighted(W: Matrix, motions: Matrix) -> Matrix:
+    """W times the columns of motions (…, nv, m)."""
+    return W[:, None] * motions if W.ndim == 1 else W @ motions
+
+
 def orthonormal(basis: Matrix, W: Matrix) -> Matrix:
     """Orthonormal bases in the metric, Zᵀ W Z = 1, of the spans of Z (…, nv, m)."""
     across = basis.swapaxes(-1, -2)
-    lower = np.linalg.cholesky(across @ W @ basis)
+    lower = np.linalg.cholesky(across @ weighted(W, basis))
     return np.asarray(np.linalg.solve(lower, across).swapaxes(-1, -2))
-
-
-def nearest(basis: Matrix, W: Matrix, v: Vector) -> Vector:
-    """The v' = Z y (nv,) nearest to v in the metric: Z (Zᵀ W Z)⁻¹ Zᵀ W v."""
-    return np.asarray(basis @ np.linalg.solve(basis.T @ W @ basis, basis.T @ (W @ v)), dtype=np.float64)

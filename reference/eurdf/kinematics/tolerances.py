@@ -13,6 +13,9 @@ from eurdf.closures import CLOSED as CLOSED
 #: A residual of this norm, in m and rad and dimensionless, is of closed loops for certain: how far a closure is open
 #: differs from its rows by a factor below 10.
 WELL_CLOSED = 0.1 * CLOSED
+#: In robots with a smaller characteristic length, m, what counts as closed is less in proportion. In larger ones it is
+#: not: rounded numbers in files keep loops of ordinary robots open by 1e-7 m and more.
+SMALL = 0.01
 #: Bound that solvers bring the loops to.
 SOLVED = 1e-10
 #: The same on a path whose last correction leaves rounding.
@@ -54,8 +57,10 @@ RESTARTS = 20
 #: Bound of the multiplications in the steps of one assembly, about five seconds. Groups with hundreds of shared joints
 #: end before all restarts; a group with a single step above this bound is not tried.
 MOST_WORK = 1e10
-#: Above this many velocities, closing all loops at once takes longer than one group after the other.
+#: Above this many velocities, all loops with one damping take longer than each group of loops with its own.
 MOST_VELOCITIES_AT_ONCE = 60
+#: From so many groups of loops on that are alike, computing them together takes less time than each alone.
+MANY_ALIKE = 3
 
 # Steps along a path.
 

@@ -39,8 +39,7 @@ class TreeDynamics:
         Up to Pinocchio 4.1, `pin.crba` has wrong entries if a mimic joint carries several branches.
         """
         if not len(self.model.mimicking_joints):
-            M = pin.crba(self.model, self.data, q)  # its upper triangle is valid
-            return np.asarray(np.where(_upper(self.model.nv), M, M.T) @ motions)
+            return np.asarray(whole_matrix(pin.crba(self.model, self.data, q)) @ motions)
         still = np.zeros(self.model.nv)
         gravity = self.inverse_dynamics(q, still, still)
         columns = [self.inverse_dynamics(q, still, a) - gravity for a in motions.T]
@@ -67,6 +66,11 @@ class TreeDynamics:
         if len(self.model.mimicking_joints):  # not supported by Pinocchio 4.1
             return TreeRecursion(self.model, self._springs)._energy_of_gravity(q)
         return float(pin.computePotentialEnergy(self.model, self.data, q))
+
+
+def whole_matrix(M: Matrix) -> Matrix:
+    """The mass matrix (nv, nv) of whose entries Pinocchio wrote those on or above the diagonal."""
+    return np.where(_upper(len(M)), M, M.T)
 
 
 @lru_cache(maxsize=8)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from eurdf.array import Vector
 from eurdf.closures import MODULES
-from eurdf.kinematics.assembly import SPREADS
+from eurdf.kinematics.closing import SPREADS
 from eurdf.kinematics.loop import find_loops
 from eurdf.kinematics.scale import row_scale
 from eurdf.kinematics.tangent_space import TangentSpaces

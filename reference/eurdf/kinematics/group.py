@@ -1,0 +1,261 @@
+"""Groups of loops that share no joint that moves, as solvers see them; and those that are alike, all at once.
+
+A large robot can have hundreds of equal groups. One after the other, most of their time would be that of calls.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from eurdf.array import Indices, Mask, Matrix, Vector
+from eurdf.kinematics.loop import LoopGroup
+from eurdf.kinematics.rank import least_solution, norms, product
+from eurdf.pinocchio.tree_few import as_slice
+
+if TYPE_CHECKING:
+    from eurdf.kinematics.position_limit import PositionLimits
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """Loops that are closed together, and the velocities that close them.
+
+    Attributes:
+        loops: The loops.
+        by: Indices in v of the given velocities that move them.
+        evaluator: Evaluates their constraints by their own velocities, followed by the given ones.
+        row_scale: Factors (m,) that make their rows dimensionless.
+        unit: Unit (n,) of each of their own velocities.
+        spread: Ratio of the largest unit of all these velocities to the smallest.
+        work: Multiplications for the smaller of A Aᵀ and Aᵀ A, and for the evaluation of A.
+        own: Indices in v of the velocities that close them.
+        held: A direction (n,) of unit length along which no step moves, or None.
+    """
+
+    loops: LoopGroup
+    by: Indices
+    evaluator: Any
+    row_scale: Vector
+    unit: Vector
+    spread: float
+    work: float
+    own: slice | Indices
+    held: Vector | None = None
+
+    @cached_property
+    def rows(self) -> slice | Indices:
+        """Which rows of the robot's residual are theirs."""
+        return as_slice(self.loops.rows)
+
+    @cached_property
+    def closures(self) -> slice | Indices:
+        """Which of the robot's constraints are theirs."""
+        return as_slice(np.array(self.loops.closures, dtype=np.intp))
+
+    @cached_property
+    def factors(self) -> Matrix:
+        """Factors (m, n) that make K dimensionless."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            return self.row_scale[:, None] * self.unit
+
+    def residual(self, q: Matrix) -> Matrix:
+        """Rows (B, m) at q (B, nq), m and rad."""
+        return self.residual_of(self.evaluator.at(q))
+
+    def residual_of(self, at: Any) -> Matrix:
+        """The same at configurations that the evaluator was given."""
+        return np.asarray(self.evaluator.residual(at))
+
+    def at(self, q: Matrix) -> Any:
+        """Their constraints at q (B, nq)."""
+        return self.evaluator.at(q)
+
+    def among(self, which: Mask) -> Group:
+        """The same group, for some of its elements."""
+        return self
+
+    def room(self, q: Matrix, limits: PositionLimits) -> tuple[Matrix, Matrix]:
+        """As `PositionLimits.room` of their own velocities."""
+        return limits.room(q, self.own)
+
+    def jacobian(self, at: Any) -> Matrix:
+        """Their derivative (B, m, n) at configurations that the evaluator was given, dimensionless."""
+        K = self.evaluator.jacobian(at)
+        A: Matrix = (K[:, :, : len(self.unit)] if len(self.by) else K) * self.factors
+        return A if self.held is None else A - (A @ self.held)[:, :, None] * self.held
+
+    def jacobian_at(self, q: Matrix) -> Matrix:
+        """The same at q (B, nq)."""
+        return self.jacobian(self.evaluator.at(q))
+
+    def following(self, q: Matrix, driven: Matrix | None, whole: Matrix | None = None) -> tuple[Matrix, Mask]:
+        """Their own velocities (B, n, k) for given ones (B, g, k), and where (B,) these exist beyond doubt.
+
+        They are the least ones, in rad/s and m/s, for each unit velocity if none are given. ``whole`` is
+        K (B, nc, nv) of the robot, if it is known.
+        """
+        if whole is None:
+            K = self.evaluator.jacobian(self.evaluator.at(q))
+        else:
+            K = whole[:, self.loops.rows[:, None], np.concatenate((self.loops.velocities, self.by))]
+        K = K * self.row_scale[:, None]
+        norm = self.spread * norms(K)
+        own, by = K[:, :, : len(self.unit)], K[:, :, len(self.unit) :]
+        return least_solution(own, -by if driven is None else -product(by, driven), norm)
+
+    def holding(self, direction: Vector) -> Group:
+        """The same group, whose derivative is zero along a direction (n,) of unit length: no step moves along it."""
+        return replace(self, held=direction)
+
+
+@dataclass(frozen=True, eq=False)
+class Stack:
+    """Groups of loops with the same numbers m of rows, n of velocities and k of given velocities.
+
+    Attributes:
+        tree: The spanning tree.
+        members: Their indices (g,) among the groups of the robot.
+        part: All of their loops as one group.
+        rows: Where their rows (g, m) are among those of the part.
+        columns: Where their velocities and the given ones (g, n + k) are among those of the part.
+        velocities: Indices (g, n) in v of the velocities that close them.
+        by: Indices (g, k) in v of the given velocities that move them.
+        coordinates: Indices (g, c) in q of their coordinates.
+        row_scale: Factors (g, m) that make their rows dimensionless.
+        unit: Units (g, n) of their velocities.
+        spread: Ratios (g,) of the largest unit of all these velocities to the smallest.
+        work: Multiplications in a step of one group.
+    """
+
+    tree: Any
+    members: Indices
+    part: Group
+    rows: Indices
+    columns: Indices
+    velocities: Indices
+    by: Indices
+    coordinates: Indices
+    row_scale: Matrix
+    unit: Matrix
+    spread: Vector
+    work: float
+
+    @classmethod
+    def of_groups(cls, tree: Any, members: list[int], groups: list[Group], part: Group) -> Stack:
+        """Take groups that are alike, and all of their loops as one."""
+        velocities, by = (
+            np.array([group.loops.velocities for group in groups]),
+            np.array([group.by for group in groups], dtype=np.intp),
+        )
+        place = np.empty(tree.nv, dtype=np.intp)
+        of_part = np.concatenate((part.loops.velocities, part.by))
+        place[of_part] = np.arange(len(of_part))
+        return cls(
+            tree,
+            np.array(members),
+            part,
+            np.array([np.searchsorted(part.loops.rows, group.loops.rows) for group in groups]),
+            place[np.concatenate((velocities, by), axis=1)],
+            velocities,
+            by,
+            np.array([group.loops.coordinates for group in groups]),
+            np.array([group.row_scale for group in groups]),
+            np.array([group.unit for group in groups]),
+            np.array([group.spread for group in groups]),
+            groups[0].work,
+        )
+
+    def following(self, q: Matrix, driven: Matrix | None) -> tuple[Matrix, Mask]:
+        """As `Group.following` of each group: velocities (B, g, n, c) for given ones (B, g, k, c), and where (B, g)."""
+        evaluator = self.part.evaluator
+        K = evaluator.jacobian(evaluator.at(q))[:, self.rows[:, :, None], self.columns[:, None]]
+        K *= self.row_scale[:, :, None]
+        n = self.unit.shape[1]
+        A, b = K[..., :n], -K[..., n:] if driven is None else -(K[..., n:] @ driven)
+        norm = self.spread * np.sqrt(np.einsum("bgij,bgij->bg", K, K))
+        x, sure = least_solution(A.reshape(-1, *A.shape[2:]), b.reshape(-1, *b.shape[2:]), norm.ravel())
+        return x.reshape(*A.shape[:2], *x.shape[1:]), sure.reshape(A.shape[:2])
+
+    def exceeds(self, own: Matrix, groups: Sequence[StackElements], limits: PositionLimits) -> bool:
+        """As `Problem.exceeds`, at own coordinates (E, c) of pairs."""
+        (pairs,) = groups
+        return pairs.exceeds(own, limits)
+
+    def moved(self, own: Matrix, groups: Sequence[StackElements], steps: Sequence[Matrix]) -> Matrix:
+        """As `Problem.moved`: own coordinates (E, c) of pairs after their steps (E, n)."""
+        (pairs,), (step,) = groups, steps
+        return pairs.moved(own, step)
+
+
+class StackElements:
+    """StackElements of a configuration and a group of a stack. They descend as a `Group` whose elements they are.
+
+    Attributes:
+        element: Which of the configurations (E,).
+        index: Which of the groups (E,).
+        row_scale: Factors (E, m) that make their rows dimensionless.
+        unit: Units (E, n) of their velocities.
+    """
+
+    def __init__(self, stack: Stack, q: Matrix, element: Indices, index: Indices) -> None:
+        """Take configurations (B, nq), and which of them and of the groups are pairs."""
+        self._stack, self._q, self.element, self.index = stack, q, element, index
+        self._row = element[:, None]
+        self._rows, self._columns = stack.rows[index], stack.columns[index, : stack.unit.shape[1]]
+        self._velocities, self._coordinates = stack.velocities[index], stack.coordinates[index]
+        self.row_scale, self.unit = stack.row_scale[index], stack.unit[index]
+
+    def among(self, which: Mask) -> StackElements:
+        """Some of them."""
+        return StackElements(self._stack, self._q, self.element[which], self.index[which])
+
+    def start(self) -> Matrix:
+        """Their own coordinates (E, c)."""
+        return np.asarray(self._q[self._row, self._coordinates])
+
+    def at(self, own: Matrix) -> Any:
+        """Their constraints at own coordinates (E, c)."""
+        return self._stack.part.evaluator.at(self._whole(own))
+
+    def residual_of(self, at: Any) -> Matrix:
+        """The rows (E, m) of each."""
+        return np.asarray(self._stack.part.evaluator.residual(at)[self._row, self._rows])
+
+    def jacobian(self, at: Any) -> Matrix:
+        """Their derivatives (E, m, n), dimensionless."""
+        K = self._stack.part.evaluator.jacobian(at)
+        blocks = K[self._row[:, :, None], self._rows[:, :, None], self._columns[:, None]]
+        return np.asarray(self.row_scale[:, :, None] * blocks * self.unit[:, None])
+
+    def jacobian_at(self, own: Matrix) -> Matrix:
+        """The same at own coordinates (E, c)."""
+        return self.jacobian(self.at(own))
+
+    def room(self, own: Matrix, limits: PositionLimits) -> tuple[Matrix, Matrix]:
+        """As `PositionLimits.room` of their velocities (E, n)."""
+        down, up = limits.room(self._whole(own))
+        return down[self._row, self._velocities], up[self._row, self._velocities]
+
+    def exceeds(self, own: Matrix, limits: PositionLimits) -> bool:
+        """Whether a configuration with these coordinates is beyond a limit."""
+        return limits.are_exceeded(self._whole(own))
+
+    def clipped(self, own: Matrix, limits: PositionLimits) -> Matrix:
+        """Their coordinates within the limits."""
+        return np.asarray(limits.clip(self._whole(own))[self._row, self._coordinates])
+
+    def moved(self, own: Matrix, steps: Matrix) -> Matrix:
+        """Their coordinates after dimensionless steps (E, n)."""
+        v = np.zeros((len(self._q), self._stack.tree.nv))
+        v[self._row, self._velocities] = self.unit * steps
+        return np.asarray(self._stack.tree.integrate(self._whole(own), v)[self._row, self._coordinates])
+
+    def _whole(self, own: Matrix) -> Matrix:
+        q = np.array(self._q)
+        q[self._row, self._coordinates] = own
+        return q
