@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 from scipy.optimize import nnls
 
 from eurdf import collection_names
-from eurdf.kinematics.assembly import assemble, start
+from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.bounded_step import bounded_step
+from eurdf.kinematics.closing import start
 from eurdf.kinematics.forward import forward_kinematics
 from eurdf.kinematics.inverse import inverse_kinematics
 from eurdf.kinematics.position_limit import position_limits

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from eurdf.array import Mask, Matrix, Vector
-from eurdf.kinematics.assembly import Assembly, assembled, start
-from eurdf.kinematics.closing import close
+from eurdf.kinematics.assembly import Assembly, assembled
+from eurdf.kinematics.closing import close, start
 from eurdf.kinematics.finite_mobility import MobilityTest
 from eurdf.kinematics.loop import LoopGroup
 from eurdf.kinematics.loop_analysis import LoopAnalysis, Motion, analyze_group

@@ -15,20 +15,17 @@ import numpy as np
 
 from eurdf.array import Matrix, Vector
 from eurdf.errors import NotClosable
-from eurdf.kinematics.closing import close
-from eurdf.kinematics.named import Named, configuration_of
+from eurdf.kinematics.closing import close, start
+from eurdf.kinematics.named import Named
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits, chosen_limits
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.tolerances import MOST_WORK, RESTARTS, SOLVED
-from eurdf.pinocchio.arguments import are_by_name, as_names, checked_array, checked_count, checked_tolerance
+from eurdf.pinocchio.arguments import as_names, checked_count, checked_tolerance
 from eurdf.pinocchio.memory import working_memory
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
-
-# A quaternion whose length differs from 1 by no more is normalized.
-_ROUNDING = 1e-15
 
 #: Why an assembly did not converge: joints at their limits keep the loops open; the loops stay open though no limit
 #: prevents closing; the search reached its limit of work, so that it is unknown whether the loops can close;
@@ -117,28 +114,6 @@ def assemble(
     restarts = checked_count("restarts", restarts, 0)
     with working_memory(robot, Problem, *([held] if held else [])) as problem:  # others use one that holds none, too
         return assembled(problem, q, tolerance, restarts, chosen)
-
-
-def start(robot: Robot, q0: Named | None = None, name: str = "q0") -> Vector:
-    """The given configuration, checked and normalized; by default `assembled`, or else the neutral configuration.
-
-    ``name`` is that of the argument.
-
-    Raises:
-        ValueError: Its shape is not (nq,), it is not finite, or it cannot be normalized.
-    """
-    if q0 is None:
-        q0 = robot.configurations.get("assembled")
-    if q0 is None:
-        return robot.tree.neutral()
-    tree = robot.tree
-    given = configuration_of(robot, q0, name) if are_by_name(q0) else checked_array(name, q0, (tree.nq,))
-    if tree.is_normalized(given, _ROUNDING):
-        return np.array(given)
-    q = tree.normalized(given)
-    if not tree.is_normalized(q):  # NaN is not
-        raise ValueError(f"{name} has a quaternion, or a (cos, sin) pair, whose length is zero or overflows")
-    return q
 
 
 def assembled(

@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from eurdf.array import Matrix
 from eurdf.blas import ONE_THREAD
-from eurdf.kinematics.assembly import start
+from eurdf.kinematics.closing import start
 from eurdf.kinematics.evaluate import many_tree
 from eurdf.kinematics.named import configurations_of
 from eurdf.pinocchio.arguments import checked_array, checked_count

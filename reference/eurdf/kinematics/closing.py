@@ -8,17 +8,25 @@ configuration; the group then starts again from random configurations around the
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.descend import Descended, descend, evaluated
-from eurdf.kinematics.group import Stack, StackElements
+from eurdf.kinematics.named import Named, configuration_of
 from eurdf.kinematics.position_limit import PositionLimits
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import norms
+from eurdf.kinematics.stack import Stack, StackElements
 from eurdf.kinematics.tolerances import CLOSED, MOST_STEPS, MOST_WORK, SMALL, SOLVED, WELL_CLOSED
+from eurdf.pinocchio.arguments import are_by_name, checked_array
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
+
+# A quaternion whose length differs from 1 by no more is normalized.
+_ROUNDING = 1e-15
 
 # If only one group of so many in a stack is open, it descends by itself.
 _FEW_OF = 8
@@ -241,12 +249,7 @@ def _error(row_scale: Matrix, r: Matrix) -> Vector:
 
 def _well_closed(problem: Problem, found: Descended) -> Mask:
     """Which elements (B,) are closed so well that their openings need not be measured."""
-    return np.asarray((found.square <= WELL_CLOSED**2) & (found.scaled_square <= _well_closed_scaled(problem)))
-
-
-def _well_closed_scaled(problem: Problem) -> float:
-    """Bound of the square of the dimensionless residual of such."""
-    return (WELL_CLOSED / max(problem.spaces.length, SMALL)) ** 2
+    return np.asarray((found.square <= WELL_CLOSED**2) & (found.scaled_square <= problem.well_closed))
 
 
 @np.errstate(all="ignore")
@@ -255,5 +258,27 @@ def is_closed(problem: Problem, q: Matrix, tolerance: float) -> Mask:
     if not problem.parts:
         return np.ones(len(q), dtype=bool)
     _, _, _, error, scaled = evaluated(problem.parts, q)
-    closed = (error <= tolerance**2) & (scaled <= _well_closed_scaled(problem))
+    closed = (error <= tolerance**2) & (scaled <= problem.well_closed)
     return np.array(closed, ndmin=1)
+
+
+def start(robot: Robot, q0: Named | None = None, name: str = "q0") -> Vector:
+    """The given configuration, checked and normalized; by default `assembled`, or else the neutral configuration.
+
+    ``name`` is that of the argument.
+
+    Raises:
+        ValueError: Its shape is not (nq,), it is not finite, or it cannot be normalized.
+    """
+    if q0 is None:
+        q0 = robot.configurations.get("assembled")
+    if q0 is None:
+        return robot.tree.neutral()
+    tree = robot.tree
+    given = configuration_of(robot, q0, name) if are_by_name(q0) else checked_array(name, q0, (tree.nq,))
+    if tree.is_normalized(given, _ROUNDING):
+        return np.array(given)
+    q = tree.normalized(given)
+    if not tree.is_normalized(q):  # NaN is not
+        raise ValueError(f"{name} has a quaternion, or a (cos, sin) pair, whose length is zero or overflows")
+    return q

@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
-from eurdf.kinematics.group import Stack
 from eurdf.kinematics.position_limit import PositionLimits
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import (
@@ -32,6 +31,7 @@ from eurdf.kinematics.rank import (
     times,
     total,
 )
+from eurdf.kinematics.stack import Stack
 from eurdf.kinematics.tolerances import (
     FIRST_DAMPING,
     GOOD_SHARE,
@@ -141,7 +141,9 @@ def descend(
             else:
                 stale = stale[going]
         if stale is None:
-            A = [group.jacobian(each) for group, each in zip(groups, at, strict=True)]
+            A = []
+            for group, each in zip(groups, at, strict=True):
+                A.append(group.jacobian(each))
         elif some(stale):
             for group, own in zip(groups, A, strict=True):
                 own[stale] = group.among(stale).jacobian_at(q[stale])

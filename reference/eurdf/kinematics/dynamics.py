@@ -20,7 +20,7 @@ import numpy as np
 from eurdf.array import Matrix, Vector, numbers
 from eurdf.errors import UnderactuatedMotion
 from eurdf.kinematics.applied_force import AppliedForce, External
-from eurdf.kinematics.assembly import start
+from eurdf.kinematics.closing import start
 from eurdf.kinematics.equation_of_motion import EquationOfMotion, by_joint, per_constraint
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.forward_solver import ForwardSolver

@@ -15,8 +15,7 @@ import numpy as np
 
 from eurdf.array import Matrix, Vector
 from eurdf.kinematics.descend import descend
-from eurdf.kinematics.group import Group
-from eurdf.kinematics.problem import Problem
+from eurdf.kinematics.problem import Group, Problem
 from eurdf.kinematics.quadratic_forms import common_roots
 from eurdf.kinematics.rank import null_space, numerical_rank, singular_values
 from eurdf.kinematics.tolerances import CONTINUED, FILE_ROUNDING, FLOOR

@@ -10,9 +10,9 @@ import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.errors import NotClosable, NumericalOverflow, TooFar
-from eurdf.kinematics.assembly import assembled, closed_start, start
+from eurdf.kinematics.assembly import assembled, closed_start
 from eurdf.kinematics.blocks import checked_rows
-from eurdf.kinematics.closing import close, is_closed
+from eurdf.kinematics.closing import close, is_closed, start
 from eurdf.kinematics.named import ByJoint, Named, NamedRows, configurations_of, unknown_joint
 from eurdf.kinematics.path import follow_given
 from eurdf.kinematics.problem import Problem, for_many

@@ -12,8 +12,9 @@ from pinocchio import SE3
 
 from eurdf.array import Vector
 from eurdf.closures.se3 import IDENTITY_ROTATION
-from eurdf.kinematics.assembly import assembled, openings, start
+from eurdf.kinematics.assembly import assembled, openings
 from eurdf.kinematics.blocks import checked_rows, shape_of
+from eurdf.kinematics.closing import start
 from eurdf.kinematics.frame_jacobian import frames_of
 from eurdf.kinematics.inverse_search import InverseKinematicsReason, InverseTask, Target, search
 from eurdf.kinematics.named import Named

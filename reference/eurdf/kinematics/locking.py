@@ -13,7 +13,7 @@ import numpy as np
 from eurdf.array import Indices, Vector
 from eurdf.diagnostics.wording import meant
 from eurdf.errors import CannotLock, LockedOpen
-from eurdf.kinematics.assembly import start
+from eurdf.kinematics.closing import start
 from eurdf.kinematics.loop import find_loops
 from eurdf.kinematics.named import Named
 from eurdf.kinematics.residual import all_openings, residual

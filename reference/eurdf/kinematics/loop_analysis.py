@@ -13,7 +13,7 @@ from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.diagnostics.wording import enumerated
 from eurdf.json_schema import HIDDEN, Count, NullIfInfinite
 from eurdf.kinematics.finite_mobility import Evidence, FiniteMobility
-from eurdf.kinematics.group import Group
+from eurdf.kinematics.problem import Group
 from eurdf.kinematics.rank import numerical_rank, singular_values
 
 #: Entries below this, relative to the largest of their vector, count as rounding of numbers in files.

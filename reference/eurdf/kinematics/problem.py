@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eurdf.array import Mask, Matrix
+from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.evaluate import evaluator, few_tree, many_tree
-from eurdf.kinematics.group import Group, Stack
 from eurdf.kinematics.loop import LoopGroup, independent_groups, merged, moving_velocities
+from eurdf.kinematics.rank import least_solution, norms, product
+from eurdf.kinematics.stack import Stack
 from eurdf.kinematics.tangent_space import TangentSpaces
-from eurdf.kinematics.tolerances import CLOSED, MANY_ALIKE, MOST_VELOCITIES_AT_ONCE, SMALL
+from eurdf.kinematics.tolerances import CLOSED, MANY_ALIKE, MOST_VELOCITIES_AT_ONCE, SMALL, WELL_CLOSED
 from eurdf.pinocchio.memory import working_memory
 from eurdf.pinocchio.tree_few import as_slice
 
@@ -22,6 +25,102 @@ if TYPE_CHECKING:
 
 # Cost of the residual and Jacobian of one closure, in multiplications.
 _WORK_OF_A_CLOSURE = 3e5
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """Loops that are closed together, and the velocities that close them.
+
+    Attributes:
+        loops: The loops.
+        by: Indices in v of the given velocities that move them.
+        evaluator: Evaluates their constraints by their own velocities, followed by the given ones.
+        row_scale: Factors (m,) that make their rows dimensionless.
+        unit: Unit (n,) of each of their own velocities.
+        spread: Ratio of the largest unit of all these velocities to the smallest.
+        work: Multiplications for the smaller of A Aᵀ and Aᵀ A, and for the evaluation of A.
+        own: Indices in v of the velocities that close them.
+        held: A direction (n,) of unit length along which no step moves, or None.
+    """
+
+    loops: LoopGroup
+    by: Indices
+    evaluator: Any
+    row_scale: Vector
+    unit: Vector
+    spread: float
+    work: float
+    own: slice | Indices
+    held: Vector | None = None
+
+    @cached_property
+    def rows(self) -> slice | Indices:
+        """Which rows of the robot's residual are theirs."""
+        return as_slice(self.loops.rows)
+
+    @cached_property
+    def closures(self) -> slice | Indices:
+        """Which of the robot's constraints are theirs."""
+        return as_slice(np.array(self.loops.closures, dtype=np.intp))
+
+    @cached_property
+    def factors(self) -> Matrix:
+        """Factors (m, n) that make K dimensionless."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            return self.row_scale[:, None] * self.unit
+
+    def residual(self, q: Matrix) -> Matrix:
+        """Rows (B, m) at q (B, nq), m and rad."""
+        return self.residual_of(self.evaluator.at(q))
+
+    @cached_property
+    def residual_of(self) -> Callable[[Any], Matrix]:
+        """The same at configurations that the evaluator was given."""
+        residual: Callable[[Any], Matrix] = self.evaluator.residual
+        return residual
+
+    @cached_property
+    def at(self) -> Callable[[Matrix], Any]:
+        """Their constraints at q (B, nq)."""
+        at: Callable[[Matrix], Any] = self.evaluator.at
+        return at
+
+    def among(self, which: Mask) -> Group:
+        """The same group, for some of its elements."""
+        return self
+
+    def room(self, q: Matrix, limits: PositionLimits) -> tuple[Matrix, Matrix]:
+        """As `PositionLimits.room` of their own velocities."""
+        return limits.room(q, self.own)
+
+    def jacobian(self, at: Any) -> Matrix:
+        """Their derivative (B, m, n) at configurations that the evaluator was given, dimensionless."""
+        K = self.evaluator.jacobian(at)
+        A: Matrix = (K[:, :, : len(self.unit)] if len(self.by) else K) * self.factors
+        return A if self.held is None else A - (A @ self.held)[:, :, None] * self.held
+
+    def jacobian_at(self, q: Matrix) -> Matrix:
+        """The same at q (B, nq)."""
+        return self.jacobian(self.evaluator.at(q))
+
+    def following(self, q: Matrix, driven: Matrix | None, whole: Matrix | None = None) -> tuple[Matrix, Mask]:
+        """Their own velocities (B, n, k) for given ones (B, g, k), and where (B,) these exist beyond doubt.
+
+        They are the least ones, in rad/s and m/s, for each unit velocity if none are given. ``whole`` is
+        K (B, nc, nv) of the robot, if it is known.
+        """
+        if whole is None:
+            K = self.evaluator.jacobian(self.evaluator.at(q))
+        else:
+            K = whole[:, self.loops.rows[:, None], np.concatenate((self.loops.velocities, self.by))]
+        K = K * self.row_scale[:, None]
+        norm = self.spread * norms(K)
+        own, by = K[:, :, : len(self.unit)], K[:, :, len(self.unit) :]
+        return least_solution(own, -by if driven is None else -product(by, driven), norm)
+
+    def holding(self, direction: Vector) -> Group:
+        """The same group, whose derivative is zero along a direction (n,) of unit length: no step moves along it."""
+        return replace(self, held=direction)
 
 
 class Problem:
@@ -37,6 +136,7 @@ class Problem:
         given: Indices (k,) in v of the given velocities.
         groups: Groups of its loops that share no joint that moves.
         work: Multiplications in a step of all groups.
+        well_closed: Bound of the squared dimensionless residual of loops whose openings need not be measured.
         at_once: Whether all loops descend with one damping, before each group does by itself.
         together: The loops as they descend with one damping, if they do.
         stacks: Many groups of a large robot that are alike, for few elements.
@@ -48,6 +148,7 @@ class Problem:
         # No reference to the robot: the cache would keep it alive.
         self.tree = few_tree(robot) if few else many_tree(robot)
         self.spaces = robot.cached(TangentSpaces)
+        self.well_closed = (WELL_CLOSED / max(self.spaces.length, SMALL)) ** 2
         self.names = tuple(constraint.name for constraint in robot.constraints)
         self.given = np.array(given, dtype=np.intp)
         self._place = np.zeros(self.tree.nv, dtype=np.intp)  # of each velocity where it is among the given ones
@@ -121,7 +222,8 @@ class Problem:
     def residual(self, q: Matrix) -> Matrix:
         """The residual (B, nc), m and rad."""
         if len(self.parts) == 1:
-            return self.parts[0].residual(q)
+            found: Matrix = self.parts[0].residual(q)
+            return found
         r = np.empty((len(q), len(self.spaces.row_scale)))
         for part in self.parts:
             r[:, part.rows] = part.residual(q)

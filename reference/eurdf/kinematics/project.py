@@ -13,8 +13,8 @@ import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.errors import NotClosable
-from eurdf.kinematics.assembly import assembled, start
-from eurdf.kinematics.closing import close
+from eurdf.kinematics.assembly import assembled
+from eurdf.kinematics.closing import close, start
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.named import Named, velocity_of
 from eurdf.kinematics.problem import Problem

@@ -10,7 +10,7 @@ from pinocchio import LOCAL
 
 from eurdf.array import Indices, Mask, Matrix, Vector, numbers
 from eurdf.errors import DependentActuators
-from eurdf.kinematics.assembly import start
+from eurdf.kinematics.closing import start
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.frame_jacobian import checked_reference, frame_jacobian, frames_of, in_reference
 from eurdf.kinematics.named import Named

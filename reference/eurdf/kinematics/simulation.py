@@ -12,7 +12,8 @@ import numpy as np
 from eurdf.array import Matrix, Vector
 from eurdf.errors import NotClosable, SimulationDiverged, StepTooLongWarning
 from eurdf.kinematics.applied_force import AppliedForce, External
-from eurdf.kinematics.assembly import assemble, start
+from eurdf.kinematics.assembly import assemble
+from eurdf.kinematics.closing import start
 from eurdf.kinematics.finite import overflow_refused
 from eurdf.kinematics.forward_solver import ForwardSolver
 from eurdf.kinematics.independence import norm

@@ -277,10 +277,11 @@ class _Bundle:
         """ᴬM_B of each pair at q (nq,)."""
         model, data = self._model, self._data
         pin.computeJointJacobians(model, data, q[self._coordinates])
+        self._J, placements = None, []
         for constraint, found in self._each:
             constraint.calc(model, data, found)
-        self._J = None
-        return [found.c1Mc2 for _, found in self._each]
+            placements.append(found.c1Mc2)
+        return placements
 
     def jacobian(self) -> Matrix:
         """The twists (k, 6, own n) of B against A where `placements` last was, by the velocities."""

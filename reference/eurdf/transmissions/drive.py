@@ -9,7 +9,8 @@ import numpy as np
 
 from eurdf.array import Indices, Matrix, Vector
 from eurdf.errors import NotClosable, NoTransmission, TooFar, shown
-from eurdf.kinematics.assembly import assemble, closed_start, start
+from eurdf.kinematics.assembly import assemble, closed_start
+from eurdf.kinematics.closing import start
 from eurdf.kinematics.evaluate import evaluator
 from eurdf.kinematics.loop import independent_groups, merged, moving_velocities
 from eurdf.kinematics.named import Named

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from eurdf.array import Matrix, Vector, numbers
-from eurdf.kinematics.assembly import start
+from eurdf.kinematics.closing import start
 from eurdf.kinematics.named import Named, vector_of
 from eurdf.loading import of_any_robot
 from eurdf.pinocchio.arguments import checked_array

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
-from eurdf.kinematics.assembly import assembled, start
-from eurdf.kinematics.closing import close
+from eurdf.kinematics.assembly import assembled
+from eurdf.kinematics.closing import close, start
 from eurdf.kinematics.loop import independent_groups, moving_velocities
 from eurdf.kinematics.problem import Problem, for_many
 from eurdf.kinematics.tangent_space import TangentSpaces

@@ -10,7 +10,8 @@ import numpy as np
 from eurdf.array import Vector
 from eurdf.diagnostics.wording import enumerated
 from eurdf.errors import NoTransmission, OutOfReach
-from eurdf.kinematics.assembly import assemble, closed_start, start
+from eurdf.kinematics.assembly import assemble, closed_start
+from eurdf.kinematics.closing import start
 from eurdf.kinematics.forward import farthest
 from eurdf.kinematics.named import Named
 from eurdf.kinematics.position_limit import position_limits

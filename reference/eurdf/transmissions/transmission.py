@@ -11,8 +11,8 @@ import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.errors import DependentVelocities, NoTransmission
-from eurdf.kinematics.assembly import start
 from eurdf.kinematics.blocks import blocks, checked_configurations, shape_of
+from eurdf.kinematics.closing import start
 from eurdf.kinematics.finite import overflow_refused
 from eurdf.kinematics.named import Named, vector_of
 from eurdf.kinematics.problem import for_many

@@ -13,8 +13,9 @@ import numpy as np
 
 from eurdf.array import Vector
 from eurdf.kinematics.analysis import Analysis, analyze
-from eurdf.kinematics.assembly import Assembly, assemble, start
+from eurdf.kinematics.assembly import Assembly, assemble
 from eurdf.kinematics.branch import Branch, BranchPoint
+from eurdf.kinematics.closing import start
 from eurdf.kinematics.inverse import inverse_kinematics
 from eurdf.kinematics.named import Named, configuration_of
 from eurdf.kinematics.path import Elements, follow

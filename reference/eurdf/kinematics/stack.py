@@ -1,4 +1,4 @@
-"""Groups of loops that share no joint that moves, as solvers see them; and those that are alike, all at once.
+"""Groups of loops that are alike, as solvers see them all at once.
 
 A large robot can have hundreds of equal groups. One after the other, most of their time would be that of calls.
 """
@@ -6,111 +6,16 @@ A large robot can have hundreds of equal groups. One after the other, most of th
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
-from eurdf.kinematics.loop import LoopGroup
-from eurdf.kinematics.rank import least_solution, norms, product
-from eurdf.pinocchio.tree_few import as_slice
+from eurdf.kinematics.rank import least_solution
 
 if TYPE_CHECKING:
     from eurdf.kinematics.position_limit import PositionLimits
-
-
-@dataclass(frozen=True, eq=False)
-class Group:
-    """Loops that are closed together, and the velocities that close them.
-
-    Attributes:
-        loops: The loops.
-        by: Indices in v of the given velocities that move them.
-        evaluator: Evaluates their constraints by their own velocities, followed by the given ones.
-        row_scale: Factors (m,) that make their rows dimensionless.
-        unit: Unit (n,) of each of their own velocities.
-        spread: Ratio of the largest unit of all these velocities to the smallest.
-        work: Multiplications for the smaller of A Aᵀ and Aᵀ A, and for the evaluation of A.
-        own: Indices in v of the velocities that close them.
-        held: A direction (n,) of unit length along which no step moves, or None.
-    """
-
-    loops: LoopGroup
-    by: Indices
-    evaluator: Any
-    row_scale: Vector
-    unit: Vector
-    spread: float
-    work: float
-    own: slice | Indices
-    held: Vector | None = None
-
-    @cached_property
-    def rows(self) -> slice | Indices:
-        """Which rows of the robot's residual are theirs."""
-        return as_slice(self.loops.rows)
-
-    @cached_property
-    def closures(self) -> slice | Indices:
-        """Which of the robot's constraints are theirs."""
-        return as_slice(np.array(self.loops.closures, dtype=np.intp))
-
-    @cached_property
-    def factors(self) -> Matrix:
-        """Factors (m, n) that make K dimensionless."""
-        with np.errstate(over="ignore", invalid="ignore"):
-            return self.row_scale[:, None] * self.unit
-
-    def residual(self, q: Matrix) -> Matrix:
-        """Rows (B, m) at q (B, nq), m and rad."""
-        return self.residual_of(self.evaluator.at(q))
-
-    def residual_of(self, at: Any) -> Matrix:
-        """The same at configurations that the evaluator was given."""
-        return np.asarray(self.evaluator.residual(at))
-
-    def at(self, q: Matrix) -> Any:
-        """Their constraints at q (B, nq)."""
-        return self.evaluator.at(q)
-
-    def among(self, which: Mask) -> Group:
-        """The same group, for some of its elements."""
-        return self
-
-    def room(self, q: Matrix, limits: PositionLimits) -> tuple[Matrix, Matrix]:
-        """As `PositionLimits.room` of their own velocities."""
-        return limits.room(q, self.own)
-
-    def jacobian(self, at: Any) -> Matrix:
-        """Their derivative (B, m, n) at configurations that the evaluator was given, dimensionless."""
-        K = self.evaluator.jacobian(at)
-        A: Matrix = (K[:, :, : len(self.unit)] if len(self.by) else K) * self.factors
-        return A if self.held is None else A - (A @ self.held)[:, :, None] * self.held
-
-    def jacobian_at(self, q: Matrix) -> Matrix:
-        """The same at q (B, nq)."""
-        return self.jacobian(self.evaluator.at(q))
-
-    def following(self, q: Matrix, driven: Matrix | None, whole: Matrix | None = None) -> tuple[Matrix, Mask]:
-        """Their own velocities (B, n, k) for given ones (B, g, k), and where (B,) these exist beyond doubt.
-
-        They are the least ones, in rad/s and m/s, for each unit velocity if none are given. ``whole`` is
-        K (B, nc, nv) of the robot, if it is known.
-        """
-        if whole is None:
-            K = self.evaluator.jacobian(self.evaluator.at(q))
-        else:
-            K = whole[:, self.loops.rows[:, None], np.concatenate((self.loops.velocities, self.by))]
-        K = K * self.row_scale[:, None]
-        norm = self.spread * norms(K)
-        own, by = K[:, :, : len(self.unit)], K[:, :, len(self.unit) :]
-        return least_solution(own, -by if driven is None else -product(by, driven), norm)
-
-    def holding(self, direction: Vector) -> Group:
-        """The same group, whose derivative is zero along a direction (n,) of unit length: no step moves along it."""
-        return replace(self, held=direction)
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,7 +39,7 @@ class Stack:
 
     tree: Any
     members: Indices
-    part: Group
+    part: Any
     rows: Indices
     columns: Indices
     velocities: Indices
@@ -146,7 +51,7 @@ class Stack:
     work: float
 
     @classmethod
-    def of_groups(cls, tree: Any, members: list[int], groups: list[Group], part: Group) -> Stack:
+    def of_groups(cls, tree: Any, members: list[int], groups: Sequence[Any], part: Any) -> Stack:
         """Take groups that are alike, and all of their loops as one."""
         velocities, by = (
             np.array([group.loops.velocities for group in groups]),
@@ -193,7 +98,7 @@ class Stack:
 
 
 class StackElements:
-    """StackElements of a configuration and a group of a stack. They descend as a `Group` whose elements they are.
+    """Pairs of a configuration and a group of a stack. They descend as a `Group` whose elements they are.
 
     Attributes:
         element: Which of the configurations (E,).
