@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -142,15 +143,15 @@ class TangentSpace:
         return whole[0] if self._alone else whole
 
 
-class AlikeBlocks(NamedTuple):
-    """AlikeBlocks of K that have the same numbers m of rows and n of velocities.
+@dataclass(frozen=True, eq=False)
+class AlikeBlocks:
+    """Blocks of K that have the same numbers m of rows and n of velocities.
 
     Attributes:
         rows: Their rows (g, m).
         velocities: Their velocities (g, n).
         weights: Factors (g, m) that make the rows dimensionless.
         unit: Units (g, n) of the velocities.
-        factors: Factors (g, m, n) that make K dimensionless.
         is_whole: Whether the only block is K itself.
     """
 
@@ -158,16 +159,19 @@ class AlikeBlocks(NamedTuple):
     velocities: Indices
     weights: Matrix
     unit: Matrix
-    factors: Matrix
     is_whole: bool
 
     @classmethod
     def of_units(cls, rows: Indices, velocities: Indices, row_scale: Vector, scale: Vector) -> AlikeBlocks:
         """Take where the blocks are, and the units of all rows and velocities."""
-        weights, unit = row_scale[rows], scale[velocities]
+        is_whole = (len(rows), rows.shape[1], velocities.shape[1]) == (1, len(row_scale), len(scale))
+        return cls(rows, velocities, row_scale[rows], scale[velocities], is_whole)
+
+    @cached_property
+    def factors(self) -> Matrix:
+        """Factors (g, m, n) that make K dimensionless."""
         with np.errstate(over="ignore", invalid="ignore"):  # lengths such as 1e200 m
-            factors = weights[:, :, None] * unit[:, None]
-        return cls(rows, velocities, weights, unit, factors, factors.shape == (1, len(row_scale), len(scale)))
+            return self.weights[:, :, None] * self.unit[:, None]
 
     def of(self, K: Matrix) -> Matrix:
         """The blocks (…, g, m, n) of K (…, nc, nv)."""
@@ -184,7 +188,6 @@ class TangentSpaces:
         outside: Indices of the velocities outside of all loops.
         all_turn: Whether every unit is 1: none of a velocity of a loop is a length.
         alike: Groups of loops with as many rows and velocities, and their blocks of K.
-        whole: K as one block.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -209,13 +212,18 @@ class TangentSpaces:
             )
             for groups in alike.values()
         ]
-        self.whole = AlikeBlocks.of_units(np.arange(len(units[0]))[None], np.arange(len(units[1]))[None], *units)
 
     @cached_property
+    def whole(self) -> AlikeBlocks:
+        """K as one block."""
+        rows, velocities = np.arange(len(self.row_scale)), np.arange(len(self.scale))
+        return AlikeBlocks.of_units(rows[None], velocities[None], self.row_scale, self.scale)
+
+    @property
     def dimensionless(self) -> Matrix:
         """Factors (nc, nv) that make K dimensionless."""
-        with np.errstate(over="ignore", invalid="ignore"):  # lengths such as 1e200 m
-            return self.row_scale[:, None] * self.scale
+        factors: Matrix = self.whole.factors[0]
+        return factors
 
     def at(self, K: Matrix) -> TangentSpace:
         """The tangent space for the constraint Jacobian K (nc, nv).
@@ -266,7 +274,7 @@ class TangentSpaces:
 
 
 class _Decomposed(NamedTuple):
-    """AlikeBlocks (b, m, n) of K, decomposed.
+    """Blocks (b, m, n) of K, decomposed.
 
     Attributes:
         right: Orthonormal bases (b, n, n): after the first columns, as many as the rank, they span the free motions.

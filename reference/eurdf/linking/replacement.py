@@ -29,8 +29,8 @@ def replace_joints(
 ) -> None:
     """Apply every entry of the description to the URDF's joints, in place, then the three-revolute rule of version 1.
 
-    Only version 1 merges revolutes by itself, but for those that carry a frame of a closure; since version 2.1, a
-    description may state springs and losses of mimic joints.
+    Version 1 merges three revolutes by itself, unless a link between them carries a frame of a closure. Since version
+    2.1 a description may state springs and losses of mimic joints.
     """
     urdf, diagnostics = joints.urdf, joints.reporter.diagnostics
     mimicking = {joint.name: joint.mimic.joint for joint in urdf.joints.values() if joint.mimic}
