@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from eurdf.kinematics.loop import Loop, find_loops, joints_of_loops
+from eurdf.pinocchio.ancestry import DisjointSets
 from eurdf.pinocchio.tree_few import BUNDLED
 
 if TYPE_CHECKING:
@@ -80,28 +81,21 @@ def _with_trunk(robot: Robot, part: LimbJoints) -> LimbJoints:
 def _parts(robot: Robot, trunk: set[int]) -> list[LimbJoints]:
     """The joints outside of the trunk, in parts that neither a joint nor a constraint connects."""
     tree = robot.tree
-    leader = list(range(len(tree.parents)))
-
-    def find(joint: int) -> int:
-        while leader[joint] != joint:
-            leader[joint] = leader[leader[joint]]
-            joint = leader[joint]
-        return joint
-
+    sets = DisjointSets(len(tree.parents))  # of joints
     for joint, parent in enumerate(tree.parents):
         if parent and joint not in trunk and parent not in trunk:
-            leader[joint] = find(parent)
+            sets.join(joint, parent)
     lowest: list[int] = []
     for loop in find_loops(robot):
         first, *others = _moving(loop)
         lowest.append(first)
         for joint in others:
-            leader[find(joint)] = find(first)
+            sets.join(joint, first)
     joints: dict[int, list[int]] = {}
-    for joint in range(1, len(leader)):
+    for joint in range(1, len(tree.parents)):
         if joint not in trunk:
-            joints.setdefault(find(joint), []).append(joint)
+            joints.setdefault(sets.find(joint), []).append(joint)
     constraints: dict[int, list[int]] = {}
     for index, joint in enumerate(lowest):
-        constraints.setdefault(find(joint), []).append(index)
+        constraints.setdefault(sets.find(joint), []).append(index)
     return [LimbJoints(tuple(own), tuple(constraints.get(key, ()))) for key, own in joints.items()]

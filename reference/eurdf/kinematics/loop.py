@@ -9,7 +9,7 @@ import numpy as np
 
 from eurdf.array import Indices
 from eurdf.mechanism.constraint import Constraint
-from eurdf.pinocchio.ancestry import Ancestry
+from eurdf.pinocchio.ancestry import Ancestry, DisjointSets
 from eurdf.pinocchio.tree import Tree
 
 if TYPE_CHECKING:
@@ -166,14 +166,7 @@ def _connected(
     for joint, parent in enumerate(parents):
         nearest.append(joint if movers[joint] else nearest[parent] if joint else 0)
     above = [nearest[parent] for parent in parents]  # the next of them: later one beyond others of the same group
-    leader = list(range(len(parents)))  # by mover: a union-find forest
-
-    def find(mover: int) -> int:
-        while leader[mover] != mover:
-            leader[mover] = leader[leader[mover]]
-            mover = leader[mover]
-        return mover
-
+    groups = DisjointSets(len(parents))  # of movers
     found: dict[int, None] = {}  # movers of all loops
     first: list[int] = []  # of each loop one mover; 0 where all of its joints are held
     for loop in loops:
@@ -188,14 +181,13 @@ def _connected(
                 mover = movers[each]
                 found[mover] = None
                 one = one or mover
-                leader[find(mover)] = find(one)
+                groups.join(mover, one)
         first.append(one)
-
     members: dict[int, list[int]] = {}
     for index, mover in enumerate(first):
         # A loop none of whose joints moves is a group of its own.
-        members.setdefault(find(mover) if mover else -1 - index, []).append(index)
+        members.setdefault(groups.find(mover) if mover else -1 - index, []).append(index)
     joints: dict[int, list[int]] = {key: [] for key in members}
     for mover in sorted(found):
-        joints[find(mover)].append(mover)
+        joints[groups.find(mover)].append(mover)
     return [(indices, joints[key]) for key, indices in members.items()]

@@ -19,7 +19,7 @@ from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.named import Named, velocity_of
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.residual import acceleration_drift, residual_and_jacobian
-from eurdf.kinematics.tangent_space import SpacePart, TangentSpaces, metric
+from eurdf.kinematics.tangent_space import SpacePart, TangentSpaces, metric, weighted
 from eurdf.kinematics.tolerances import RESTARTS, SOLVED
 from eurdf.pinocchio.arguments import checked_tolerance
 from eurdf.pinocchio.memory import working_memory
@@ -121,18 +121,13 @@ def nearest_closed(task: ProjectionTask, q: Matrix) -> tuple[Matrix, Mask]:
 def _distance(task: ProjectionTask, q: Matrix, at: Matrix) -> Vector:
     """½ xᵀ W x (B,), x = at ⊖ q."""
     x = task.problem.tree.difference(q, at)
-    return np.asarray(0.5 * (_weighted(task.W, x) * x).sum(axis=1))
+    return np.asarray(0.5 * (weighted(task.W, x.T).T * x).sum(axis=1))
 
 
 def _gradient(task: ProjectionTask, q: Matrix, at: Matrix) -> Matrix:
     """The derivative (B, nv) of `_distance` by the motion of ``at``."""
     tree = task.problem.tree
-    return np.asarray(tree.difference_derivative_times(q, at, _weighted(task.W, tree.difference(q, at))))
-
-
-def _weighted(W: Matrix, x: Matrix) -> Matrix:
-    """W x (B, nv), of a symmetric W."""
-    return x * W if W.ndim == 1 else x @ W
+    return np.asarray(tree.difference_derivative_times(q, at, weighted(task.W, tree.difference(q, at).T).T))
 
 
 def _step(task: ProjectionTask, q: Matrix, here: Matrix) -> tuple[Matrix, Vector]:

@@ -57,6 +57,26 @@ class Ancestry:
         return total
 
 
+class DisjointSets:
+    """Numbers in sets that are joined: a union-find forest, nearly linear in what it is asked."""
+
+    def __init__(self, count: int) -> None:
+        """Take the number of numbers from 0 on, each a set of its own."""
+        self._above = list(range(count))
+
+    def find(self, number: int) -> int:
+        """The number that stands for the set of this one."""
+        above = self._above
+        while above[number] != number:
+            above[number] = above[above[number]]
+            number = above[number]
+        return number
+
+    def join(self, number: int, other: int) -> None:
+        """Make one set of those of two numbers; that of the other stands for it."""
+        self._above[self.find(number)] = self.find(other)
+
+
 def between(parents: Sequence[int], a: int, b: int) -> dict[int, float]:
     """The nodes between two, up to where their paths meet: +1 for those on the way to b, -1 for those to a."""
     signs = {}

@@ -19,7 +19,7 @@ from eurdf.mechanism.body import Anchor
 from eurdf.pinocchio.springs import NO_SPRINGS
 from eurdf.pinocchio.tree import Tree
 from eurdf.pinocchio.tree_dynamics import TreeDynamics
-from eurdf.pinocchio.tree_few import Site, as_slice
+from eurdf.pinocchio.tree_few import Site, as_slice, model_of_joints
 
 
 class Limb:
@@ -42,11 +42,7 @@ class Limb:
         if joints is None or shares is None:
             self.model = tree.model
             return
-        model, self.model, self._index = tree.model, pin.Model(), {0: 0}
-        for joint in joints:
-            above = self._index[tree.parents[joint]]
-            place = model.jointPlacements[joint]
-            self._index[joint] = self.model.addJoint(above, model.joints[joint], place, model.names[joint])
+        self.model, self._index = model_of_joints(tree.model, tree.parents, joints)
         self._shares = {joint: shares[joint] for joint in joints}
         self.velocities = np.array([each for joint in joints for each in tree.own_velocities[joint]], dtype=np.intp)
         coordinates = [each for joint in joints for each in tree.own_coordinates[joint]]

@@ -242,10 +242,7 @@ class _Bundle:
         joints: list[int],
         velocities: list[int],
     ) -> None:
-        small, index = pin.Model(), {0: 0}
-        for joint in joints:  # a parent comes before its children
-            above = index.get(parents[joint], 0)  # what carries both frames of a pair does not matter
-            index[joint] = small.addJoint(above, model.joints[joint], model.jointPlacements[joint], model.names[joint])
+        small, index = model_of_joints(model, parents, joints)
         self.which = which
         self._pairs = [tuple(Site(index.get(end.joint, 0), end.placement) for end in pairs[each]) for each in which]
         self._model, self._data = small, small.createData()
@@ -321,6 +318,20 @@ class _Bundle:
             twists.append(oMb.actInv(twist).vector)
             changes.append(oMb.actInv(change_b - change_a - twist_b.cross(twist)).vector)
         return np.array((twists, changes))
+
+
+def model_of_joints(
+    model: pin.Model, parents: Sequence[int], joints: Iterable[int]
+) -> tuple[pin.Model, dict[int, int]]:
+    """A model of some joints, ascending, without inertia, and where they are in it.
+
+    A joint whose parent is not among them moves against the universe.
+    """
+    small, index = pin.Model(), {0: 0}
+    for joint in joints:
+        above = index.get(parents[joint], 0)
+        index[joint] = small.addJoint(above, model.joints[joint], model.jointPlacements[joint], model.names[joint])
+    return small, index
 
 
 def as_slice(indices: Indices) -> slice | Indices:
