@@ -106,18 +106,41 @@ class TangentSpace:
         if together:
             Z, inverse = (np.reshape(each, (-1, 1, *each.shape[-2:])) for each in (self.basis, self.inverse))
             return [SpacePart(np.arange(len(scale))[None], np.arange(len(row_scale))[None], Z, inverse)]
+        found = []
+        for velocities, rows, free, inverse in self.alike():
+            unit = scale[velocities][:, :, None]
+            Z = free if (unit == 1.0).all() else np.linalg.qr(unit * free)[0]
+            found.append(SpacePart(velocities, rows, Z, unit * inverse * row_scale[rows][:, None]))
+        return found
+
+    def alike(self) -> Iterator[tuple[Indices, Indices, Matrix, Matrix]]:
+        """Groups of loops that are alike.
+
+        Returns:
+            Their velocities (g, n) and rows (g, m), their bases (b, g, n, f) of the free motions and their
+            pseudoinverses (b, g, n, m), dimensionless.
+        """
         alike: dict[tuple[int, int, int], list[_Block]] = {}
         for block in self._blocks:
             alike.setdefault((*block.free.shape[1:], len(block.group.rows)), []).append(block)
-        found = []
         for blocks in alike.values():
             velocities = np.array([block.group.velocities for block in blocks])
             rows = np.array([block.group.rows for block in blocks])
-            unit, free = scale[velocities][:, :, None], np.stack([block.free for block in blocks], axis=1)
-            Z = free if (unit == 1.0).all() else np.linalg.qr(unit * free)[0]
-            inverse = unit * np.stack([block.inverse for block in blocks], axis=1) * row_scale[rows][:, None]
-            found.append(SpacePart(velocities, rows, Z, inverse))
-        return found
+            free, inverse = ([getattr(block, each) for block in blocks] for each in ("free", "inverse"))
+            yield velocities, rows, np.stack(free, axis=1), np.stack(inverse, axis=1)
+
+    def free_motions(self) -> Iterator[tuple[Indices, Matrix]]:
+        """Velocities and bases as in `alike`, also those of the velocities outside; a small robot is one group."""
+        count = len(self._spaces.scale)
+        if count <= MOST_VELOCITIES_AT_ONCE:
+            free = self.free / self._spaces.scale[:, None]
+            yield np.arange(count)[None], free.reshape(len(self.which), 1, count, free.shape[-1])
+            return
+        for velocities, _, free, _ in self.alike():
+            yield velocities, free
+        outside = self._spaces.outside[:, None]
+        if len(outside):
+            yield outside, np.ones((len(self.which), len(outside), 1, 1))
 
     def nearest(self, W: Matrix, v: Vector) -> Vector:
         """The v' = Z y (nv,) nearest to v in the metric W: Z (Zᵀ W Z)⁻¹ Zᵀ W v."""
