@@ -40,6 +40,7 @@ class ForwardSolver:
         self._whole: LimbSolver | None = None
         self._limbs: list[LimbSolver] = []
         self._combinations: Matrix | None = None  # of redundant rows, as many as are independent
+        self._is_judged = False  # whether the last solution of `acceleration` that was judged is beyond doubt
         self._own: TreeDynamics | None = None
         if not robot.constraints or len(robot.model.mimicking_joints):
             return
@@ -76,16 +77,7 @@ class ForwardSolver:
         return self.own if data is None else self._tree.dynamics(data)
 
     def solve(
-        self,
-        robot: Robot,
-        q: Vector,
-        v: Vector,
-        force: Vector,
-        gains: list[Gains],
-        dynamics: TreeDynamics,
-        *,
-        nearly_closed: bool = False,
-        within_step: bool = False,
+        self, robot: Robot, q: Vector, v: Vector, force: Vector, gains: list[Gains], dynamics: TreeDynamics
     ) -> Acceleration:
         """Solve M a + h = τ + Kᵀ λ and K a + K̇ v = -kd K v - kp r.
 
@@ -96,18 +88,41 @@ class ForwardSolver:
             force: τ (nv,).
             gains: Baumgarte gains of each constraint: kp, 1/s², and kd, 1/s.
             dynamics: Those of the tree.
-            nearly_closed: Whether a drift will do that equals K̇ v only where the constraints hold and K v = 0, as
-                between the steps of an integration, which start and end there.
-            within_step: Whether the state is one between these steps, and the step began at the last one that was not.
 
         Raises:
             UndeterminedMotion: A joint without inertia can move.
             NumericalOverflow: The result is not finite.
         """
-        solution = self.beyond_doubt(q, v, force, gains, dynamics, nearly_closed=nearly_closed, within_step=within_step)
-        if solution is None:
-            solution = _eliminated(robot, q, v, force, gains, dynamics)
-        return solution
+        solution = self.beyond_doubt(q, v, force, gains, dynamics)
+        return _eliminated(robot, q, v, force, gains, dynamics) if solution is None else solution
+
+    def acceleration(
+        self, robot: Robot, q: Vector, v: Vector, force: Vector, gains: list[Gains], *, within_step: bool
+    ) -> Vector:
+        """The a (nv,) of `solve` in an integration, with the dynamics that are its own.
+
+        Any drift will do that equals K̇ v where the constraints hold and K v = 0: its steps start and end there. The
+        rank of K and the solution are judged at the start of a step, but not ``within_step``.
+        """
+        dynamics = self._own or self.own
+        if within_step and self._is_judged:
+            a = self._within_step(q, v, force, gains, dynamics.data)
+            if a is not None:
+                return a
+        self._combinations = None
+        solution = self.beyond_doubt(q, v, force, gains, dynamics, nearly_closed=True)
+        self._is_judged = solution is not None
+        return (_eliminated(robot, q, v, force, gains, dynamics) if solution is None else solution).a
+
+    def _within_step(self, q: Vector, v: Vector, force: Vector, gains: list[Gains], data: Any) -> Vector | None:
+        """As `acceleration`, near a state that was judged; None if a solver is not sure."""
+        if self._limbs:
+            return self._by_limbs_within_step(q, v, force, gains)
+        solver = self._whole
+        assert solver is not None
+        if self._combinations is not None:
+            return solver.by_combinations(solver.solve(q, v, force, gains, data, True), force, data, self._combinations)
+        return solver.acceleration(q, v, force, gains, data, True)
 
     def beyond_doubt(
         self,
@@ -118,23 +133,18 @@ class ForwardSolver:
         dynamics: TreeDynamics,
         *,
         nearly_closed: bool = False,
-        within_step: bool = False,
     ) -> Acceleration | None:
         """The solution by Pinocchio's solver, as `solve`; None if it has none, or if the solution is in doubt.
 
-        It is, unless the constraints hold, the rank of K is certain, and the solution satisfies both equations.
+        It is, unless the constraints hold, the rank of K is certain, and the solution satisfies both equations. With
+        ``nearly_closed``, the constraints need not quite hold.
         """
         is_own, solver = dynamics is self._own, self._whole
         if is_own and self._limbs:
             return self._by_limbs(q, v, force, gains, dynamics, nearly_closed)
         if solver is None or dynamics.data is None:
             return None
-        found = solver.solve(q, v, force, gains, dynamics.data, is_own)
-        if not within_step:
-            self._combinations = None
-        elif self._combinations is not None:
-            return solver.by_combinations(found, force, dynamics.data, self._combinations)
-        a, on_a, J, target = found
+        a, on_a, J, target = solver.solve(q, v, force, gains, dynamics.data, is_own)
         if not nearly_closed and not solver.is_closed(J, v):
             return None
         if not keeps(a, J, target) or not _balances(dynamics, q, v, a, force, on_a.dot(J)):
@@ -186,6 +196,26 @@ class ForwardSolver:
                 return None
             lambdas[solver.rows] = -least
         return Acceleration(a, lambdas) if _balances(dynamics, q, v, a, force, carried) else None
+
+    def _by_limbs_within_step(self, q: Vector, v: Vector, force: Vector, gains: list[Gains]) -> Vector | None:
+        """The a of `_by_limbs`, as `_within_step`."""
+        shared, a = force / self._shares, np.zeros(len(v))
+        alone = []
+        inertia, needed = np.zeros((self._trunk, self._trunk)), np.zeros(self._trunk)
+        for solver, (own, at, unit) in zip(self._limbs, self._joints, strict=True):
+            limb = solver.limb
+            own_a = solver.acceleration(q, v, limb.part_of_v(shared), gains, limb.dynamics.data, True)
+            if own_a is None:
+                return None
+            response, _ = solver.respond(unit)
+            inverse = inverses(response[own])
+            inertia[at[:, None], at] += inverse
+            needed[at] += inverse.dot(own_a[own])
+            alone.append((own_a, response.dot(inverse)))
+        trunk = solutions(inertia, needed)
+        for solver, (own, at, _), (own_a, follow) in zip(self._limbs, self._joints, alone, strict=True):
+            a[solver.limb.velocities] = own_a + follow.dot(trunk[at] - own_a[own])
+        return a
 
     def closures(self, robot: Robot, q: Vector) -> tuple[Vector, Matrix]:
         """The residual (nc,) at q (nq,), and K (nc, nv), which is its derivative where the closures are closed."""

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eurdf.array import Indices, Matrix, Vector
-from eurdf.kinematics.equation_of_motion import Acceleration
 from eurdf.kinematics.evaluate import Evaluator
 from eurdf.kinematics.independence import Independence, norm
 from eurdf.kinematics.loop import find_loops
@@ -99,6 +98,19 @@ class LimbSolver:
             np.concatenate((found.target, target)),
         )
 
+    def acceleration(
+        self, q: Vector, v: Vector, force: Vector, gains: list[Gains], data: Any, is_own: bool
+    ) -> Vector | None:
+        """Only the a of `solve`, if the constraints are Pinocchio's and its solver is sure of it; else None."""
+        if self._others:
+            return None
+        if self._is_plain:
+            a = self._solver.acceleration(q, v, force, gains, data, is_own)
+        else:
+            own = gains if len(gains) == len(self._modelled) else [gains[index] for index in self._modelled]
+            a = self._solver.acceleration(self.limb.part_of_q(q), self.limb.part_of_v(v), force, own, data, is_own)
+        return a if self._solver.is_solved() else None
+
     def respond(self, forces: Matrix) -> tuple[Matrix, Matrix]:
         """The changes of a and of all f by generalized forces (n, k) on the limb, where `solve` was last."""
         a, on_a = self._solver.respond(forces)
@@ -120,10 +132,8 @@ class LimbSolver:
         """Combinations of redundant rows, as many as are independent where forces were last; None if all rows are."""
         return self._independence.combinations() if len(self.rows) else None
 
-    def by_combinations(
-        self, found: ConstrainedMotion, force: Vector, data: Any, chosen: Matrix
-    ) -> Acceleration | None:
-        """The solution in which combinations (rank, m) of the rows hold; None if it misses an equation.
+    def by_combinations(self, found: ConstrainedMotion, force: Vector, data: Any, chosen: Matrix) -> Vector | None:
+        """The a in which combinations (rank, m) of the rows hold; None if it misses an equation.
 
         Where the constraints do not quite hold, redundant rows contradict each other: Pinocchio's solver would lock the
         mechanism.
@@ -135,7 +145,7 @@ class LimbSolver:
         x = solutions(equations, given)
         if not is_rounding(norm(equations.dot(x) - given), norm(given)):
             return None
-        return Acceleration(x[:n], self.in_order(-chosen.T.dot(x[n:])))
+        return x[:n]
 
     def is_closed(self, J: Matrix, v: Vector) -> bool:
         """Whether the constraints hold, and so do their rates, where `solve` was last, of the robot's v (nv,)."""

@@ -27,9 +27,11 @@ if TYPE_CHECKING:
 #: Baumgarte gains kp, 1/s², and kd, 1/s.
 Gains = tuple[float, float]
 
-# μ regularizes only the first step of the solver; after the following steps the result does not depend on it.
+# μ regularizes only the first step of the solver; after the following steps the result does not depend on it. They end
+# once f changes by at most _CHANGE, N and N·m, which is what Pinocchio compares with its relative accuracy: J a then
+# misses its target by at most μ times as much.
 _MU, _MOST_STEPS = 1e-8, 50
-_ACCURACY = 1e-14
+_CHANGE = 1e-5
 # Of a response, which is multiplied by forces that a solution is short of.
 _RESPONSE = 1e-12
 
@@ -85,10 +87,11 @@ class ConstrainedDynamics:
         self._forces = _forces_of_contacts(constraints)
         # With L the map of the forces, Lᵀ K is the Jacobian of the contacts.
         self._rows = None if self._forces is None else np.asarray(np.linalg.pinv(self._forces).T)
-        self._settings = pin.ProximalSettings(_ACCURACY, _ACCURACY, _MU, _MOST_STEPS)
+        self._settings = pin.ProximalSettings(0.0, _CHANGE, _MU, _MOST_STEPS)
         self._gains: list[Gains] = []
         self._prepared: pin.Data | None = None
-        self._last: tuple[Matrix, Any] = np.empty((0, 0)), None
+        self._data: Any = None  # where `acceleration` was last
+        self._size = sum(contact.rows for contact in contacts)
 
     def solve(
         self, q: Vector, v: Vector, force: Vector, gains: list[Gains], data: pin.Data, is_own: bool
@@ -103,8 +106,20 @@ class ConstrainedDynamics:
             data: Memory of the whole model.
             is_own: Whether no other solver of constrained dynamics uses this memory.
         """
+        a = self.acceleration(q, v, force, gains, data, is_own)
         model, models, datas = self._model, self._models, self._datas
-        if gains != self._gains:
+        J = pin.getConstraintsJacobian(model, data, models, datas) if self._is_plain else self._jacobian(data)
+        if self._forces is None or self._rows is None:
+            return ConstrainedMotion(a, data.lambda_c, J, data.primal_rhs_contact)
+        target = self._rows.dot(data.primal_rhs_contact)
+        return ConstrainedMotion(a, self._forces.dot(data.lambda_c), self._rows.dot(J), target)
+
+    def acceleration(
+        self, q: Vector, v: Vector, force: Vector, gains: list[Gains], data: pin.Data, is_own: bool
+    ) -> Vector:
+        """The a (nv,) of `solve`, as of which `is_solved`."""
+        model, models, datas = self._model, self._models, self._datas
+        if gains is not self._gains and gains != self._gains:
             self._gains = gains
             for constraint_model, owner in zip(models, self._owners, strict=True):
                 parameters = constraint_model.m_baumgarte_parameters
@@ -112,13 +127,12 @@ class ConstrainedDynamics:
         if not is_own or self._prepared is not data:
             pin.initConstraintDynamics(model, data, models, datas)
             self._prepared = data if is_own else None
-        a = np.array(pin.constraintDynamics(model, data, q, v, force, models, datas, self._settings))
-        J = pin.getConstraintsJacobian(model, data, models, datas) if self._is_plain else self._jacobian(data)
-        self._last = J, data
-        if self._forces is None or self._rows is None:
-            return ConstrainedMotion(a, data.lambda_c, J, data.primal_rhs_contact)
-        target = self._rows.dot(data.primal_rhs_contact)
-        return ConstrainedMotion(a, self._forces.dot(data.lambda_c), self._rows.dot(J), target)
+        self._data = data
+        return np.array(pin.constraintDynamics(model, data, q, v, force, models, datas, self._settings))
+
+    def is_solved(self) -> bool:
+        """Whether the steps of the solver ended before their bound, where it was last."""
+        return bool(self._settings.iter < _MOST_STEPS)
 
     def closed_to(self, position: float) -> bool:
         """Whether each row of the residual is at most ``position``, m or rad, where `solve` was last."""
@@ -126,10 +140,9 @@ class ConstrainedDynamics:
 
     def respond(self, forces: Matrix) -> tuple[Matrix, Matrix]:
         """The changes of a (nv, k) and of f (m, k) by generalized forces (nv, k), where `solve` was last."""
-        J, data = self._last
-        m, given = len(J), np.zeros((len(J) + len(forces), forces.shape[1]))
+        m, given = self._size, np.zeros((self._size + len(forces), forces.shape[1]))
         given[m:] = forces
-        cholesky, f = data.constraint_chol, given[:m].copy()
+        cholesky, f = self._data.constraint_chol, given[:m].copy()
         for _ in range(_MOST_STEPS):
             before = f
             given[:m] = _MU * before
