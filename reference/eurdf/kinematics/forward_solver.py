@@ -120,9 +120,7 @@ class ForwardSolver:
             return self._by_limbs_within_step(q, v, force, gains)
         solver = self._whole
         assert solver is not None
-        if self._combinations is not None:
-            return solver.by_combinations(solver.solve(q, v, force, gains, data, True), force, data, self._combinations)
-        return solver.acceleration(q, v, force, gains, data, True)
+        return solver.acceleration(q, v, force, gains, data, True, self._combinations)
 
     def beyond_doubt(
         self,
@@ -144,7 +142,10 @@ class ForwardSolver:
             return self._by_limbs(q, v, force, gains, dynamics, nearly_closed)
         if solver is None or dynamics.data is None:
             return None
-        a, on_a, J, target = solver.solve(q, v, force, gains, dynamics.data, is_own)
+        found = solver.solve(q, v, force, gains, dynamics.data, is_own)
+        if found is None:
+            return None
+        a, on_a, J, target = found
         if not nearly_closed and not solver.is_closed(J, v):
             return None
         if not keeps(a, J, target) or not _balances(dynamics, q, v, a, force, on_a.dot(J)):
@@ -169,6 +170,8 @@ class ForwardSolver:
         for solver, (own, at, unit) in zip(self._limbs, self._joints, strict=True):
             limb = solver.limb
             found = solver.solve(q, v, limb.part_of_v(shared), gains, limb.dynamics.data, True)
+            if found is None:
+                return None
             if not nearly_closed and not solver.is_closed(found.J, v):
                 return None
             alone.append(found)

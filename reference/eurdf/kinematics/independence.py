@@ -74,28 +74,33 @@ class Independence:
 
         They are None if the rank of K (nc, nv) is in doubt.
         """
+        if not self.has_certain_rank(K):
+            return None
+        kept = self._kept
+        return self._without(kept.null, lambdas) if kept is not None and kept.null.shape[1] else lambdas
+
+    def has_certain_rank(self, K: Matrix) -> bool:
+        """Whether the rank of K (nc, nv) is beyond doubt, so that `combinations` are those of K."""
         kept = self._kept
         if kept is None or not kept.null.shape[1]:
             if len(K) <= K.shape[1] and self.is_shown(K):
-                return lambdas
+                return True
         elif self._is_near(kept, K) and self._annihilates(kept, K):
-            return self._without(kept.null, lambdas)
+            return True
         A = K * self._scale
         try:
             left, values, _ = np.linalg.svd(A)
         except np.linalg.LinAlgError:
-            return None
+            return False
         largest = float(values.max(initial=0.0))
         rank = int(np.count_nonzero(values > ZERO * largest))
         if not 0.0 < largest < math.inf or values[rank - 1] ** 2 * INDEPENDENT < largest**2:
-            return None
-        kept = self._kept = _Kept(
-            np.array(K), norm(A.ravel()), float(values[rank - 1]), left[:, rank:], left[:, :rank].T
-        )
-        return self._without(kept.null, lambdas)
+            return False
+        self._kept = _Kept(np.array(K), norm(A.ravel()), float(values[rank - 1]), left[:, rank:], left[:, :rank].T)
+        return True
 
     def combinations(self) -> Matrix | None:
-        """Combinations (rank, nc) of the rows that are independent in the K decomposed last; None if all rows are."""
+        """Combinations (rank, nc) of the rows that are independent in the K judged last; None if all rows are."""
         kept = self._kept
         return kept.chosen * self._row_scale if kept is not None and kept.null.shape[1] else None
 

@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import pinocchio as pin
 
-from eurdf.array import Matrix, Vector
-from eurdf.closures.kind import ClosureKind
+from eurdf.array import Indices, Matrix, Vector
+from eurdf.closures.kind import ClosureKind, Contact
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Constraint
 from eurdf.pinocchio.constraint import contacts_of, models_of
+from eurdf.pinocchio.tree_dynamics import whole_matrix
 from eurdf.pinocchio.tree_few import Site
 
 if TYPE_CHECKING:
@@ -54,11 +55,32 @@ class ConstrainedMotion(NamedTuple):
     target: Vector
 
 
+class _Distances(NamedTuple):
+    """The constraints of one kind whose rows are combinations of those that hold origins together: k of them.
+
+    Attributes:
+        kind: Evaluates them, by `ClosureKind.of_distance`.
+        fixed: What it prepared.
+        rows: Their rows (k,).
+        columns: Those (k, 3) of the contacts.
+        positions: References to the origins p (3,) of B in A.
+    """
+
+    kind: type[ClosureKind]
+    fixed: Any
+    rows: Indices
+    columns: Indices
+    positions: list[Vector]
+
+
 class ConstrainedDynamics:
-    """The solver with its memory, for constraints that Pinocchio has models for.
+    """The solver with its memory, for constraints whose rows are combinations of those of contacts.
 
     It treats redundant rows that differ by rounding as independent rows, and needs inertia at every joint, even at one
     that the closures do not let move. Where this is not so, it can be wrong: judge its solution.
+
+    Attributes:
+        solves: Whether it solves the equation of motion; it has only the `terms` of rows that depend on distances.
     """
 
     def __init__(self, model: pin.Model, constraints: Sequence[Constraint], site: Callable[[Anchor], Site]) -> None:
@@ -68,17 +90,22 @@ class ConstrainedDynamics:
         self._owners: list[int] = []  # of each model its constraint
         contacts = []
         for index, constraint in enumerate(constraints):
-            for contact, found in zip(contacts_of(constraint), models_of(constraint, model, site), strict=True):
+            own = rows_of_contacts(constraint)
+            for contact, found in zip(own, models_of(constraint, own, model, site), strict=True):
                 contacts.append(contact)
                 self._models.append(found)
                 self._datas.append(found.createData())
                 self._owners.append(index)
         # Pinocchio has a matrix of one column as a vector, and reads memory that is not its own for one without rows.
         self._is_plain = bool(self._owners) and model.nv > 1
+        self._distances = self._find_distances(constraints, contacts)
+        self.solves = not self._distances
+        by_distance = {index for index, each in enumerate(constraints) if not contacts_of(each)}
         # References to what the solver writes, since each attribute takes time; and the lever of what may be open.
         self._open_by = [
             (data.contact_placement_error, min(1.0, math.hypot(*contact.a) or 1.0))
-            for contact, data in zip(contacts, self._datas, strict=True)
+            for contact, data, owner in zip(contacts, self._datas, self._owners, strict=True)
+            if owner not in by_distance
         ]
         self._each = [
             (found, data, contact.is_frame)
@@ -87,11 +114,30 @@ class ConstrainedDynamics:
         self._forces = _forces_of_contacts(constraints)
         # With L the map of the forces, Lᵀ K is the Jacobian of the contacts.
         self._rows = None if self._forces is None else np.asarray(np.linalg.pinv(self._forces).T)
+        self._row_owners = np.repeat(np.arange(len(constraints)), [each.rows for each in constraints])
         self._settings = pin.ProximalSettings(0.0, _CHANGE, _MU, _MOST_STEPS)
+        self._one_step = pin.ProximalSettings(0.0, _CHANGE, _MU, 1)
         self._gains: list[Gains] = []
+        self._is_damped = False
         self._prepared: pin.Data | None = None
         self._data: Any = None  # where `acceleration` was last
         self._size = sum(contact.rows for contact in contacts)
+        self._by_distance, self._lengths = by_distance, np.empty(0)
+
+    def _find_distances(self, constraints: Sequence[Constraint], contacts: Sequence[Contact]) -> list[_Distances]:
+        of_kind: dict[type[ClosureKind], list[int]] = {}
+        for index, constraint in enumerate(constraints):
+            if isinstance(constraint, ClosureKind) and not constraint.contacts():
+                of_kind.setdefault(type(constraint), []).append(index)
+        row = np.cumsum([0, *(each.rows for each in constraints)])
+        column = np.cumsum([0, *(contact.rows for contact in contacts)])
+        found = []
+        for kind, members in of_kind.items():
+            at = [self._owners.index(index) for index in members]
+            positions = [self._datas[index].c1Mc2.translation for index in at]
+            fixed = kind.prepare([each for each in constraints if type(each) is kind])
+            found.append(_Distances(kind, fixed, row[members], column[at][:, None] + np.arange(3), positions))
+        return found
 
     def solve(
         self, q: Vector, v: Vector, force: Vector, gains: list[Gains], data: pin.Data, is_own: bool
@@ -107,8 +153,7 @@ class ConstrainedDynamics:
             is_own: Whether no other solver of constrained dynamics uses this memory.
         """
         a = self.acceleration(q, v, force, gains, data, is_own)
-        model, models, datas = self._model, self._models, self._datas
-        J = pin.getConstraintsJacobian(model, data, models, datas) if self._is_plain else self._jacobian(data)
+        J = self._jacobian(data)
         if self._forces is None or self._rows is None:
             return ConstrainedMotion(a, data.lambda_c, J, data.primal_rhs_contact)
         target = self._rows.dot(data.primal_rhs_contact)
@@ -118,25 +163,63 @@ class ConstrainedDynamics:
         self, q: Vector, v: Vector, force: Vector, gains: list[Gains], data: pin.Data, is_own: bool
     ) -> Vector:
         """The a (nv,) of `solve`, as of which `is_solved`."""
+        return np.array(self._run(q, v, force, gains, data, is_own, self._settings))
+
+    def terms(
+        self, q: Vector, v: Vector, force: Vector, gains: list[Gains], data: pin.Data, is_own: bool
+    ) -> tuple[Matrix, Vector]:
+        """J (m, nv) and the target (m,) of `solve`, which finds no solution; M and h are then in the data."""
+        self._run(q, v, force, gains, data, is_own, self._one_step)
+        J, target = self._jacobian(data), data.primal_rhs_contact
+        if self._rows is None:
+            return J, target
+        extra = self._turn_distances(-J.dot(v)) if self._distances else ()
+        J, target = self._rows.dot(J), self._rows.dot(target)
+        for (_, _, rows, _, _), (r, own) in zip(self._distances, extra, strict=True):
+            target[rows] += own
+            if self._is_damped:
+                kp, kd = np.array([self._gains[self._row_owners[row]] for row in rows]).T
+                target[rows] += kp * r - kd * J[rows].dot(v)
+        return J, target
+
+    def _run(
+        self, q: Vector, v: Vector, force: Vector, gains: list[Gains], data: pin.Data, is_own: bool, settings: Any
+    ) -> Vector:
         model, models, datas = self._model, self._models, self._datas
         if gains is not self._gains and gains != self._gains:
-            self._gains = gains
+            self._gains, self._is_damped = gains, any(map(any, gains))
             for constraint_model, owner in zip(models, self._owners, strict=True):
                 parameters = constraint_model.m_baumgarte_parameters
-                parameters.Kp, parameters.Kd = gains[owner]
+                parameters.Kp, parameters.Kd = (0.0, 0.0) if owner in self._by_distance else gains[owner]
         if not is_own or self._prepared is not data:
             pin.initConstraintDynamics(model, data, models, datas)
             self._prepared = data if is_own else None
         self._data = data
-        return np.array(pin.constraintDynamics(model, data, q, v, force, models, datas, self._settings))
+        a: Vector = pin.constraintDynamics(model, data, q, v, force, models, datas, settings)
+        return a
+
+    def _turn_distances(self, velocities: Vector) -> list[tuple[Vector, Vector]]:
+        """Make the rows of distances those of where the solver is; their r, and what r̈ has besides, of each kind."""
+        found = []
+        assert self._rows is not None
+        for kind, fixed, rows, columns, positions in self._distances:
+            of_rows = kind.of_distance(np.array(positions), velocities[columns], fixed)
+            assert of_rows is not None
+            r, gradient, extra = of_rows
+            self._rows[rows[:, None], columns] = gradient
+            self._lengths = r
+            found.append((r, extra))
+        return found
 
     def is_solved(self) -> bool:
         """Whether the steps of the solver ended before their bound, where it was last."""
         return bool(self._settings.iter < _MOST_STEPS)
 
     def closed_to(self, position: float) -> bool:
-        """Whether each row of the residual is at most ``position``, m or rad, where `solve` was last."""
-        return all(open_by.isZero(lever * position) for open_by, lever in self._open_by)
+        """Whether each row of the residual is at most ``position``, m or rad, where it was last."""
+        return all(open_by.isZero(lever * position) for open_by, lever in self._open_by) and bool(
+            (np.abs(self._lengths) <= position).all()
+        )
 
     def respond(self, forces: Matrix) -> tuple[Matrix, Matrix]:
         """The changes of a (nv, k) and of f (m, k) by generalized forces (nv, k), where `solve` was last."""
@@ -153,6 +236,10 @@ class ConstrainedDynamics:
                 break
         return a, f if self._forces is None else self._forces.dot(f)
 
+    def inverse_mass(self, q: Vector, data: pin.Data) -> Matrix:
+        """M⁻¹ (nv, nv) at q (nq,)."""
+        return whole_matrix(pin.computeMinverse(self._model, data, q))
+
     def closures(self, q: Vector, data: pin.Data) -> tuple[Vector, Matrix]:
         """The residual (m,) at q (nq,), and K (m, nv), which is its derivative where the closures are closed."""
         model = self._model
@@ -162,19 +249,36 @@ class ConstrainedDynamics:
             constraint_model.calc(model, data, found)
             parts.append(pin.log6(found.c1Mc2).vector if is_frame else found.c1Mc2.translation)
         r, K = np.concatenate(parts) if parts else np.empty(0), -self._jacobian(data)
-        return (r, K) if self._rows is None else (self._rows.dot(r), self._rows.dot(K))
+        if self._rows is None:
+            return r, K
+        lengths = self._turn_distances(np.zeros(len(r))) if self._distances else ()
+        r, K = self._rows.dot(r), self._rows.dot(K)
+        for (_, _, rows, _, _), (own, _) in zip(self._distances, lengths, strict=True):
+            r[rows] = own
+        return r, K
 
     def _jacobian(self, data: pin.Data) -> Matrix:
         if not self._owners:
             return np.empty((0, self._model.nv))
-        J = pin.getConstraintsJacobian(self._model, data, self._models, self._datas)
-        return np.asarray(J.reshape(-1, self._model.nv))
+        J: Matrix = pin.getConstraintsJacobian(self._model, data, self._models, self._datas)
+        return J if self._is_plain else np.asarray(J.reshape(-1, self._model.nv))
+
+
+def rows_of_contacts(constraint: Constraint) -> tuple[Contact, ...]:
+    """The contacts whose rows are combined to those of a constraint; nothing if there are none."""
+    own = contacts_of(constraint)
+    if own or not isinstance(constraint, ClosureKind) or type(constraint).of_distance is ClosureKind.of_distance:
+        return own
+    return (Contact(),)
 
 
 def _forces_of_contacts(constraints: Sequence[Constraint]) -> Matrix | None:
-    """λ (m,) of the constraints over those of their contacts; None if they are the same."""
+    """λ (m,) of the constraints over those of their contacts; None if they are the same.
+
+    Those of distances depend on the configuration: here, their rows are any.
+    """
     parts: list[tuple[Matrix | None, int]] = [
-        (constraint.forces_of_contacts(), constraint.rows)
+        (constraint.forces_of_contacts() if contacts_of(constraint) else np.eye(1, 3), constraint.rows)
         for constraint in constraints
         if isinstance(constraint, ClosureKind)
     ]
