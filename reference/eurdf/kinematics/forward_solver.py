@@ -18,6 +18,7 @@ from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.pinocchio.constrained_dynamics import Gains, StatedGains
 from eurdf.pinocchio.limbs import Limb, LimbsDynamics
 from eurdf.pinocchio.tree_dynamics import MOST_VELOCITIES_WITH_DATA, TreeDynamics
+from eurdf.pinocchio.tree_few import as_slice
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -55,7 +56,7 @@ class ForwardSolver:
             self._joints = []
             for limb in divided.limbs:
                 own, at = np.nonzero(limb.velocities[:, None] == divided.trunk)
-                self._joints.append((own, at, np.eye(len(limb.velocities))[:, own]))
+                self._joints.append((as_slice(own), as_slice(at), np.ix_(at, at), np.eye(len(limb.velocities))[:, own]))
         if robot.tree.nv <= MOST_VELOCITIES_WITH_DATA:
             self._whole = LimbSolver(robot, Limb(robot.tree), range(len(robot.constraints)))
 
@@ -167,7 +168,7 @@ class ForwardSolver:
         shared = force / self._shares
         alone, joined = [], []
         inertia, needed = np.zeros((self._trunk, self._trunk)), np.zeros(self._trunk)
-        for solver, (own, at, unit) in zip(self._limbs, self._joints, strict=True):
+        for solver, (own, at, block, unit) in zip(self._limbs, self._joints, strict=True):
             limb = solver.limb
             found = solver.solve(q, v, limb.part_of_v(shared), gains, limb.dynamics.data, True)
             if found is None:
@@ -175,18 +176,18 @@ class ForwardSolver:
             if not nearly_closed and not solver.is_closed(found.J, v):
                 return None
             alone.append(found)
-            if len(own):
+            if unit.size:
                 response, change = solver.respond(unit)
                 inverse = inverses(response[own])
                 joined.append((response, change, inverse))
-                inertia[at[:, None], at] += inverse
+                inertia[block] += inverse
                 needed[at] += inverse.dot(found.a[own])
         trunk = solutions(inertia, needed)
         a, lambdas, carried = np.zeros(len(v)), np.zeros(self._size[0]), np.zeros(len(v))
         responses = iter(joined)
-        for solver, (own, at, _), (own_a, on_a, J, target) in zip(self._limbs, self._joints, alone, strict=True):
+        for solver, (own, at, _, unit), (own_a, on_a, J, target) in zip(self._limbs, self._joints, alone, strict=True):
             velocities = solver.limb.velocities
-            if len(own):
+            if unit.size:
                 response, change, inverse = next(responses)
                 w = inverse.dot(trunk[at] - own_a[own])
                 own_a, on_a = own_a + response.dot(w), on_a + change.dot(w)
@@ -205,24 +206,24 @@ class ForwardSolver:
         shared, a = force / self._shares, np.zeros(len(v))
         alone = []
         inertia, needed = np.zeros((self._trunk, self._trunk)), np.zeros(self._trunk)
-        for solver, (own, at, unit) in zip(self._limbs, self._joints, strict=True):
+        for solver, (own, at, block, unit) in zip(self._limbs, self._joints, strict=True):
             limb = solver.limb
             own_a = solver.acceleration(q, v, limb.part_of_v(shared), gains, limb.dynamics.data, True)
             if own_a is None:
                 return None
             response, _ = solver.respond(unit)
             inverse = inverses(response[own])
-            inertia[at[:, None], at] += inverse
+            inertia[block] += inverse
             needed[at] += inverse.dot(own_a[own])
-            alone.append((own_a, response.dot(inverse)))
+            alone.append((own_a, response, inverse))
         trunk = solutions(inertia, needed)
-        for solver, (own, at, _), (own_a, follow) in zip(self._limbs, self._joints, alone, strict=True):
-            a[solver.limb.velocities] = own_a + follow.dot(trunk[at] - own_a[own])
+        for solver, (own, at, _, _), (own_a, response, inverse) in zip(self._limbs, self._joints, alone, strict=True):
+            a[solver.limb.velocities] = own_a + response.dot(inverse.dot(trunk[at] - own_a[own]))
         return a
 
     def closures(self, robot: Robot, q: Vector) -> tuple[Vector, Matrix]:
         """The residual (nc,) at q (nq,), and K (nc, nv), which is its derivative where the closures are closed."""
-        return self.closures_of_tree(q, self.own) or residual_and_jacobian(robot, q)
+        return self.closures_of_tree(q, self._own or self.own) or residual_and_jacobian(robot, q)
 
     def closures_of_tree(self, q: Vector, dynamics: TreeDynamics) -> tuple[Vector, Matrix] | None:
         """The same by Pinocchio's solver; None if it has none."""
@@ -235,7 +236,7 @@ class ForwardSolver:
         r, K = np.empty(self._size[0]), np.zeros(self._size)
         for solver in self._limbs:
             limb = solver.limb
-            r[solver.rows], K[np.ix_(solver.rows, limb.velocities)] = solver.closures(q, limb.dynamics.data)
+            r[solver.rows], K[solver.rows[:, None], limb.velocities] = solver.closures(q, limb.dynamics.data)
         return r, K
 
 

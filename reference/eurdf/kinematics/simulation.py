@@ -154,7 +154,7 @@ class _Integration:
         """Take what acts on a robot, and how the caller treats floating-point errors of NumPy."""
         self._robot, self._tree, self._solver = robot, robot.tree, solver
         self._control, self._callers, self._applied, self._step = control, callers, applied, step
-        self._gains = solver.gains.now()
+        self._gains, self._dynamics = solver.gains.now(), solver.own
         self._least = LeastSolutions(robot.cached(TangentSpaces))
         self._nothing = np.zeros(robot.tree.nv)
         self._is_driven = control is not None or not applied.is_constant_zero
@@ -174,7 +174,7 @@ class _Integration:
 
     def _rates(self, t: float, begin: Vector, q: Vector, v: Vector, moved: bool) -> tuple[Vector, Vector, float]:
         """Rates of x and v at q = begin ⊕ x, and the power of what is applied; x is 0 unless ``moved``."""
-        if not (norm(v) < DIVERGED and norm(q) < math.inf):
+        if not norm(v) < DIVERGED:
             raise SimulationDiverged(t, self._step)
         u, applied, power = None, self._nothing, 0.0
         if self._control is not None:
@@ -209,7 +209,7 @@ class _Integration:
 
     def energies(self, q: Vector, v: Vector) -> tuple[float, float]:
         """Kinetic and potential energy, J."""
-        dynamics = self._solver.own
+        dynamics = self._dynamics
         return dynamics.kinetic_energy(q, v), dynamics.potential_energy(q)
 
 

@@ -121,6 +121,7 @@ class ConstrainedDynamics:
         self._is_damped = False
         self._prepared: pin.Data | None = None
         self._data: Any = None  # where `acceleration` was last
+        self._response = np.empty((0, 0))  # the f of the last response, near which the next one is
         self._size = sum(contact.rows for contact in contacts)
         self._by_distance, self._lengths = by_distance, np.empty(0)
 
@@ -225,7 +226,9 @@ class ConstrainedDynamics:
         """The changes of a (nv, k) and of f (m, k) by generalized forces (nv, k), where `solve` was last."""
         m, given = self._size, np.zeros((self._size + len(forces), forces.shape[1]))
         given[m:] = forces
-        cholesky, f = self._data.constraint_chol, given[:m].copy()
+        cholesky, f = self._data.constraint_chol, self._response
+        if f.shape != (m, forces.shape[1]):
+            f = np.zeros((m, forces.shape[1]))
         for _ in range(_MOST_STEPS):
             before = f
             given[:m] = _MU * before
@@ -234,6 +237,7 @@ class ConstrainedDynamics:
             missed = (f - before).ravel()
             if not _MU * math.sqrt(missed.dot(missed)) > _RESPONSE * math.sqrt(a.ravel().dot(a.ravel())):
                 break
+        self._response = f
         return a, f if self._forces is None else self._forces.dot(f)
 
     def inverse_mass(self, q: Vector, data: pin.Data) -> Matrix:

@@ -52,8 +52,10 @@ class TreeDynamics:
     def kinetic_energy(self, q: Vector, v: Vector) -> float:
         """The kinetic energy at q (nq,) and v (nv,), J, that of the armature included.
 
-        `pin.computeKineticEnergy` leaves out the armature of some joints, up to Pinocchio 4.1.
+        `pin.computeKineticEnergy` leaves out the armature of some joints, up to Pinocchio 4.1, and has no mimic joints.
         """
+        if self.data is not None and not self.model.armature.any() and not len(self.model.mimicking_joints):
+            return float(pin.computeKineticEnergy(self.model, self.data, q, v))
         still = np.zeros(self.model.nv)
         momentum = self.inverse_dynamics(q, still, v) - self.inverse_dynamics(q, still, still)
         return 0.5 * float(v @ momentum)
