@@ -51,6 +51,8 @@ class LimbSolver:
         self._modelled = None if len(modelled) == len(robot.constraints) else modelled
         self._is_whole, self._solves = limb.is_whole, self._solver.solves and not others
         self._others = _OtherRows(robot, others, limb.velocities) if others else None
+        # Combinations of rows that held last, and `_fix` of them.
+        self._fixed: tuple[Matrix, Matrix, Matrix | None] | None = None
         self._q = np.empty(0)  # where it was last
         # M⁻¹, and of the combinations that hold J, X, J X and what they are, if it solved by these.
         self._schur: tuple[Matrix, Matrix, Matrix, Matrix, Matrix | None] | None = None
@@ -97,7 +99,23 @@ class LimbSolver:
             self._schur = None
             a = self._solver.acceleration(*self._own(q, v, force, gains), data, is_own)
             return a if self._solver.is_solved() else None
-        return self._combined(q, force, data, *self._terms(q, v, force, gains, data, is_own), chosen)[0]
+        if chosen is None or not self._solver.solves or not (self._others is None or self._others.are_fixed(gains)):
+            return self._combined(q, force, data, *self._terms(q, v, force, gains, data, is_own), chosen)[0]
+        if self._fixed is None or self._fixed[0] is not chosen:
+            self._fixed = chosen, *self._fix(chosen)
+        _, of_contacts, of_others = self._fixed
+        J, target = self._solver.terms_of_contacts(*self._own(q, v, force, gains), data, is_own)
+        J = of_contacts.dot(J)
+        if of_others is not None:
+            J += of_others
+        return self._combined(q, force, data, J, of_contacts.dot(target), None)[0]
+
+    def _fix(self, chosen: Matrix) -> tuple[Matrix, Matrix | None]:
+        """What combinations (k, m) of all rows are of those of the contacts, and what the others add to their J."""
+        rows, others = self._solver.rows, self._others
+        of_contacts = chosen if others is None else chosen[:, : -len(others.J)]
+        added = None if others is None else chosen[:, -len(others.J) :].dot(others.J)
+        return of_contacts if rows is None else of_contacts.dot(rows), added
 
     def _own(self, q: Vector, v: Vector, force: Vector, gains: list[Gains]) -> tuple[Vector, Vector, Vector, Any]:
         """What concerns the limb and its solver."""
@@ -172,16 +190,21 @@ class LimbSolver:
 
 
 class _OtherRows:
-    """Rows of constraints that are no combinations of those of contacts: couplings, and kinds that do not state it."""
+    """Rows of constraints that are no combinations of those of contacts: couplings, and kinds that do not state it.
+
+    Attributes:
+        J: Minus K, where they `are_fixed`.
+    """
 
     def __init__(self, robot: Robot, indices: Sequence[int], velocities: Indices) -> None:
         """Take the indices of the constraints, and those in v of the columns."""
         constraints = [robot.constraints[index] for index in indices]
         couplings = [each for each in constraints if isinstance(each, Coupling)]
         self._couplings: Couplings | None = None
+        self.J = self._target = np.empty(0)
         if len(couplings) == len(constraints):
             self._couplings = Couplings(couplings, robot.tree.coordinate, velocities)
-            self._J, self._target = -self._couplings.K, np.zeros(len(couplings))
+            self.J, self._target = -self._couplings.K, np.zeros(len(couplings))
         self._evaluator = Evaluator(robot.tree, constraints, velocities, few=True)
         self._indices, self._rows = indices, [each.rows for each in constraints]
 
@@ -194,16 +217,17 @@ class _OtherRows:
 
     def terms(self, q: Vector, v: Vector, own_v: Vector, gains: list[Gains]) -> tuple[Matrix, Vector]:
         """Minus K, and K̇ v + kd K v + kp r, at q (nq,) and v (nv,), of which ``own_v`` (n,) are the columns."""
-        own_gains = [gains[index] for index in self._indices]
-        is_free = not any(map(any, own_gains))
-        if is_free and self._couplings is not None:
-            return self._J, self._target
+        if self.are_fixed(gains):
+            return self.J, self._target
         r, K = self.closures(q)
         (target,) = self._evaluator.drift(q[None], v[None])
-        if not is_free:
-            kp, kd = np.array(own_gains).repeat(self._rows, axis=0).T
-            target += kd * K.dot(own_v) + kp * r
+        kp, kd = np.array([gains[index] for index in self._indices]).repeat(self._rows, axis=0).T
+        target += kd * K.dot(own_v) + kp * r
         return -K, target
+
+    def are_fixed(self, gains: list[Gains]) -> bool:
+        """Whether J is constant, and their target zero."""
+        return self._couplings is not None and not any(any(gains[index]) for index in self._indices)
 
 
 def keeps(a: Vector, J: Matrix, target: Vector) -> bool:

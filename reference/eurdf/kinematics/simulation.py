@@ -14,7 +14,6 @@ from eurdf.errors import NotClosable, SimulationDiverged, StepTooLongWarning
 from eurdf.kinematics.applied_force import AppliedForce, External
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.closing import start
-from eurdf.kinematics.finite import overflow_refused
 from eurdf.kinematics.forward_solver import ForwardSolver
 from eurdf.kinematics.independence import norm
 from eurdf.kinematics.named import Named, velocity_of
@@ -185,10 +184,11 @@ class _Integration:
             power = float(applied @ v)
         force = self._applied.with_springs(q, applied)
         a = self._solver.acceleration(self._robot, q, v, force, self._gains, within_step=moved)
-        # The derivative of x = q ⊖ begin is the inverse of that of begin ⊕ x.
-        return self._tree.difference_derivative(begin, q).dot(v) if moved else v, a, power
+        if moved and not self._tree.commutes:
+            # The derivative of x = q ⊖ begin is the inverse of that of begin ⊕ x.
+            return self._tree.difference_derivative(begin, q).dot(v), a, power
+        return v, a, power
 
-    @overflow_refused("the configuration")
     def closed(self, t: float, q: Vector, v: Vector, newton_steps: int) -> tuple[Vector, Vector]:
         """The nearest closed q after at most so many Newton steps, and the nearest v that keeps it closed."""
         tree, rounding = self._tree, _CLOSED * (1.0 + norm(v))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from eurdf.array import Indices, Matrix, Vector
-from eurdf.kinematics.finite import finite
+from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.independence import norm
 from eurdf.kinematics.loop import LoopGroup, independent_groups
 from eurdf.kinematics.rank import inverses, least_by_squares, least_by_values, norms, numerical_ranks, product
@@ -369,6 +369,7 @@ class LeastSolutions:
         self._kept = kept = self._inverse(K).T
         return np.asarray(b.dot(kept))
 
+    @overflow_refused("the constraint Jacobian")
     def _inverse(self, K: Matrix) -> Matrix:
         """K⁺ (nv, nc)."""
         inverse = np.zeros(K.shape[::-1])
