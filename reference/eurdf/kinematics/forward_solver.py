@@ -110,9 +110,9 @@ class ForwardSolver:
             a = self._within_step(q, v, force, gains, dynamics.data)
             if a is not None:
                 return a
-        self._combinations = None
         solution = self.beyond_doubt(q, v, force, gains, dynamics, nearly_closed=True)
         self._is_judged = solution is not None
+        self._combinations = None if self._whole is None else self._whole.combinations()
         return (_eliminated(robot, q, v, force, gains, dynamics) if solution is None else solution).a
 
     def _within_step(self, q: Vector, v: Vector, force: Vector, gains: list[Gains], data: Any) -> Vector | None:
@@ -154,7 +154,6 @@ class ForwardSolver:
         least = solver.least_forces(J, on_a)
         if least is None:
             return None
-        self._combinations = solver.combinations()
         return Acceleration(a, solver.in_order(-least))
 
     def _by_limbs(

@@ -85,9 +85,11 @@ class Independence:
         if kept is None or not kept.null.shape[1]:
             if len(K) <= K.shape[1] and self.is_shown(K):
                 return True
-        elif self._is_near(kept, K) and self._annihilates(kept, K):
-            return True
-        A = K * self._scale
+            A = K * self._scale
+        else:
+            A = K * self._scale
+            if _annihilates(kept, A) and self._is_near(kept, K):
+                return True
         try:
             left, values, _ = np.linalg.svd(A)
         except np.linalg.LinAlgError:
@@ -113,12 +115,6 @@ class Independence:
         change *= self._scale
         return _is_small(norm(change.ravel()), kept)
 
-    def _annihilates(self, kept: _Kept, K: Matrix) -> bool:
-        """Whether the combinations of rows that are redundant in the kept K are so in K, beyond doubt."""
-        A = K * self._scale
-        # The largest singular value of A is at least its norm over √nc.
-        return norm(kept.null.T.dot(A).ravel()) * math.sqrt(len(K)) <= ZERO * norm(A.ravel())
-
     def _without(self, null: Matrix, lambdas: Vector) -> Vector:
         """The λ without its part in the left null space."""
         scaled = lambdas / self._row_scale
@@ -129,6 +125,12 @@ def _is_small(change: float, kept: _Kept) -> bool:
     """Whether a change of so much of the kept A, in Frobenius' norm, leaves its rank at least as it is."""
     least, most = kept.bound - change, kept.size + change
     return least > 0.0 and math.sqrt(len(kept.K)) * most * most <= INDEPENDENT * least * least
+
+
+def _annihilates(kept: _Kept, A: Matrix) -> bool:
+    """Whether the combinations of rows that are redundant in the kept A are so in this one, beyond doubt."""
+    # The largest singular value of A is at least its norm over √nc.
+    return norm(kept.null.T.dot(A).ravel()) * math.sqrt(len(A)) <= ZERO * norm(A.ravel())
 
 
 def norm(values: Any) -> float:

@@ -31,7 +31,7 @@ Gains = tuple[float, float]
 # μ regularizes only the first step of the solver; after the following steps the result does not depend on it. They end
 # once f changes by at most _CHANGE, N and N·m, which is what Pinocchio compares with its relative accuracy: J a then
 # misses its target by at most μ times as much.
-_MU, _MOST_STEPS = 1e-8, 50
+_MU, _MOST_STEPS = 1e-8, 12
 _CHANGE = 1e-5
 # Of a response, which is multiplied by forces that a solution is short of.
 _RESPONSE = 1e-12
@@ -125,7 +125,8 @@ class ConstrainedDynamics:
         self._data: Any = None  # where `acceleration` was last
         self._response = np.empty((0, 0))  # the f of the last response, near which the next one is
         self._size = sum(contact.rows for contact in contacts)
-        self._by_distance, self._lengths = by_distance, np.empty(0)
+        self._by_distance = by_distance
+        self._lengths: list[Vector] = []  # the r of distances where they were last
 
     def _find_distances(self, constraints: Sequence[Constraint], contacts: Sequence[Contact]) -> list[_Distances]:
         of_kind: dict[type[ClosureKind], list[int]] = {}
@@ -216,8 +217,8 @@ class ConstrainedDynamics:
             assert of_rows is not None
             r, gradient, extra = of_rows
             self.rows[rows[:, None], columns] = gradient
-            self._lengths = r
             found.append((r, extra))
+        self._lengths = [r for r, _ in found]
         return found
 
     def is_solved(self) -> bool:
@@ -226,9 +227,9 @@ class ConstrainedDynamics:
 
     def closed_to(self, position: float) -> bool:
         """Whether each row of the residual is at most ``position``, m or rad, where it was last."""
-        return all(open_by.isZero(lever * position) for open_by, lever in self._open_by) and bool(
-            (np.abs(self._lengths) <= position).all()
-        )
+        if not all((np.abs(r) <= position).all() for r in self._lengths):
+            return False
+        return all(open_by.isZero(lever * position) for open_by, lever in self._open_by)
 
     def respond(self, forces: Matrix) -> tuple[Matrix, Matrix]:
         """The changes of a (nv, k) and of f (m, k) by generalized forces (nv, k), where `solve` was last."""

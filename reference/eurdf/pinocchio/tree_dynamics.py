@@ -62,7 +62,8 @@ class TreeDynamics:
 
     def potential_energy(self, q: Vector) -> float:
         """The potential energy of gravity and springs at q (nq,), J."""
-        return self._energy_of_gravity(q) + self._springs.energy(q)
+        gravity = self._energy_of_gravity(q)
+        return gravity + self._springs.energy(q) if len(self._springs) else gravity
 
     def _energy_of_gravity(self, q: Vector) -> float:
         if len(self.model.mimicking_joints):  # not supported by Pinocchio 4.1
