@@ -40,7 +40,6 @@ class ForwardSolver:
         self.rows = tuple(loop.rows for loop in find_loops(robot))
         self._whole: LimbSolver | None = None
         self._limbs: list[LimbSolver] = []
-        self._combinations: Matrix | None = None  # of redundant rows, as many as are independent
         self._is_judged = False  # whether the last solution of `acceleration` that was judged is beyond doubt
         self._own: TreeDynamics | None = None
         if not robot.constraints or len(robot.model.mimicking_joints):
@@ -112,16 +111,23 @@ class ForwardSolver:
                 return a
         solution = self.beyond_doubt(q, v, force, gains, dynamics, nearly_closed=True)
         self._is_judged = solution is not None
-        self._combinations = None if self._whole is None else self._whole.combinations()
         return (_eliminated(robot, q, v, force, gains, dynamics) if solution is None else solution).a
 
     def _within_step(self, q: Vector, v: Vector, force: Vector, gains: list[Gains], data: Any) -> Vector | None:
         """As `acceleration`, near a state that was judged; None if a solver is not sure."""
-        if self._limbs:
-            return self._by_limbs_within_step(q, v, force, gains)
-        solver = self._whole
-        assert solver is not None
-        return solver.acceleration(q, v, force, gains, data, True, self._combinations)
+        if not self._limbs:
+            return None if self._whole is None else self._whole.acceleration(q, v, force, gains, data, True)
+        shared, alone = force / self._shares, []
+        for solver in self._limbs:
+            limb = solver.limb
+            own_a = solver.acceleration(q, v, limb.part_of_v(shared), gains, limb.dynamics.data, True)
+            if own_a is None:
+                return None
+            alone.append(own_a)
+        a = np.zeros(len(v))
+        for solver, (own_a, _) in zip(self._limbs, self._joined(alone), strict=True):
+            a[solver.limb.velocities] = own_a
+        return a
 
     def beyond_doubt(
         self,
@@ -159,37 +165,17 @@ class ForwardSolver:
     def _by_limbs(
         self, q: Vector, v: Vector, force: Vector, gains: list[Gains], dynamics: TreeDynamics, nearly_closed: bool
     ) -> Acceleration | None:
-        """With each limb alone, and then with the forces w between the limbs that give all the same trunk.
-
-        Of a limb the velocities of the trunk have the acceleration b alone, and b + A w with w. With the same for all,
-        and the sum of all w zero, it is (Σ A⁻¹)⁻¹ Σ A⁻¹ b.
-        """
-        shared = force / self._shares
-        alone, joined = [], []
-        inertia, needed = np.zeros((self._trunk, self._trunk)), np.zeros(self._trunk)
-        for solver, (own, at, block, unit) in zip(self._limbs, self._joints, strict=True):
+        shared, alone = force / self._shares, []
+        for solver in self._limbs:
             limb = solver.limb
             found = solver.solve(q, v, limb.part_of_v(shared), gains, limb.dynamics.data, True)
-            if found is None:
-                return None
-            if not nearly_closed and not solver.is_closed(found.J, v):
+            if found is None or (not nearly_closed and not solver.is_closed(found.J, v)):
                 return None
             alone.append(found)
-            if unit.size:
-                response, change = solver.respond(unit)
-                inverse = inverses(response[own])
-                joined.append((response, change, inverse))
-                inertia[block] += inverse
-                needed[at] += inverse.dot(found.a[own])
-        trunk = solutions(inertia, needed)
         a, lambdas, carried = np.zeros(len(v)), np.zeros(self._size[0]), np.zeros(len(v))
-        responses = iter(joined)
-        for solver, (own, at, _, unit), (own_a, on_a, J, target) in zip(self._limbs, self._joints, alone, strict=True):
-            velocities = solver.limb.velocities
-            if unit.size:
-                response, change, inverse = next(responses)
-                w = inverse.dot(trunk[at] - own_a[own])
-                own_a, on_a = own_a + response.dot(w), on_a + change.dot(w)
+        joined = self._joined([found.a for found in alone])
+        for solver, (own_a, change), (_, on_a, J, target) in zip(self._limbs, joined, alone, strict=True):
+            velocities, on_a = solver.limb.velocities, on_a + change
             if not keeps(own_a, J, target):
                 return None
             a[velocities] = own_a
@@ -200,25 +186,29 @@ class ForwardSolver:
             lambdas[solver.rows] = -least
         return Acceleration(a, lambdas) if _balances(dynamics, q, v, a, force, carried) else None
 
-    def _by_limbs_within_step(self, q: Vector, v: Vector, force: Vector, gains: list[Gains]) -> Vector | None:
-        """The a of `_by_limbs`, as `_within_step`."""
-        shared, a = force / self._shares, np.zeros(len(v))
-        alone = []
+    def _joined(self, alone: list[Vector]) -> list[tuple[Vector, Any]]:
+        """Of each limb the a, and the change of f, with the forces w between the limbs that give all the same trunk.
+
+        Of a limb the velocities of the trunk have the acceleration b ``alone``, and b + A w with w. With the same for
+        all, and the sum of all w zero, it is (Σ A⁻¹)⁻¹ Σ A⁻¹ b.
+        """
+        responses: list[tuple[Any, Any, Any]] = []
         inertia, needed = np.zeros((self._trunk, self._trunk)), np.zeros(self._trunk)
-        for solver, (own, at, block, unit) in zip(self._limbs, self._joints, strict=True):
-            limb = solver.limb
-            own_a = solver.acceleration(q, v, limb.part_of_v(shared), gains, limb.dynamics.data, True)
-            if own_a is None:
-                return None
-            response, _ = solver.respond(unit)
+        for solver, (own, at, block, unit), a in zip(self._limbs, self._joints, alone, strict=True):
+            if not unit.size:
+                responses.append((0.0, 0.0, 0.0))
+                continue
+            response, change = solver.respond(unit)
             inverse = inverses(response[own])
+            responses.append((response, change, inverse))
             inertia[block] += inverse
-            needed[at] += inverse.dot(own_a[own])
-            alone.append((own_a, response, inverse))
+            needed[at] += inverse.dot(a[own])
         trunk = solutions(inertia, needed)
-        for solver, (own, at, _, _), (own_a, response, inverse) in zip(self._limbs, self._joints, alone, strict=True):
-            a[solver.limb.velocities] = own_a + response.dot(inverse.dot(trunk[at] - own_a[own]))
-        return a
+        found: list[tuple[Vector, Any]] = []
+        for (own, at, _, _), a, (response, change, inverse) in zip(self._joints, alone, responses, strict=True):
+            w = np.dot(inverse, trunk[at] - a[own])
+            found.append((a + np.dot(response, w), np.dot(change, w)) if len(w) else (a, 0.0))
+        return found
 
     def closures(self, robot: Robot, q: Vector) -> tuple[Vector, Matrix]:
         """The residual (nc,) at q (nq,), and K (nc, nv), which is its derivative where the closures are closed."""

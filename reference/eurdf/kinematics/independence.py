@@ -26,7 +26,7 @@ class _Kept(NamedTuple):
         size: Frobenius' norm of the dimensionless A.
         bound: Its smallest singular value that is not zero, or a bound of it from below.
         null: Orthonormal basis (nc, k) of its left null space: the combinations of rows that are redundant.
-        chosen: Orthonormal rows (rank, nc), which span the other combinations.
+        chosen: Orthonormal rows (rank, nc), which span the other combinations, times the factors of the rows.
     """
 
     K: Matrix
@@ -65,7 +65,7 @@ class Independence:
         if not norm(square.ravel()) * inverse <= INDEPENDENT:
             return False
         self._kept = _Kept(
-            np.array(K), norm(A.ravel()), 1.0 / math.sqrt(inverse), np.empty((len(K), 0)), np.eye(len(K))
+            np.array(K), norm(A.ravel()), 1.0 / math.sqrt(inverse), np.empty((len(K), 0)), np.empty((0, 0))
         )
         return True
 
@@ -98,13 +98,14 @@ class Independence:
         rank = int(np.count_nonzero(values > ZERO * largest))
         if not 0.0 < largest < math.inf or values[rank - 1] ** 2 * INDEPENDENT < largest**2:
             return False
-        self._kept = _Kept(np.array(K), norm(A.ravel()), float(values[rank - 1]), left[:, rank:], left[:, :rank].T)
+        chosen = left[:, :rank].T * self._row_scale
+        self._kept = _Kept(np.array(K), norm(A.ravel()), float(values[rank - 1]), left[:, rank:], chosen)
         return True
 
     def combinations(self) -> Matrix | None:
         """Combinations (rank, nc) of the rows that are independent in the K judged last; None if all rows are."""
         kept = self._kept
-        return kept.chosen * self._row_scale if kept is not None and kept.null.shape[1] else None
+        return kept.chosen if kept is not None and kept.null.shape[1] else None
 
     def _is_near(self, kept: _Kept, K: Matrix) -> bool:
         """Whether K has at least the rank of the kept one beyond doubt."""

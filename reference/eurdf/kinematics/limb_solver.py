@@ -51,8 +51,6 @@ class LimbSolver:
         self._modelled = None if len(modelled) == len(robot.constraints) else modelled
         self._is_whole, self._solves = limb.is_whole, self._solver.solves and not others
         self._others = _OtherRows(robot, others, limb.velocities) if others else None
-        # Combinations of rows that held last, and `_fix` of them.
-        self._fixed: tuple[Matrix, Matrix, Matrix | None] | None = None
         self._q = np.empty(0)  # where it was last
         # M⁻¹, and of the combinations that hold J, X, J X and what they are, if it solved by these.
         self._schur: tuple[Matrix, Matrix, Matrix, Matrix, Matrix | None] | None = None
@@ -81,49 +79,27 @@ class LimbSolver:
         return ConstrainedMotion(a, f, J, target)
 
     def acceleration(
-        self,
-        q: Vector,
-        v: Vector,
-        force: Vector,
-        gains: list[Gains],
-        data: Any,
-        is_own: bool,
-        chosen: Matrix | None = None,
+        self, q: Vector, v: Vector, force: Vector, gains: list[Gains], data: Any, is_own: bool
     ) -> Vector | None:
-        """Only the a of `solve`, in which all rows hold, or ``chosen`` combinations (k, m) of them.
+        """Only the a of `solve`, near a state whose rank was judged; None if Pinocchio's solver is not sure.
 
-        Where the constraints do not quite hold, redundant rows contradict each other: Pinocchio's solver would lock the
-        mechanism. None if it is not sure.
+        Combinations of redundant rows hold. Where the constraints do not quite hold, redundant rows contradict each
+        other: Pinocchio's solver would lock the mechanism.
         """
+        chosen = self._independence.combinations() if len(self.rows) else None
         if self._solves and chosen is None:
             self._schur = None
             a = self._solver.acceleration(*self._own(q, v, force, gains), data, is_own)
             return a if self._solver.is_solved() else None
-        if chosen is None or not self._solver.solves or not (self._others is None or self._others.are_fixed(gains)):
-            return self._combined(q, force, data, *self._terms(q, v, force, gains, data, is_own), chosen)[0]
-        if self._fixed is None or self._fixed[0] is not chosen:
-            self._fixed = chosen, *self._fix(chosen)
-        _, of_contacts, of_others = self._fixed
-        J, target = self._solver.terms_of_contacts(*self._own(q, v, force, gains), data, is_own)
-        J = of_contacts.dot(J)
-        if of_others is not None:
-            J += of_others
-        return self._combined(q, force, data, J, of_contacts.dot(target), None)[0]
-
-    def _fix(self, chosen: Matrix) -> tuple[Matrix, Matrix | None]:
-        """What combinations (k, m) of all rows are of those of the contacts, and what the others add to their J."""
-        rows, others = self._solver.rows, self._others
-        of_contacts = chosen if others is None else chosen[:, : -len(others.J)]
-        added = None if others is None else chosen[:, -len(others.J) :].dot(others.J)
-        return of_contacts if rows is None else of_contacts.dot(rows), added
+        return self._combined(q, force, data, *self._terms(q, v, force, gains, data, is_own), chosen)[0]
 
     def _own(self, q: Vector, v: Vector, force: Vector, gains: list[Gains]) -> tuple[Vector, Vector, Vector, Any]:
         """What concerns the limb and its solver."""
         if self._modelled is not None:
             gains = [gains[index] for index in self._modelled]
-        return (
-            (q, v, force, gains) if self._is_whole else (self.limb.part_of_q(q), self.limb.part_of_v(v), force, gains)
-        )
+        if self._is_whole:
+            return q, v, force, gains
+        return self.limb.part_of_q(q), self.limb.part_of_v(v), force, gains
 
     def _terms(
         self, q: Vector, v: Vector, force: Vector, gains: list[Gains], data: Any, is_own: bool
@@ -167,10 +143,6 @@ class LimbSolver:
             return on_a
         return self._independence.least_forces(J, on_a) if len(on_a) else on_a
 
-    def combinations(self) -> Matrix | None:
-        """Combinations of redundant rows, as many as are independent where forces were last; None if all rows are."""
-        return self._independence.combinations() if len(self.rows) else None
-
     def is_closed(self, J: Matrix, v: Vector) -> bool:
         """Whether the constraints hold, and so do their rates, where `solve` was last, of the robot's v (nv,)."""
         if not self._solver.closed_to(CLOSED_FOR_FORCES):
@@ -190,21 +162,16 @@ class LimbSolver:
 
 
 class _OtherRows:
-    """Rows of constraints that are no combinations of those of contacts: couplings, and kinds that do not state it.
-
-    Attributes:
-        J: Minus K, where they `are_fixed`.
-    """
+    """Rows of constraints that are no combinations of those of contacts: couplings, and kinds that do not state it."""
 
     def __init__(self, robot: Robot, indices: Sequence[int], velocities: Indices) -> None:
         """Take the indices of the constraints, and those in v of the columns."""
         constraints = [robot.constraints[index] for index in indices]
         couplings = [each for each in constraints if isinstance(each, Coupling)]
         self._couplings: Couplings | None = None
-        self.J = self._target = np.empty(0)
         if len(couplings) == len(constraints):
             self._couplings = Couplings(couplings, robot.tree.coordinate, velocities)
-            self.J, self._target = -self._couplings.K, np.zeros(len(couplings))
+            self._fixed = -self._couplings.K, np.zeros(len(couplings))
         self._evaluator = Evaluator(robot.tree, constraints, velocities, few=True)
         self._indices, self._rows = indices, [each.rows for each in constraints]
 
@@ -217,17 +184,14 @@ class _OtherRows:
 
     def terms(self, q: Vector, v: Vector, own_v: Vector, gains: list[Gains]) -> tuple[Matrix, Vector]:
         """Minus K, and K̇ v + kd K v + kp r, at q (nq,) and v (nv,), of which ``own_v`` (n,) are the columns."""
-        if self.are_fixed(gains):
-            return self.J, self._target
+        own_gains = [gains[index] for index in self._indices]
+        if self._couplings is not None and not any(map(any, own_gains)):
+            return self._fixed
         r, K = self.closures(q)
         (target,) = self._evaluator.drift(q[None], v[None])
-        kp, kd = np.array([gains[index] for index in self._indices]).repeat(self._rows, axis=0).T
+        kp, kd = np.array(own_gains).repeat(self._rows, axis=0).T
         target += kd * K.dot(own_v) + kp * r
         return -K, target
-
-    def are_fixed(self, gains: list[Gains]) -> bool:
-        """Whether J is constant, and their target zero."""
-        return self._couplings is not None and not any(any(gains[index]) for index in self._indices)
 
 
 def keeps(a: Vector, J: Matrix, target: Vector) -> bool:

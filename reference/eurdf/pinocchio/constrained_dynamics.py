@@ -81,8 +81,6 @@ class ConstrainedDynamics:
 
     Attributes:
         solves: Whether it solves the equation of motion; it has only the `terms` of rows that depend on distances.
-        rows: What the rows of the contacts are multiplied by; None if they are those of the constraints. Where `solves`
-            it is constant.
     """
 
     def __init__(self, model: pin.Model, constraints: Sequence[Constraint], site: Callable[[Anchor], Site]) -> None:
@@ -115,7 +113,7 @@ class ConstrainedDynamics:
         ]
         self._forces = _forces_of_contacts(constraints)
         # With L the map of the forces, Lᵀ K is the Jacobian of the contacts.
-        self.rows = None if self._forces is None else np.asarray(np.linalg.pinv(self._forces).T)
+        self._rows = None if self._forces is None else np.asarray(np.linalg.pinv(self._forces).T)
         self._row_owners = np.repeat(np.arange(len(constraints)), [each.rows for each in constraints])
         self._settings = pin.ProximalSettings(0.0, _CHANGE, _MU, _MOST_STEPS)
         self._one_step = pin.ProximalSettings(0.0, _CHANGE, _MU, 1)
@@ -158,10 +156,10 @@ class ConstrainedDynamics:
         """
         a = self.acceleration(q, v, force, gains, data, is_own)
         J = self._jacobian(data)
-        if self._forces is None or self.rows is None:
+        if self._forces is None or self._rows is None:
             return ConstrainedMotion(a, data.lambda_c, J, data.primal_rhs_contact)
-        target = self.rows.dot(data.primal_rhs_contact)
-        return ConstrainedMotion(a, self._forces.dot(data.lambda_c), self.rows.dot(J), target)
+        target = self._rows.dot(data.primal_rhs_contact)
+        return ConstrainedMotion(a, self._forces.dot(data.lambda_c), self._rows.dot(J), target)
 
     def acceleration(
         self, q: Vector, v: Vector, force: Vector, gains: list[Gains], data: pin.Data, is_own: bool
@@ -173,24 +171,18 @@ class ConstrainedDynamics:
         self, q: Vector, v: Vector, force: Vector, gains: list[Gains], data: pin.Data, is_own: bool
     ) -> tuple[Matrix, Vector]:
         """J (m, nv) and the target (m,) of `solve`, which finds no solution; M and h are then in the data."""
-        J, target = self.terms_of_contacts(q, v, force, gains, data, is_own)
-        if self.rows is None:
+        self._run(q, v, force, gains, data, is_own, self._one_step)
+        J, target = self._jacobian(data), data.primal_rhs_contact
+        if self._rows is None:
             return J, target
         extra = self._turn_distances(-J.dot(v)) if self._distances else ()
-        J, target = self.rows.dot(J), self.rows.dot(target)
+        J, target = self._rows.dot(J), self._rows.dot(target)
         for (_, _, rows, _, _), (r, own) in zip(self._distances, extra, strict=True):
             target[rows] += own
             if self._is_damped:
                 kp, kd = np.array([self._gains[self._row_owners[row]] for row in rows]).T
                 target[rows] += kp * r - kd * J[rows].dot(v)
         return J, target
-
-    def terms_of_contacts(
-        self, q: Vector, v: Vector, force: Vector, gains: list[Gains], data: pin.Data, is_own: bool
-    ) -> tuple[Matrix, Vector]:
-        """The same of the contacts, whose rows times ``rows`` are those of the constraints."""
-        self._run(q, v, force, gains, data, is_own, self._one_step)
-        return self._jacobian(data), data.primal_rhs_contact
 
     def _run(
         self, q: Vector, v: Vector, force: Vector, gains: list[Gains], data: pin.Data, is_own: bool, settings: Any
@@ -211,12 +203,12 @@ class ConstrainedDynamics:
     def _turn_distances(self, velocities: Vector) -> list[tuple[Vector, Vector]]:
         """Make the rows of distances those of where the solver is; their r, and what r̈ has besides, of each kind."""
         found = []
-        assert self.rows is not None
+        assert self._rows is not None
         for kind, fixed, rows, columns, positions in self._distances:
             of_rows = kind.of_distance(np.array(positions), velocities[columns], fixed)
             assert of_rows is not None
             r, gradient, extra = of_rows
-            self.rows[rows[:, None], columns] = gradient
+            self._rows[rows[:, None], columns] = gradient
             found.append((r, extra))
         self._lengths = [r for r, _ in found]
         return found
@@ -262,10 +254,10 @@ class ConstrainedDynamics:
             constraint_model.calc(model, data, found)
             parts.append(pin.log6(found.c1Mc2).vector if is_frame else found.c1Mc2.translation)
         r, K = np.concatenate(parts) if parts else np.empty(0), -self._jacobian(data)
-        if self.rows is None:
+        if self._rows is None:
             return r, K
         lengths = self._turn_distances(np.zeros(len(r))) if self._distances else ()
-        r, K = self.rows.dot(r), self.rows.dot(K)
+        r, K = self._rows.dot(r), self._rows.dot(K)
         for (_, _, rows, _, _), (own, _) in zip(self._distances, lengths, strict=True):
             r[rows] = own
         return r, K
