@@ -5,6 +5,12 @@ Gravity and springs act, and nothing else; joints move by up to 0.5 rad/s or m/s
 simulated; then the loops are open by what the table states (m, rad). A step of four evaluations and a projection is
 also compared with one `eurdf.forward_dynamics`. Robots of fewer than 20 velocities have no goal to MuJoCo: they take
 what the calls from Python take.
+
+The floor is the calls of Pinocchio: four of its solver, one to five Jacobians, an inverse dynamics, integrations and
+energies. In a step of five_bar they take 23 µs, twice what MuJoCo takes for all; 60 to 100 calls of NumPy on small
+arrays, 0.3 to 1 µs each, and 120 to 170 of Python take the rest. Distances, couplings and redundant rows need M⁻¹ and
+the Jacobian in each of the four evaluations: of tello and toddlerbot_2legs the calls of Pinocchio alone take 2.6 and
+2.8 times what MuJoCo takes for the step, and no others than the smallest products and solutions follow them.
 """
 
 from __future__ import annotations
