@@ -238,7 +238,8 @@ class ConstrainedDynamics:
             missed = (f - before).ravel()
             if not _MU * math.sqrt(missed.dot(missed)) > _RESPONSE * math.sqrt(a.ravel().dot(a.ravel())):
                 break
-        self._response = f
+        if missed.dot(missed) < math.inf:
+            self._response = f
         return a, f if self._forces is None else self._forces.dot(f)
 
     def inverse_mass(self, q: Vector, data: pin.Data) -> Matrix:
