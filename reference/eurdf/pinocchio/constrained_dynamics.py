@@ -61,6 +61,7 @@ class _Distances(NamedTuple):
     Attributes:
         kind: Evaluates them, by `ClosureKind.of_distance`.
         fixed: What it prepared.
+        members: Their indices.
         rows: Their rows (k,).
         columns: Those (k, 3) of the contacts.
         positions: References to the origins p (3,) of B in A.
@@ -68,6 +69,7 @@ class _Distances(NamedTuple):
 
     kind: type[ClosureKind]
     fixed: Any
+    members: list[int]
     rows: Indices
     columns: Indices
     positions: list[Vector]
@@ -100,12 +102,12 @@ class ConstrainedDynamics:
         self._is_plain = bool(self._owners) and model.nv > 1
         self._distances = self._find_distances(constraints, contacts)
         self.solves = not self._distances
-        by_distance = {index for index, each in enumerate(constraints) if not contacts_of(each)}
+        self._by_distance = {index for each in self._distances for index in each.members}
         # References to what the solver writes, since each attribute takes time; and the lever of what may be open.
         self._open_by = [
             (data.contact_placement_error, min(1.0, math.hypot(*contact.a) or 1.0))
             for contact, data, owner in zip(contacts, self._datas, self._owners, strict=True)
-            if owner not in by_distance
+            if owner not in self._by_distance
         ]
         self._each = [
             (found, data, contact.is_frame)
@@ -114,7 +116,6 @@ class ConstrainedDynamics:
         self._forces = _forces_of_contacts(constraints)
         # With L the map of the forces, Lᵀ K is the Jacobian of the contacts.
         self._rows = None if self._forces is None else np.asarray(np.linalg.pinv(self._forces).T)
-        self._row_owners = np.repeat(np.arange(len(constraints)), [each.rows for each in constraints])
         self._settings = pin.ProximalSettings(0.0, _CHANGE, _MU, _MOST_STEPS)
         self._one_step = pin.ProximalSettings(0.0, _CHANGE, _MU, 1)
         self._gains: list[Gains] = []
@@ -123,7 +124,6 @@ class ConstrainedDynamics:
         self._data: Any = None  # where `acceleration` was last
         self._response = np.empty((0, 0))  # the f of the last response, near which the next one is
         self._size = sum(contact.rows for contact in contacts)
-        self._by_distance = by_distance
         self._lengths: list[Vector] = []  # the r of distances where they were last
 
     def _find_distances(self, constraints: Sequence[Constraint], contacts: Sequence[Contact]) -> list[_Distances]:
@@ -138,7 +138,7 @@ class ConstrainedDynamics:
             at = [self._owners.index(index) for index in members]
             positions = [self._datas[index].c1Mc2.translation for index in at]
             fixed = kind.prepare([each for each in constraints if type(each) is kind])
-            found.append(_Distances(kind, fixed, row[members], column[at][:, None] + np.arange(3), positions))
+            found.append(_Distances(kind, fixed, members, row[members], column[at][:, None] + np.arange(3), positions))
         return found
 
     def solve(
@@ -177,11 +177,11 @@ class ConstrainedDynamics:
             return J, target
         extra = self._turn_distances(-J.dot(v)) if self._distances else ()
         J, target = self._rows.dot(J), self._rows.dot(target)
-        for (_, _, rows, _, _), (r, own) in zip(self._distances, extra, strict=True):
-            target[rows] += own
+        for each, (r, own) in zip(self._distances, extra, strict=True):
+            target[each.rows] += own
             if self._is_damped:
-                kp, kd = np.array([self._gains[self._row_owners[row]] for row in rows]).T
-                target[rows] += kp * r - kd * J[rows].dot(v)
+                kp, kd = np.array([gains[index] for index in each.members]).T
+                target[each.rows] += kp * r - kd * J[each.rows].dot(v)
         return J, target
 
     def _run(
@@ -204,7 +204,7 @@ class ConstrainedDynamics:
         """Make the rows of distances those of where the solver is; their r, and what r̈ has besides, of each kind."""
         found = []
         assert self._rows is not None
-        for kind, fixed, rows, columns, positions in self._distances:
+        for kind, fixed, _, rows, columns, positions in self._distances:
             of_rows = kind.of_distance(np.array(positions), velocities[columns], fixed)
             assert of_rows is not None
             r, gradient, extra = of_rows
@@ -259,8 +259,8 @@ class ConstrainedDynamics:
             return r, K
         lengths = self._turn_distances(np.zeros(len(r))) if self._distances else ()
         r, K = self._rows.dot(r), self._rows.dot(K)
-        for (_, _, rows, _, _), (own, _) in zip(self._distances, lengths, strict=True):
-            r[rows] = own
+        for each, (own, _) in zip(self._distances, lengths, strict=True):
+            r[each.rows] = own
         return r, K
 
     def _jacobian(self, data: pin.Data) -> Matrix:
