@@ -213,7 +213,7 @@ def _steps(
 
     And the configurations (B, nq) that they lead to.
     """
-    free = _damped(A, b, damping)
+    free = damped(A, b, damping)
     steps = _shortened(free)
     there = problem.moved(q, groups, steps)
     if limits is None or not problem.exceeds(there, groups, limits):
@@ -234,8 +234,10 @@ def _shortened(steps: list[Matrix]) -> list[Matrix]:
     return [step / column(longest) for step in steps] if some(longest > 1.0) else steps
 
 
-def _damped(A: Sequence[Matrix], b: Sequence[Matrix], damping: Numbers) -> list[Matrix]:
+def damped(A: Sequence[Matrix], b: Sequence[Matrix], damping: Numbers) -> list[Matrix]:
     """The δ (B, n) that minimise Σ |A δ + b|² + λ |δ|², from the smaller of A Aᵀ and Aᵀ A of each group."""
+    if len(A) == len(b[0]) == 1:
+        return [_damped_alone(A[0][0], b[0][0], damping)[None]]
     grams = []
     trace: Numbers = 0.0
     for own in A:
@@ -244,13 +246,27 @@ def _damped(A: Sequence[Matrix], b: Sequence[Matrix], damping: Numbers) -> list[
         diagonal = diagonals(gram)
         grams.append((back, is_wide, gram, diagonal))
         trace = trace + total(diagonal)
-    # Invertible even with redundant rows.
-    damping = column(at_least(damping, 1e-13 * trace + 1e-300))
+    damping = column(at_least(damping, _least_damping(trace)))
     steps: list[Matrix] = []
     for (back, is_wide, gram, diagonal), rows in zip(grams, b, strict=True):
         diagonal += damping
         steps.append(times(back, solutions(gram, -rows)) if is_wide else solutions(gram, -times(back, rows)))
     return steps
+
+
+def _damped_alone(A: Matrix, b: Vector, damping: float) -> Vector:
+    """The δ (n,) that minimises |A δ + b|² + λ |δ|², of one A (m, n)."""
+    back, is_wide = A.T, len(A) < A.shape[1]
+    gram = A.dot(back) if is_wide else back.dot(A)
+    diagonal = gram.ravel()[:: len(gram) + 1]
+    diagonal += max(damping, _least_damping(sum(diagonal.tolist())))
+    x: Vector = back.dot(solutions(gram, -b)) if is_wide else solutions(gram, -back.dot(b))
+    return x
+
+
+def _least_damping(trace: Numbers) -> Numbers:
+    """The λ with which A Aᵀ, of this trace, is invertible even with redundant rows."""
+    return 1e-13 * trace + 1e-300
 
 
 def _stay_within(
@@ -272,6 +288,6 @@ def _stay_within(
         if not len(which):
             return
         moving = [np.where(own[which][:, None], 0.0, each[which]) for each, own in zip(A, held, strict=True)]
-        changed = _damped(moving, [each[which] for each in b], damping[which])
+        changed = damped(moving, [each[which] for each in b], damping[which])
         for step, new, own in zip(steps, changed, held, strict=True):
             step[which] = np.where(own[which], 0.0, new)
