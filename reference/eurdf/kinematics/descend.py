@@ -45,6 +45,9 @@ from eurdf.kinematics.tolerances import (
     POOR_SHARE,
 )
 
+# With a λ of this fraction of the trace, and this much, A Aᵀ is invertible even with redundant rows.
+_LEAST_OF_TRACE, _LEAST = 1e-13, 1e-300
+
 
 class Descended(NamedTuple):
     """Where descents end; B elements.
@@ -236,8 +239,14 @@ def _shortened(steps: list[Matrix]) -> list[Matrix]:
 
 def damped(A: Sequence[Matrix], b: Sequence[Matrix], damping: Numbers) -> list[Matrix]:
     """The δ (B, n) that minimise Σ |A δ + b|² + λ |δ|², from the smaller of A Aᵀ and Aᵀ A of each group."""
-    if len(A) == len(b[0]) == 1:
-        return [_damped_alone(A[0][0], b[0][0], damping)[None]]
+    if len(A) == len(b[0]) == 1:  # the same in fewer steps
+        ((one,),), ((rows,),) = A, b
+        back, is_wide = one.T, len(one) < one.shape[1]
+        gram = one.dot(back) if is_wide else back.dot(one)
+        diagonal = gram.ravel()[:: len(gram) + 1]
+        diagonal += max(damping, _LEAST_OF_TRACE * sum(diagonal.tolist()) + _LEAST)
+        step: Vector = back.dot(solutions(gram, -rows)) if is_wide else solutions(gram, -back.dot(rows))
+        return [step[None]]
     grams = []
     trace: Numbers = 0.0
     for own in A:
@@ -246,27 +255,12 @@ def damped(A: Sequence[Matrix], b: Sequence[Matrix], damping: Numbers) -> list[M
         diagonal = diagonals(gram)
         grams.append((back, is_wide, gram, diagonal))
         trace = trace + total(diagonal)
-    damping = column(at_least(damping, _least_damping(trace)))
+    damping = column(at_least(damping, _LEAST_OF_TRACE * trace + _LEAST))
     steps: list[Matrix] = []
     for (back, is_wide, gram, diagonal), rows in zip(grams, b, strict=True):
         diagonal += damping
         steps.append(times(back, solutions(gram, -rows)) if is_wide else solutions(gram, -times(back, rows)))
     return steps
-
-
-def _damped_alone(A: Matrix, b: Vector, damping: float) -> Vector:
-    """The δ (n,) that minimises |A δ + b|² + λ |δ|², of one A (m, n)."""
-    back, is_wide = A.T, len(A) < A.shape[1]
-    gram = A.dot(back) if is_wide else back.dot(A)
-    diagonal = gram.ravel()[:: len(gram) + 1]
-    diagonal += max(damping, _least_damping(sum(diagonal.tolist())))
-    x: Vector = back.dot(solutions(gram, -b)) if is_wide else solutions(gram, -back.dot(b))
-    return x
-
-
-def _least_damping(trace: Numbers) -> Numbers:
-    """The λ with which A Aᵀ, of this trace, is invertible even with redundant rows."""
-    return 1e-13 * trace + 1e-300
 
 
 def _stay_within(

@@ -101,14 +101,14 @@ class _Targets:
         return np.concatenate(lengths, axis=1), np.concatenate(angles, axis=1)
 
 
-class _Apart(NamedTuple):
+class _InTurn(NamedTuple):
     """Closures and targets that are evaluated one after the other, as an `Evaluator` evaluates both."""
 
     closures: Evaluator
     targets: Any
 
-    def among(self, which: Mask) -> _Apart:
-        return _Apart(self.closures, self.targets.among(which))
+    def among(self, which: Mask) -> _InTurn:
+        return _InTurn(self.closures, self.targets.among(which))
 
     def fresh(self, q: Matrix) -> tuple[Any, Any]:
         return self.closures.fresh(q), self.targets.fresh(q)
@@ -227,7 +227,7 @@ class InverseNewton:
             for index, goal in enumerate(goals, self._first):
                 turn = IDENTITY_ROTATION if goal.rotation is None else goal.rotation[0]
                 self._placed.place(index, turn, goal.position[0])
-        return targets if self._closures is None else _Apart(self._closures, targets)
+        return targets if self._closures is None else _InTurn(self._closures, targets)
 
 
 def _with_targets(
