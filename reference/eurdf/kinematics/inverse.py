@@ -128,6 +128,10 @@ def inverse_kinematics(
     Source: `closedLoopInverseKinematics` of the toolbox of Batto, De Matteïs and Mansard, 2025, which passes the loops
     to a general solver as equality constraints.
 
+    Near targets are reached sooner, by the Newton steps of least norm that solve the closures and the targets at once;
+    they count where each loop is closed to 1e-10, the limits are respected, and the steps after the first, together,
+    are at most a quarter as long as it, so that the branch is that of q0. If not, the search above starts at q0.
+
     Args:
         robot: The robot.
         targets: For each frame its target in the world: a pose (`pin.SE3`), or a position (3,), m, that leaves the
