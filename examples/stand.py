@@ -128,7 +128,7 @@ def squat(standing: eurdf.Robot, torso: str, depth: float) -> list[Moment]:
         q = solution.q
         K = eurdf.residual_and_jacobian(guided, q)[1]
         v = np.linalg.lstsq(K, speed * down)[0]
-        a = np.linalg.lstsq(K, change * down + eurdf.constraint_acceleration(guided, q, v))[0]
+        a = np.linalg.lstsq(K, change * down + eurdf.kinematics.constraint_acceleration(guided, q, v))[0]
         a = eurdf.kinematics.achievable_acceleration(standing, q, v, a)  # no motor turns the rods about their lines
         dynamics = eurdf.inverse_dynamics(standing, q, v, a)
         ground = {foot: ground_of(dynamics.forces[foot], soles[foot]) for foot in FEET}

@@ -22,7 +22,6 @@ from eurdf.pinocchio.robot import Robot as Robot
 from eurdf.robot_functions import actuated_jacobian as actuated_jacobian
 from eurdf.robot_functions import analyze as analyze
 from eurdf.robot_functions import assemble as assemble
-from eurdf.robot_functions import constraint_acceleration as constraint_acceleration
 from eurdf.robot_functions import differential_inverse_kinematics as differential_inverse_kinematics
 from eurdf.robot_functions import forward_dynamics as forward_dynamics
 from eurdf.robot_functions import forward_kinematics as forward_kinematics

@@ -72,7 +72,9 @@ def test_contact_counts_as_closure_in_random_mechanisms(seed: int, kind: str, ro
 
     v, tau = eurdf.project_velocity(touching, q, random.normal(size=robot.model.nv)), random.normal(size=robot.model.nv)
     found = eurdf.forward_dynamics(touching, q, v, tau=tau)
-    np.testing.assert_allclose(K @ found.a, eurdf.constraint_acceleration(touching, q, v), atol=1e-7 * scale(found.a))
+    np.testing.assert_allclose(
+        K @ found.a, eurdf.kinematics.constraint_acceleration(touching, q, v), atol=1e-7 * scale(found.a)
+    )
     # pin.rnea is right where mimic joints are, unlike Pinocchio's solver of constraints.
     left = pin.rnea(robot.model, robot.data, q, v, found.a) - tau - eurdf.springs.spring_force(robot, q)
     np.testing.assert_allclose(left, K.T @ np.concatenate(found.forces), atol=1e-7 * scale(left, found.a))

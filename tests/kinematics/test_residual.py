@@ -64,7 +64,7 @@ def test_motion_on_closed_path_has_the_constraint_acceleration(name: str) -> Non
         for step in (h, -h)
     )
     v, a = (there - back) / (2.0 * h), (there + back) / h**2
-    k = eurdf.constraint_acceleration(robot, q, v)
+    k = eurdf.kinematics.constraint_acceleration(robot, q, v)
     _, K = eurdf.residual_and_jacobian(robot, q)
     np.testing.assert_allclose(K @ a, k, atol=1e-3 * (1.0 + np.abs(k).max()))
     np.testing.assert_allclose(k, -drift_by_differences(robot, q, v), atol=1e-8 * (1.0 + np.abs(k).max()))

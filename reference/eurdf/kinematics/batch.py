@@ -245,7 +245,7 @@ def constraint_acceleration(
     executor: Executor | None = None,
     progress: Progress | None = None,
 ) -> Matrix:
-    """The k of K a = k at B configurations and velocities, as `eurdf.constraint_acceleration` has it.
+    """The k of K a = k at B configurations and velocities, as `eurdf.kinematics.constraint_acceleration` has it.
 
     Args:
         robot: The robot.

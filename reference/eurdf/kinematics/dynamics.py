@@ -13,7 +13,6 @@ A, which is Pinocchio's ``contact_force``. Those of a contact, whose frame A is 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -49,10 +48,10 @@ class Forces(tuple[Vector, ...]):
     names: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, robot: Robot, rows: Iterable[slice], lambdas: Vector) -> Forces:
-        """Those in λ (nc,), of the constraints with these rows."""
-        forces = cls([lambdas[each] for each in rows])
-        forces.names = tuple([constraint.name for constraint in robot.constraints])
+    def of(cls, solver: ForwardSolver, lambdas: Vector) -> Forces:
+        """Those in λ (nc,)."""
+        forces = cls([lambdas[rows] for rows in solver.rows])
+        forces.names = solver.names
         return forces
 
     def __getitem__(self, which: Any) -> Any:
@@ -150,7 +149,7 @@ def forward_dynamics(
             kp, kd = checked_array("gains", gains, (2,)).tolist()
             each = [(kp, kd)] * len(robot.constraints)
         a, lambdas = solver.solve(robot, q, v, force, each, dynamics)
-    return ForwardDynamics(a, Forces.of(robot, solver.rows, lambdas))
+    return ForwardDynamics(a, Forces.of(solver, lambdas))
 
 
 @overflow_refused("the motor torques")
@@ -208,7 +207,7 @@ def inverse_dynamics(
         found = inverse_solver.solve(solver, q, v, a, applied, tolerance, dynamics)
         if found is not None:
             u, lambdas = found
-            return InverseDynamics(u, Forces.of(robot, solver.rows, lambdas))
+            return InverseDynamics(u, Forces.of(solver, lambdas))
         motion, S = EquationOfMotion(robot, q, v, dynamics), robot.actuation.selection
         motion.refuse_open(a, tolerance)
         force = motion.bias - applied
@@ -217,7 +216,7 @@ def inverse_dynamics(
         _refuse_uncontrolled(motion, a, deviation, missing, tolerance)
         required = force + inertial
         u = motion.torques(required, norm)
-        forces = Forces.of(robot, solver.rows, motion.P.T @ (required - S @ u))
+        forces = Forces.of(solver, motion.P.T @ (required - S @ u))
     finite("the motor torques", u, *forces)
     return InverseDynamics(u, forces)
 

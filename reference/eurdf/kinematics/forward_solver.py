@@ -28,7 +28,8 @@ class ForwardSolver:
 
     Attributes:
         gains: The Baumgarte gains that the constraint models have.
-        rows: Of each constraint its rows.
+        names: Of each constraint its name.
+        rows: And its rows.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -36,6 +37,7 @@ class ForwardSolver:
         self._tree = robot.tree
         self._size = sum(constraint.rows for constraint in robot.constraints), robot.tree.nv
         self.gains = StatedGains(robot)
+        self.names = tuple(constraint.name for constraint in robot.constraints)
         self.rows = tuple(loop.rows for loop in find_loops(robot))
         self._whole: LimbSolver | None = None
         self._limbs: list[LimbSolver] = []
