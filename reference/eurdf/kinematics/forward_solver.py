@@ -9,7 +9,7 @@ import numpy as np
 from eurdf.array import Matrix, Vector
 from eurdf.kinematics.equation_of_motion import Acceleration, EquationOfMotion
 from eurdf.kinematics.finite import finite, overflow_refused
-from eurdf.kinematics.independence import norm
+from eurdf.kinematics.independence import INDEPENDENT, norm
 from eurdf.kinematics.limb_solver import LimbSolver, is_rounding, keeps
 from eurdf.kinematics.limbs import find_limbs
 from eurdf.kinematics.loop import find_loops
@@ -167,6 +167,8 @@ class ForwardSolver:
             if len(own):
                 response, change = solver.respond(unit)
                 inverse = inverses(response[own])
+                if found.J[:, own].any() and not norm(response[own].ravel()) * norm(inverse.ravel()) <= INDEPENDENT:
+                    return None  # it may hold the trunk as another limb does
                 joined.append((response, change, inverse))
                 inertia[at[:, None], at] += inverse
                 needed[at] += inverse.dot(found.a[own])
