@@ -190,6 +190,7 @@ def test_contact_is_at_the_place_that_is_stated(digit: Any) -> None:
 @pytest.mark.parametrize(
     ("contacts", "message"),
     [
+        (["left_sole"], "contacts is \\['left_sole'\\]; expected a mapping"),
         ({"left_sol": "6d"}, "no link, joint or frame 'left_sol'; did you mean 'left_sole'"),
         ({"left_sole": "7d"}, "type '7d'; a contact is one of '3d', '6d', 'hinge' and 'distance'"),
         ({"left_sole": "coupling"}, "type 'coupling'; a contact is one of"),

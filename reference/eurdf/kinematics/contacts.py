@@ -40,6 +40,8 @@ _SHAPES: dict[str, tuple[int, ...]] = {"float": (), "Vector3": (3,), "tuple[Vect
 
 def with_contacts(robot: _Robot, contacts: Mapping[str, str | Mapping[str, Any]], at: Named | None = None) -> _Robot:
     """As `Robot.with_contacts`."""
+    if not isinstance(contacts, Mapping):
+        raise ValueError(f"contacts is {reprlib.repr(contacts)}; expected a mapping from frames to types of closure")
     q = start(robot, at, "at")
     with working_memory(robot, Problem) as problem:
         if at is not None and not problem.closes(q[None])[0]:
