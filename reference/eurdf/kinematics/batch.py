@@ -26,14 +26,14 @@ from eurdf.kinematics.frame_jacobian import checked_reference
 from eurdf.kinematics.inverse import checked_targets
 from eurdf.kinematics.inverse_search import InverseKinematicsReason, InverseTask, Target, search
 from eurdf.kinematics.metric import metric
-from eurdf.kinematics.named import Named, NamedRows, configurations_of
+from eurdf.kinematics.named import Named, NamedRows, configurations_of, velocity_of
 from eurdf.kinematics.position_limit import chosen_limits
 from eurdf.kinematics.problem import Problem, for_many
 from eurdf.kinematics.project import ProjectionTask, nearest_closed
 from eurdf.kinematics.residual import residual as residual_of_one
 from eurdf.kinematics.sensitivity import JacobianTask, actuated_jacobians
 from eurdf.kinematics.tolerances import RESTARTS, SOLVED
-from eurdf.pinocchio.arguments import checked_array, checked_count, checked_tolerance
+from eurdf.pinocchio.arguments import are_by_name, checked_array, checked_count, checked_tolerance
 from eurdf.pinocchio.memory import working_memory
 
 if TYPE_CHECKING:
@@ -238,7 +238,7 @@ def residual_and_jacobian(
 def constraint_acceleration(
     robot: Robot,
     q: NamedRows,
-    v: Matrix,
+    v: Named | Matrix,
     *,
     block: int | None = None,
     threads: int = 1,
@@ -250,7 +250,7 @@ def constraint_acceleration(
     Args:
         robot: The robot.
         q: Configurations (B, nq).
-        v: Velocities (B, nv), rad/s and m/s.
+        v: Velocities (B, nv), rad/s and m/s, or one (nv,) for all.
         block: See `eurdf.batch.forward_kinematics`, also for the following ones.
         threads: Number of threads.
         executor: Who works on blocks instead.
@@ -260,12 +260,13 @@ def constraint_acceleration(
         k (B, nc), m/s² and rad/s².
 
     Raises:
-        ValueError: As in `residual`, also for ``v``, or the numbers of elements differ.
+        ValueError: As in `residual`, also for ``v``.
         NumericalOverflow: As in `residual`, of k.
     """
     tree, constraints = robot.tree, robot.cached(_constraints)
     rows = checked_rows("q", configurations_of(robot, q), tree.nq)
-    velocities = checked_array("v", v, (len(rows), tree.nv))
+    v = velocity_of(robot, v) if are_by_name(v) else checked_array("v", v, (len(rows), tree.nv), (tree.nv,))
+    velocities = np.broadcast_to(v, (len(rows), tree.nv))
     work = blocks(constraints.numbers, block, threads, executor, progress)
     (k,) = work.map(_acceleration, constraints, (rows, velocities))
     _require_finite(k)

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from eurdf.array import Matrix, Vector, numbers
-from eurdf.diagnostics.wording import meant
+from eurdf.diagnostics.wording import meant, quoted
 from eurdf.errors import UnderactuatedMotion
 from eurdf.kinematics.applied_force import AppliedForce, External
 from eurdf.kinematics.closing import start
@@ -53,6 +53,9 @@ class Forces(tuple[Vector, ...]):
         forces = cls([lambdas[rows] for rows in solver.rows])
         forces.names = solver.names
         return forces
+
+    def __repr__(self) -> str:
+        return f"<Forces of {len(self)} constraints, N and N·m: {quoted(self.names, 4) or 'none'}>"
 
     def __getitem__(self, which: Any) -> Any:
         if not isinstance(which, str):

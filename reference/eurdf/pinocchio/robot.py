@@ -27,6 +27,10 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
 
+#: A contact with its type, its place, and the further keys of its type.
+StatedContact = Mapping[str, Any]
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Robot(Cached):
     """A robot with closed kinematic chains, in Pinocchio's terms.
@@ -186,7 +190,7 @@ class Robot(Cached):
 
     def with_contacts(
         self,
-        contacts: Mapping[str, str | Mapping[str, Any]],
+        contacts: Mapping[str, str | StatedContact],
         *,
         at: Vector | Mapping[str, float | Sequence[float]] | None = None,
     ) -> Self:
