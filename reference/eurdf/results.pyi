@@ -2,6 +2,7 @@
 
 from eurdf.kinematics.analysis import Analysis as Analysis
 from eurdf.kinematics.assembly import Assembly as Assembly
+from eurdf.kinematics.dynamics import Forces as Forces
 from eurdf.kinematics.dynamics import ForwardDynamics as ForwardDynamics
 from eurdf.kinematics.dynamics import InverseDynamics as InverseDynamics
 from eurdf.kinematics.inverse import FrameError as FrameError

@@ -15,10 +15,19 @@ from eurdf.kinematics.forward_solver import ForwardSolver
 from eurdf.kinematics.limbs import find_limbs
 from eurdf.pinocchio.limbs import LimbsDynamics
 
-TRUNKS = {"battobot": 6, "digit_2legs": 6, "talos_2legs": 6, "four-bars": 0}
+TRUNKS = {"battobot": 6, "digit_2legs": 6, "talos_2legs": 6, "four-bars": 0, "standing": 6}
+
+
+def standing(name: str) -> Any:
+    """On both feet, with its springs locked."""
+    robot = eurdf.load(name, geometry=False)
+    springs = [joint.name for joint in robot.mechanism.joints if any(joint.properties.stiffness)]
+    return eurdf.lock(robot, springs).with_contacts({"left_sole": "6d", "right_sole": "6d"})
 
 
 def made(name: str) -> Any:
+    if name == "standing":
+        return standing("digit_2legs")
     return chain(20, in_series=False) if name == "four-bars" else eurdf.load(name, geometry=False)
 
 
@@ -47,6 +56,21 @@ def test_limbs_move_as_the_whole(name: str, monkeypatch: pytest.MonkeyPatch) -> 
     M = eurdf.mass_matrix(robot, q)
     np.testing.assert_allclose(own.mass_times(q, np.eye(len(M))), M, atol=1e-9 * np.abs(M).max())
     assert (own.inverse_mass_diagonal(q) >= (1.0 - 1e-9) * np.linalg.inv(M).diagonal()).all()
+
+
+def test_limbs_that_hold_the_trunk_alike_have_least_forces(monkeypatch: pytest.MonkeyPatch) -> None:
+    robot = standing("cassie_2legs")  # each leg has five motors, so both keep the torso from one motion
+    assert eurdf.analyze(robot).redundant == 1
+    q, v, tau = eurdf.assemble(robot).q, np.zeros(robot.tree.nv), np.ones(robot.tree.nv)
+    whole = eurdf.forward_dynamics(robot, q, v, tau=tau)
+    for bound in ("MOST_VELOCITIES_OF_A_LIMB", "BUNDLED"):
+        monkeypatch.setattr(limbs, bound, 20)
+    divided = standing("cassie_2legs")
+    assert len(find_limbs(divided)) == 2
+    found = eurdf.forward_dynamics(divided, q, v, tau=tau)
+    np.testing.assert_allclose(found.a, whole.a, atol=1e-8 * np.abs(whole.a).max())
+    largest = np.abs(np.concatenate(whole.forces)).max()
+    np.testing.assert_allclose(np.concatenate(found.forces), np.concatenate(whole.forces), atol=1e-8 * largest)
 
 
 def test_limbs_take_over_changes_of_the_model(monkeypatch: pytest.MonkeyPatch) -> None:

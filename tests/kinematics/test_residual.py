@@ -19,6 +19,7 @@ from support.linkage import (
     Linkage,
     branching,
     closure,
+    drift_by_differences,
     far_from_half_a_turn,
     somewhere,
     translation,
@@ -51,6 +52,24 @@ def test_jacobian_is_derivative_in_any_tree(seed: int, kinds: list[str]) -> None
     assume(far_from_half_a_turn(linkage, q))
     _, K = residual_and_jacobian(linkage, q)
     np.testing.assert_allclose(K, differences(linkage, q), rtol=0.0, atol=1e-7 * np.abs(K).max())
+
+
+@pytest.mark.parametrize("name", eurdf.collection_names())
+def test_motion_on_closed_path_has_the_constraint_acceleration(name: str) -> None:
+    robot, h = eurdf.load(name, geometry=False), 2e-3
+    q = eurdf.assemble(robot).q
+    v = eurdf.project_velocity(robot, q, np.random.default_rng(0).normal(size=robot.model.nv))
+    there, back = (
+        pin.difference(robot.model, q, eurdf.project_configuration(robot, pin.integrate(robot.model, q, step * v)))
+        for step in (h, -h)
+    )
+    v, a = (there - back) / (2.0 * h), (there + back) / h**2
+    k = eurdf.kinematics.constraint_acceleration(robot, q, v)
+    _, K = eurdf.residual_and_jacobian(robot, q)
+    np.testing.assert_allclose(K @ a, k, atol=1e-3 * (1.0 + np.abs(k).max()))
+    np.testing.assert_allclose(k, -drift_by_differences(robot, q, v), atol=1e-8 * (1.0 + np.abs(k).max()))
+    many = eurdf.batch.constraint_acceleration(robot, [q] * 3, [v, -v, 2.0 * v])
+    np.testing.assert_allclose(many, [k, k, 4.0 * k], atol=1e-9 * (1.0 + np.abs(k).max()))
 
 
 @given(seed=seeds, kinds=st.lists(st.sampled_from(sorted(JOINTS)), min_size=3, max_size=9))

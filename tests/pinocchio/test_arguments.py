@@ -23,11 +23,13 @@ ARRAY = re.compile(r"\b(Named|Vector|Matrix|ArrayLike|External|Mapping\[str, Any
 #: A valid call of each public function, and of each method of a robot, that takes an array.
 CALLS: dict[str, dict[str, Any]] = {
     "Robot.joint_positions": {"q": "q"},
+    "Robot.with_contacts": {"contacts": {"coupler": "3d"}, "at": "q"},
     "achievable_acceleration": {"q": "q", "v": "v", "a": "v", "tau": "v", "external": {"coupler": 6}},
     "actuated_jacobian": {"q": "q", "frame": "coupler", "weights": "v"},
     "analyze": {"q": "q"},
     "assemble": {"q0": "q"},
     "closure_openings": {"q": "q"},
+    "constraint_acceleration": {"q": "q", "v": "v"},
     "differential_inverse_kinematics": {"q": "q", "frame": "coupler", "twist": 6},
     "dq_dq_actuated": {"q": "q", "weights": "v"},
     "forward_dynamics": {
@@ -74,6 +76,7 @@ CALLS: dict[str, dict[str, Any]] = {
     "sweep": {"actuator": "motor_crank", "q0": "q"},
     "view": {"q": "q", "port": 0},
     "batch.actuated_jacobian": {"q": "q", "frame": "coupler", "weights": "v"},
+    "batch.constraint_acceleration": {"q": "q", "v": "v"},
     "batch.forward_kinematics": {"values": "qa", "q0": "q"},
     "batch.inverse_kinematics": {"targets": {"coupler": 3}, "q0": "q"},
     "batch.project_configuration": {"q": "q", "weights": "v"},
@@ -97,7 +100,7 @@ def valid(name: str) -> dict[str, Any]:
     """The arguments of a valid call."""
     arguments = {}
     for parameter, given in CALLS[name].items():
-        if parameter in ("frame", "actuator", "joints", "duration", "grid", "port"):
+        if parameter in ("contacts", "frame", "actuator", "joints", "duration", "grid", "port"):
             arguments[parameter] = given
         elif isinstance(given, Mapping):
             arguments[parameter] = {key: np.ones(size) for key, size in given.items()}
@@ -264,7 +267,7 @@ for function, *arguments in [
     (eurdf.merge_configuration, none, none), (eurdf.kinematics.merge_velocity, none, none),
     (eurdf.project_acceleration, none, none, none), (eurdf.project_configuration, none),
     (eurdf.project_velocity, none, none), (eurdf.residual, none),
-    (eurdf.residual_and_jacobian, none),
+    (eurdf.residual_and_jacobian, none), (eurdf.kinematics.constraint_acceleration, none, none),
     (eurdf.split_configuration, none), (eurdf.kinematics.split_velocity, none),
 ]:
     function(robot, *arguments)

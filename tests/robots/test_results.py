@@ -66,6 +66,7 @@ class Case:
             "actuated": q[robot.actuation.idx_q],
             "values": np.tile(q[robot.actuation.idx_q], (3, 1)),
             "frame": frame,
+            "contacts": {actuator: "3d"},
             "targets": {frame: np.zeros(3)},
             "twist": np.zeros(6),
             "joints": joints,

@@ -15,7 +15,14 @@ import pinocchio as pin
 import pytest
 
 import eurdf
-from examples import export_digit_2legs, follow_foot_trajectory, mujoco_and_pinocchio, simulate_digit_leg, squat_torques
+from examples import (
+    export_digit_2legs,
+    follow_foot_trajectory,
+    mujoco_and_pinocchio,
+    simulate_digit_leg,
+    squat_torques,
+    stand,
+)
 from support.places import ROOT
 
 pytestmark = pytest.mark.slow
@@ -129,6 +136,20 @@ def test_squat_torques_do_virtual_work(squat: squat_torques.Squat, k: int) -> No
     J = eurdf.actuated_jacobian(robot, "foot", q, reference=pin.LOCAL_WORLD_ALIGNED)
     expected = eurdf.kinematics.dq_dq_actuated(robot, q).T @ tau - J.T @ squat.ground[k]
     np.testing.assert_allclose(squat.u[k], expected, rtol=0.0, atol=1e-6)
+
+
+@pytest.mark.parametrize("name", stand.ROBOTS)
+def test_robots_squat_on_both_feet(name: str) -> None:
+    robot, moments, compared = stand.main(name)
+    assert compared.momentum < 1e-5
+    assert compared.pinocchio < 1e-5
+    assert compared.mujoco < 1e-5
+    grounds = [ground for moment in moments for ground in moment.ground.values()]
+    assert min(ground.friction for ground in grounds) > 0.0
+    assert min(ground.pressure for ground in grounds) > 0.0
+    # The torso ends as it starts, so on average the ground carries the weight.
+    weight = 9.81 * sum(inertia.mass for inertia in robot.model.inertias)
+    assert sum(ground.wrench[2] for ground in grounds) / len(moments) == pytest.approx(weight, rel=2e-3)
 
 
 def test_examples_readme_lists_all() -> None:

@@ -76,6 +76,7 @@ def test_every_joint_and_constraint_has_the_kinematics_of_the_reference() -> Non
     robots = []
     for seed in range(4):
         robot, q = closed_tree(np.random.default_rng(seed), root="floating" if seed % 2 else "fixed")
+        robot = robot.with_contacts({robot.mechanism.bodies[-1].name: "hinge"}, at=q)
         robots.append((robot, live_robot(robot, q)))
     for (robot, data), (state,) in zip(robots, run([(data, ()) for _, data in robots]), strict=True):
         assert state["largest"] < 1e-9

@@ -24,6 +24,12 @@ COMMON = (
         only="names that the format does not allow",
     ),
     dropped("metadata", "metadata and user data are left out", "keep the description beside the file"),
+    dropped(
+        "contact",
+        "is left out: contacts with the world are no part of a description",
+        "add it to the file, or simulate the ground",
+        sayable=True,
+    ),
     exact(
         "3d closure",
         "becomes a hinge: its bodies turn about one axis against each other",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType
@@ -215,6 +215,9 @@ def _export(
     ):
         if value not in allowed:
             raise ValueError(f"{name} is {value!r}; it must be one of {', '.join(allowed)}")
+    contacts = robot.mechanism.contacts
+    if contacts:
+        robot = replace(robot, mechanism=replace(robot.mechanism, contacts=()))
     configurations = _configurations(robot, choices.configuration)
     replaced: tuple[Loss, ...] = ()
     if choices.closures == "hinge" and configurations:
@@ -223,7 +226,7 @@ def _export(
     format_ = export_format(to)
     mechanism = robot.mechanism
     losses = Losses((*format_.rows, *UNKNOWN))
-    losses.find(mechanism, choices.actuators, format_.exact)
+    losses.find(replace(mechanism, contacts=contacts), choices.actuators, format_.exact)
     given = ExportInput(
         mechanism,
         _own_vectors(robot),

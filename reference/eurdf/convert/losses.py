@@ -111,6 +111,7 @@ ELEMENTS: dict[str, Elements] = {
     "spring": _nonzero("stiffness"),
     **{f"{kind} closure": _of_closure_type(kind) for kind in REGISTRY},
     "coupling": lambda mechanism: mechanism.couplings,
+    "contact": lambda mechanism: mechanism.contacts,
     "compliance": lambda mechanism: (
         closure for closure in mechanism.closures if closure.compliance.linear or closure.compliance.angular
     ),

@@ -28,14 +28,14 @@ from eurdf.kinematics.inverse import checked_targets
 from eurdf.kinematics.inverse_newton import newton_for_many
 from eurdf.kinematics.inverse_search import InverseKinematicsReason, InverseTask, search
 from eurdf.kinematics.metric import metric
-from eurdf.kinematics.named import Named, NamedRows, configurations_of
+from eurdf.kinematics.named import Named, NamedRows, configurations_of, velocity_of
 from eurdf.kinematics.position_limit import chosen_limits
 from eurdf.kinematics.problem import Problem, for_many
 from eurdf.kinematics.project import ProjectionTask, nearest_closed
 from eurdf.kinematics.residual import residual as residual_of_one
 from eurdf.kinematics.sensitivity import JacobianTask, actuated_jacobians
 from eurdf.kinematics.tolerances import RESTARTS, SOLVED
-from eurdf.pinocchio.arguments import checked_count, checked_tolerance
+from eurdf.pinocchio.arguments import are_by_name, checked_array, checked_count, checked_tolerance
 from eurdf.pinocchio.memory import working_memory
 
 if TYPE_CHECKING:
@@ -237,6 +237,48 @@ def residual_and_jacobian(
     return r, K
 
 
+def constraint_acceleration(
+    robot: Robot,
+    q: NamedRows,
+    v: Named | Matrix,
+    *,
+    block: int | None = None,
+    threads: int = 1,
+    executor: Executor | None = None,
+    progress: Progress | None = None,
+) -> Matrix:
+    """The k of K a = k at B configurations and velocities, as `eurdf.kinematics.constraint_acceleration` has it.
+
+    Args:
+        robot: The robot.
+        q: Configurations (B, nq).
+        v: Velocities (B, nv), rad/s and m/s, or one (nv,) for all.
+        block: See `eurdf.batch.forward_kinematics`, also for the following ones.
+        threads: Number of threads.
+        executor: Who works on blocks instead.
+        progress: Called after each block.
+
+    Returns:
+        k (B, nc), m/s² and rad/s².
+
+    Raises:
+        ValueError: As in `residual`, also for ``v``.
+        NumericalOverflow: As in `residual`, of k.
+    """
+    tree, constraints = robot.tree, robot.cached(_constraints)
+    rows = checked_rows("q", configurations_of(robot, q), tree.nq)
+    v = velocity_of(robot, v) if are_by_name(v) else checked_array("v", v, (len(rows), tree.nv), (tree.nv,))
+    velocities = np.broadcast_to(v, (len(rows), tree.nv))
+    work = blocks(constraints.numbers, block, threads, executor, progress)
+    (k,) = work.map(_acceleration, constraints, (rows, velocities))
+    _require_finite(k)
+    return k
+
+
+def _acceleration(constraints: Evaluator, q: Matrix, v: Matrix) -> tuple[Matrix]:
+    return (-constraints.drift(q, v),)
+
+
 def _constraints(robot: Robot) -> Evaluator:
     return evaluator(robot, few=False)
 
@@ -253,7 +295,7 @@ def _residual_and_jacobian(constraints: Evaluator, q: Matrix) -> tuple[Matrix, M
 def _require_finite(*results: Matrix) -> None:
     wrong = np.any([~np.isfinite(result).all(axis=tuple(range(1, result.ndim))) for result in results], axis=0)
     if wrong.any():
-        raise NumericalOverflow(f"the residual at q[{int(wrong.argmax())}]")
+        raise NumericalOverflow(f"the result at q[{int(wrong.argmax())}]")
 
 
 def project_configuration(

@@ -8,7 +8,7 @@ with τ_s the force of the springs (`eurdf.kinematics.springs`), which always ac
 K the derivative of the residual of `eurdf.kinematics.residual`. The forces λ of a closure are conjugate to its
 rows: λᵀ K v is their power. At a closed configuration (EU-CLO-008, EU-CLO-009) they are the force (N), and for a 6d
 closure also the moment (N·m), that act at frame A on the body of B, in the axes of A. The opposite acts on the body of
-A, which is Pinocchio's ``contact_force``.
+A, which is Pinocchio's ``contact_force``. Those of a contact, whose frame A is in the world, act on the robot.
 """
 
 from __future__ import annotations
@@ -18,10 +18,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from eurdf.array import Matrix, Vector, numbers
+from eurdf.diagnostics.wording import meant, quoted
 from eurdf.errors import UnderactuatedMotion
 from eurdf.kinematics.applied_force import AppliedForce, External
 from eurdf.kinematics.closing import start
-from eurdf.kinematics.equation_of_motion import EquationOfMotion, by_joint, per_constraint
+from eurdf.kinematics.equation_of_motion import EquationOfMotion, by_joint
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.forward_solver import ForwardSolver
 from eurdf.kinematics.inverse_solver import InverseSolver
@@ -35,16 +36,45 @@ if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 
+class Forces(tuple[Vector, ...]):
+    """λ of each constraint, in their order: (3,) N of a 3d closure, (6,) N and N·m of a 6d one.
+
+    They are those of the docstring of the module. ``forces["left_sole"]`` is that of a constraint by its name.
+
+    Attributes:
+        names: Names of the constraints.
+    """
+
+    names: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, solver: ForwardSolver, lambdas: Vector) -> Forces:
+        """Those in λ (nc,)."""
+        forces = cls([lambdas[rows] for rows in solver.rows])
+        forces.names = solver.names
+        return forces
+
+    def __repr__(self) -> str:
+        return f"<Forces of {len(self)} constraints, N and N·m: {quoted(self.names, 4) or 'none'}>"
+
+    def __getitem__(self, which: Any) -> Any:
+        if not isinstance(which, str):
+            return super().__getitem__(which)
+        if which not in self.names:
+            raise KeyError(f"there is no constraint '{which}'{meant(which, self.names)}")
+        return super().__getitem__(self.names.index(which))
+
+
 class ForwardDynamics(NamedTuple):
     """The result of `forward_dynamics`.
 
     Attributes:
         a: Acceleration (nv,), rad/s² and m/s².
-        forces: λ of each closure, in file order: (3,) N, or (6,) N and N·m; see the docstring of the module.
+        forces: λ of each constraint, also by its name.
     """
 
     a: Vector
-    forces: tuple[Vector, ...]
+    forces: Forces
 
     def __repr__(self) -> str:
         return f"<ForwardDynamics: a {numbers(self.a)} rad/s² or m/s²; {len(self.forces)} forces, N and N·m>"
@@ -55,11 +85,11 @@ class InverseDynamics(NamedTuple):
 
     Attributes:
         u: Motor torques (nu,), in the order of the actuation, N·m and N.
-        forces: λ of each closure, in file order: (3,) N, or (6,) N and N·m; see the docstring of the module.
+        forces: λ of each constraint, also by its name.
     """
 
     u: Vector
-    forces: tuple[Vector, ...]
+    forces: Forces
 
     def __repr__(self) -> str:
         return f"<InverseDynamics: u {numbers(self.u)} N·m or N; {len(self.forces)} forces, N and N·m>"
@@ -122,8 +152,7 @@ def forward_dynamics(
             kp, kd = checked_array("gains", gains, (2,)).tolist()
             each = [(kp, kd)] * len(robot.constraints)
         a, lambdas = solver.solve(robot, q, v, force, each, dynamics)
-        forces = tuple([lambdas[rows] for rows in solver.rows])
-    return ForwardDynamics(a, forces)
+    return ForwardDynamics(a, Forces.of(solver, lambdas))
 
 
 @overflow_refused("the motor torques")
@@ -181,7 +210,7 @@ def inverse_dynamics(
         found = inverse_solver.solve(solver, q, v, a, applied, tolerance, dynamics)
         if found is not None:
             u, lambdas = found
-            return InverseDynamics(u, tuple([lambdas[rows] for rows in solver.rows]))
+            return InverseDynamics(u, Forces.of(solver, lambdas))
         motion, S = EquationOfMotion(robot, q, v, dynamics), robot.actuation.selection
         motion.refuse_open(a, tolerance)
         force = motion.bias - applied
@@ -190,7 +219,7 @@ def inverse_dynamics(
         _refuse_uncontrolled(motion, a, deviation, missing, tolerance)
         required = force + inertial
         u = motion.torques(required, norm)
-        forces = per_constraint(robot, motion.P.T @ (required - S @ u))
+        forces = Forces.of(solver, motion.P.T @ (required - S @ u))
     finite("the motor torques", u, *forces)
     return InverseDynamics(u, forces)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from eurdf.array import Matrix, Vector
 from eurdf.kinematics.equation_of_motion import Acceleration, EquationOfMotion
 from eurdf.kinematics.finite import finite, overflow_refused
-from eurdf.kinematics.independence import norm
+from eurdf.kinematics.independence import INDEPENDENT, norm
 from eurdf.kinematics.limb_solver import LimbSolver, is_rounding, keeps
 from eurdf.kinematics.limbs import find_limbs
 from eurdf.kinematics.loop import find_loops
@@ -29,7 +30,8 @@ class ForwardSolver:
 
     Attributes:
         gains: The Baumgarte gains that the constraint models have.
-        rows: Of each constraint its rows.
+        names: Of each constraint its name.
+        rows: And its rows.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -37,6 +39,7 @@ class ForwardSolver:
         self._tree = robot.tree
         self._size = sum(constraint.rows for constraint in robot.constraints), robot.tree.nv
         self.gains = StatedGains(robot)
+        self.names = tuple(constraint.name for constraint in robot.constraints)
         self.rows = tuple(loop.rows for loop in find_loops(robot))
         self._whole: LimbSolver | None = None
         self._limbs: list[LimbSolver] = []
@@ -124,8 +127,10 @@ class ForwardSolver:
             if own_a is None:
                 return None
             alone.append(own_a)
-        a = np.zeros(len(v))
-        for solver, (own_a, _) in zip(self._limbs, self._joined(alone), strict=True):
+        a, joined = np.zeros(len(v)), self._joined(alone)
+        if joined is None:
+            return None
+        for solver, (own_a, _) in zip(self._limbs, joined, strict=True):
             a[solver.limb.velocities] = own_a
         return a
 
@@ -173,7 +178,9 @@ class ForwardSolver:
                 return None
             alone.append(found)
         a, lambdas, carried = np.zeros(len(v)), np.zeros(self._size[0]), np.zeros(len(v))
-        joined = self._joined([found.a for found in alone])
+        joined = self._joined([found.a for found in alone], [found.J for found in alone])
+        if joined is None:
+            return None
         for solver, (own_a, change), (_, on_a, J, target) in zip(self._limbs, joined, alone, strict=True):
             velocities, on_a = solver.limb.velocities, on_a + change
             if not keeps(own_a, J, target):
@@ -186,11 +193,13 @@ class ForwardSolver:
             lambdas[solver.rows] = -least
         return Acceleration(a, lambdas) if _balances(dynamics, q, v, a, force, carried) else None
 
-    def _joined(self, alone: list[Vector]) -> list[tuple[Vector, Any]]:
+    def _joined(self, alone: list[Vector], judged: Sequence[Matrix] = ()) -> list[tuple[Vector, Any]] | None:
         """Of each limb the a, and the change of f, with the forces w between the limbs that give all the same trunk.
 
         Of a limb the velocities of the trunk have the acceleration b ``alone``, and b + A w with w. With the same for
         all, and the sum of all w zero, it is (Σ A⁻¹)⁻¹ Σ A⁻¹ b.
+
+        None if the J of a limb, of those that are to be ``judged``, may hold the trunk as another limb does.
         """
         responses: list[tuple[Any, Any, Any]] = []
         inertia, needed = np.zeros((self._trunk, self._trunk)), np.zeros(self._trunk)
@@ -200,6 +209,9 @@ class ForwardSolver:
                 continue
             response, change = solver.respond(unit)
             inverse = inverses(response[own])
+            is_held = len(judged) > 0 and judged[len(responses)][:, own].any()
+            if is_held and not norm(response[own].ravel()) * norm(inverse.ravel()) <= INDEPENDENT:
+                return None
             responses.append((response, change, inverse))
             inertia[block] += inverse
             needed[at] += inverse.dot(a[own])

@@ -155,7 +155,7 @@ def inverse_kinematics(
     """
     if not isinstance(targets, Mapping):
         raise ValueError(f"targets must map names of frames to poses or positions, not {type(targets).__name__}")
-    checked = {name: _target(name, target) for name, target in targets.items()}
+    checked = {name: checked_target(f"targets['{name}']", target) for name, target in targets.items()}
     chosen, tolerance = chosen_limits(robot, limits), checked_tolerance(tolerance)
     q, restarts = start(robot, q0), checked_count("restarts", restarts, 0)
     poses = tuple(isinstance(target, SE3) for target in checked.values())
@@ -192,8 +192,17 @@ def inverse_kinematics(
     )
 
 
-def _target(name: str, target: Any) -> Any:
-    """A target, checked: a pose, or a position (3,)."""
+def checked_target(argument: str, target: Any) -> Any:
+    """A target, checked: a pose, `pin.SE3`, which may be given as a homogeneous matrix (4, 4), or a position (3,).
+
+    Raises:
+        ValueError: It is neither, or is not finite.
+    """
+    if not isinstance(target, SE3) and shape_of(target) == (4, 4):
+        matrix = checked_array(argument, target, (4, 4))
+        if np.abs(matrix[3] - (0.0, 0.0, 0.0, 1.0)).max() > 1e-9:
+            raise ValueError(f"{argument} is not a pose: its last row is not 0 0 0 1")
+        target = SE3(matrix[:3, :3], matrix[:3, 3])
     if isinstance(target, SE3):
         R = target.rotation
         if all_finite(target.translation) and np.abs(R.T.dot(R) - IDENTITY_ROTATION).max() <= 1e-6:
@@ -201,11 +210,11 @@ def _target(name: str, target: Any) -> Any:
             volume = sum(x[i] * (y[i - 2] * z[i - 1] - y[i - 1] * z[i - 2]) for i in range(3))
             if volume > 0.0:  # no reflection
                 return target
-        raise ValueError(f"targets['{name}'] is not a pose: its rotation is not orthonormal, or a number is not finite")
+        raise ValueError(f"{argument} is not a pose: its rotation is not orthonormal, or a number is not finite")
     try:
-        return checked_array(f"targets['{name}']", target, (3,))
+        return checked_array(argument, target, (3,))
     except ValueError as error:
-        raise ValueError(f"{error}, or a pose (pin.SE3)") from None
+        raise ValueError(f"{error}, or a pose: pin.SE3, or (4, 4)") from None
 
 
 def checked_targets(name: str, target: Any) -> Target:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from eurdf.kinematics.loop import Loop, find_loops, joints_of_loops
+from eurdf.kinematics.loop import Loop, find_loops
 from eurdf.pinocchio.ancestry import DisjointSets
 from eurdf.pinocchio.tree_few import BUNDLED
 
@@ -30,20 +30,19 @@ class LimbJoints(NamedTuple):
 
 
 def find_limbs(robot: Robot) -> tuple[LimbJoints, ...]:
-    """The limbs of a robot; none if it is small, or has no trunk of few velocities outside of all loops."""
+    """The limbs of a robot; none if it is small, or has no trunk of few velocities."""
     tree, trunk = robot.tree, set[int]()
     if tree.nv <= MOST_VELOCITIES_OF_A_LIMB or any(not own for own in tree.own_velocities[1:]):
         return ()
     if not all(_moving(loop) for loop in find_loops(robot)):
         return ()
-    in_loops = set(joints_of_loops(robot))
     while True:
         parts = _parts(robot, trunk)
         largest = max(parts, key=lambda part: _size(robot, part.joints))
         roots = [joint for joint in largest.joints if tree.parents[joint] in trunk or not tree.parents[joint]]
         if _size(robot, largest.joints) <= MOST_VELOCITIES_OF_A_LIMB:
             break
-        if len(roots) > 1 or roots[0] in in_loops or _size(robot, [*trunk, *roots]) > _LARGEST_TRUNK:
+        if len(roots) > 1 or _size(robot, [*trunk, *roots]) > _LARGEST_TRUNK:
             return ()
         trunk.update(roots)
     bundles: list[LimbJoints] = []

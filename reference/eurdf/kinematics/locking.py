@@ -18,6 +18,7 @@ from eurdf.kinematics.loop import find_loops
 from eurdf.kinematics.named import Named
 from eurdf.kinematics.residual import all_openings, residual
 from eurdf.kinematics.tolerances import CLOSED
+from eurdf.mechanism.body import WORLD
 from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.mechanism.pose import Pose
@@ -168,7 +169,7 @@ def lock_joints(mechanism: Mechanism, joints: Iterable[str], coordinates: _Coord
     constant = {
         constraint.name
         for constraint in mechanism.constraints
-        if len({rigid[anchor.body] for anchor in constraint.anchors}) < 2 and at.keys() >= set(constraint.joints)
+        if len({rigid.get(end.body, WORLD) for end in constraint.anchors}) < 2 and at.keys() >= set(constraint.joints)
     }
     kept = {
         name: MappingProxyType({joint: values for joint, values in configuration.items() if joint not in at})
@@ -183,6 +184,7 @@ def lock_joints(mechanism: Mechanism, joints: Iterable[str], coordinates: _Coord
             mechanism,
             joints=ordered,
             closures=tuple(closure for closure in mechanism.closures if closure.name not in constant),
+            contacts=tuple(contact for contact in mechanism.contacts if contact.name not in constant),
             couplings=tuple(
                 coupling.with_joints_locked(single) for coupling in mechanism.couplings if coupling.name not in constant
             ),

@@ -66,7 +66,30 @@ def residual_and_jacobian(robot: Robot, q: Named) -> tuple[Vector, Matrix]:
     return r, K
 
 
-def acceleration_drift(robot: Robot, q: Vector, v: Vector) -> Vector:
+def constraint_acceleration(robot: Robot, q: Named, v: Named) -> Vector:
+    """The k of K a = k: the accelerations a of the joints with K a = k keep the constraints met, where K v = 0.
+
+    k = -K̇ v is what the third equation of the paper (Batto, De Matteïs, Mansard, 2025) has on its right. It is exact
+    at every configuration, closed or not, and for any v: r̈ = K a - k. The drift of dynamics, r̈ at a = 0, is -k.
+
+    Args:
+        robot: The robot.
+        q: Configuration (nq,).
+        v: Velocity (nv,), rad/s and m/s.
+
+    Returns:
+        k (nc,), m/s² and rad/s², in the rows of the residual.
+
+    Raises:
+        ValueError: As in `residual`, also for ``v``.
+        NumericalOverflow: The result is not finite.
+    """
+    k = -acceleration_drift(robot, q, v)
+    finite("the acceleration of the constraints", k)
+    return k
+
+
+def acceleration_drift(robot: Robot, q: Named, v: Named) -> Vector:
     """The drift d = K̇ v of the constraints, exact at every configuration, closed or not.
 
     It is d²/dt² r(q ⊕ t v) at t = 0, so that r̈ = K a + d.

@@ -81,12 +81,16 @@ class Frame:
     kind: Literal["frame", "joint"] = "frame"
 
 
+#: What an anchor in the world has in place of the name of a body: no link has an empty name.
+WORLD = ""
+
+
 @dataclass(frozen=True, slots=True)
 class Anchor:
     """One side of a closure.
 
     Attributes:
-        body: Body it is fixed to.
+        body: Body it is fixed to, or `WORLD`.
         pose: Pose in that body's frame.
         frame: Name the description gives it; empty for a pose written in place.
     """

@@ -67,6 +67,7 @@ class Mechanism:
         own_data: User data in the file, as plain values, by the JSON pointer of their key.
         couplings: Linear relations of joint coordinates, in file order.
         motors: By actuated joint, the name of the actuator and its control range, where the file states one of them.
+        contacts: Closures between the world, which has their frame A, and a body. They are no part of a description.
     """
 
     name: str
@@ -82,6 +83,7 @@ class Mechanism:
     own_data: Mapping[str, object] = field(default_factory=lambda: MappingProxyType({}))
     couplings: tuple[Coupling, ...] = ()
     motors: Mapping[str, Motor] = field(default_factory=lambda: MappingProxyType({}))
+    contacts: tuple[Closure, ...] = ()
 
     def motor(self, joint: str) -> Motor:
         """The motor of an actuated joint; by default, it has the name of the joint."""
@@ -89,8 +91,8 @@ class Mechanism:
 
     @property
     def constraints(self) -> tuple[Constraint, ...]:
-        """Every closure, then every coupling: the order of their rows."""
-        return *self.closures, *self.couplings
+        """Every closure, then every coupling, then every contact: the order of their rows."""
+        return *self.closures, *self.couplings, *self.contacts
 
     @property
     def leaders(self) -> dict[str, Mimic]:

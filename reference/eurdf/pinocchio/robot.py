@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pinocchio as pin
 
@@ -22,6 +22,13 @@ from eurdf.pinocchio.memory import Cached
 from eurdf.pinocchio.meshes import Mesh
 from eurdf.pinocchio.model import build_model
 from eurdf.pinocchio.tree import Tree, build_tree
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+
+#: A contact with its type, its place, and the further keys of its type.
+StatedContact = Mapping[str, Any]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -86,12 +93,12 @@ class Robot(Cached):
 
     @property
     def constraints(self) -> tuple[Constraint, ...]:
-        """Every closure and coupling, in file order."""
+        """Every closure and coupling, in file order, and every contact."""
         return self.mechanism.constraints
 
     @property
     def constraint_models(self) -> list[pin.RigidConstraintModel]:
-        """Pinocchio's constraint models, in file order: a new list of the robot's own models, whose gains can be set.
+        """Pinocchio's constraint models, in this order: a new list of the robot's own models, whose gains can be set.
 
         A 3d or 6d closure is one model of that type and name. A hinge is two 3d models: ``NAME`` of its origin, and
         ``NAME/axis`` of a point on its axis. Set the same gains in both. Their 6 rows have the rank 5, so
@@ -181,6 +188,43 @@ class Robot(Cached):
         own = (name for name in every if mimic or name in self.slots or name == ROOT_JOINT)
         return {name: every[name] for name in own}
 
+    def with_contacts(
+        self,
+        contacts: Mapping[str, str | StatedContact],
+        *,
+        at: Vector | Mapping[str, float | Sequence[float]] | None = None,
+    ) -> Self:
+        """The robot with frames that are held against the world, such as the feet of a robot that stands.
+
+        ``robot.with_contacts({"left_sole": "6d", "right_sole": "3d"}, at=q)``. A contact is a closure of the name of
+        its frame: frame A is a place in the world, B is the frame of the robot. It counts in every function as the
+        closures do, after closures and couplings. Its forces λ act on the robot, in the axes of the place: for a 6d
+        contact, which keeps the frame there, in those of the frame. The new configuration ``assembled`` is closed, with
+        these contacts; the others are as they were, and may open them.
+
+        Contacts are added to those that the robot has. They are no part of the description: an export leaves them out,
+        and lists them as losses. The new robot shares the model and the geometry of this one.
+
+        Args:
+            contacts: For each frame, by the name of a link, a joint (its frame on the child side) or a frame of the
+                description, the type of the contact, as closures have it; or a mapping with ``type``, the further keys
+                of this type (`axis`, `axes`, `length`), and ``at``: the place, a pose (`pin.SE3`, or (4, 4)), or a
+                position (3,), m, with the orientation that the frame has.
+            at: A closed configuration (nq,); a contact without a place is where its frame is there. The default is
+                `assembled`, or the closed configuration that is found from neutral.
+
+        Returns:
+            A robot of the same class.
+
+        Raises:
+            ValueError: A frame is unknown, does not move, is named twice or has the name of a constraint; a type is
+                unknown; keys do not fit it; or ``at`` is not a configuration.
+            NotClosable: ``at`` is open, or no configuration was found that closes the loops with the contacts.
+        """
+        from eurdf.kinematics.contacts import with_contacts  # only now: it is above this module
+
+        return with_contacts(self, contacts, at)
+
     def __getstate__(self) -> dict[str, Any]:
         """What is pickled and copied: the model and its own geometry; what is derived from them is computed anew."""
         state = {each.name: getattr(self, each.name) for each in fields(self)}
@@ -203,7 +247,8 @@ class Robot(Cached):
     def __repr__(self) -> str:
         return (
             f"<Robot '{self.mechanism.name}': nq {self.model.nq}, nv {self.model.nv}, "
-            f"{len(self.mechanism.closures)} closures, {len(self.actuation.joints)} actuators>"
+            f"{len(self.mechanism.closures)} closures, {len(self.actuation.joints)} actuators"
+            + (f", {len(self.mechanism.contacts)} contacts>" if self.mechanism.contacts else ">")
         )
 
 

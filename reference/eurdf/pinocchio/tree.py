@@ -13,7 +13,7 @@ import pinocchio as pin
 from eurdf.array import Mask, Matrix, Vector
 from eurdf.closures.coupling import Coordinate
 from eurdf.diagnostics.wording import meant
-from eurdf.mechanism.body import Anchor
+from eurdf.mechanism.body import WORLD, Anchor
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.pinocchio.arguments import checked_data
 from eurdf.pinocchio.configuration import Slot
@@ -284,7 +284,7 @@ class Tree(Cached):
 def build_tree(mechanism: Mechanism, model: pin.Model, at: Mapping[str, Slot]) -> Tree:
     """The tree of a mechanism, whose `build_model` and `slots` are given."""
     frames = model.frames
-    sites = {
+    sites = {WORLD: Tree.world} | {
         name: Site(frames[index].parentJoint, pin.SE3(frames[index].placement))
         for name, index in body_frame_ids(mechanism).items()
     }

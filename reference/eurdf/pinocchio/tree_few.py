@@ -174,7 +174,7 @@ class FewPairs:
                 if isinstance(chosen, slice):
                     block[chosen][..., bundle.columns] = part
                 else:
-                    block[chosen[:, None, None], np.arange(r)[:, None], bundle.columns] = part
+                    block[chosen[:, None, None], np.arange(r)[:, None], np.arange(self.n)[bundle.columns]] = part
         return K.reshape(B, k * r, self.n)
 
     def motions(self, q: Matrix, v: Matrix) -> RelativeMotions:

@@ -29,6 +29,7 @@ from eurdf.kinematics.tolerances import (
     RESTARTS,
     SHORTEST_STEP,
 )
+from eurdf.mechanism.body import WORLD
 from eurdf.mechanism.constraint import Closure, Constraint, Coupling
 from eurdf.mechanism.joint import Joint, Mimic
 from eurdf.mechanism.pose import IDENTITY, ORIGIN, Pose, Vector3, X, Y, Z, cross, direction
@@ -106,6 +107,12 @@ class _Tables:
         self.robot = robot
         self.constraints = sorted({index for drive in drives for index in drive.closures})
         chosen = [robot.constraints[index] for index in self.constraints]
+        for constraint in chosen:
+            if any(anchor.body == WORLD for anchor in constraint.anchors):
+                raise ValueError(
+                    f"the C of a transmission cannot have the contact '{constraint.name}' of a floating robot; prepare "
+                    "it for the robot without contacts"
+                )
         self._above = {joint.child: joint for joint in mechanism.joints}
         relevant = {body for constraint in chosen for body in self._between(constraint)}
         alone = {name for constraint in chosen for name in constraint.joints}

@@ -50,6 +50,7 @@ def serial_mechanism(
         closures=tuple(
             closure for closure in mechanism.closures if all(anchor.body in stays for anchor in closure.anchors)
         ),
+        contacts=tuple(contact for contact in mechanism.contacts if contact.b.body in stays),
         couplings=tuple(coupling for coupling in mechanism.couplings if names.issuperset(coupling.joints)),
         actuators=_actuators(mechanism.actuators, joints, motors),
         configurations=MappingProxyType(

@@ -62,7 +62,8 @@ def live_robot(robot: Robot, q: Vector | None = None) -> dict[str, Any]:
     """A robot with all that the scripts of a live page need, as values of JSON.
 
     The units are m and rad, quaternions are x y z w, indices count from 0. The first joint of a robot with a floating
-    root is that of the root. Configurations have the coordinates of each joint, as files have them.
+    root is that of the root; body -1 is the world. Configurations have the coordinates of each joint, as files have
+    them.
 
     Args:
         robot: The robot, with its visual geometry.
@@ -160,7 +161,7 @@ def _constraint(
             found["coefficients"] = [coefficient for _, coefficient in constraint.coefficients]
             found["offset"] = constraint.offset
         case Closure():
-            anchors = [{"body": bodies[each.body], "pose": _pose(each.pose)} for each in constraint.anchors]
+            anchors = [{"body": bodies.get(each.body, -1), "pose": _pose(each.pose)} for each in constraint.anchors]
             found["a"], found["b"] = anchors
             found |= constraint.own
             if "axes" in found:

@@ -202,7 +202,8 @@ def drawn(robot: Robot, q: Vector | None, loops: bool) -> Drawn:
         closures = scene.closure_lines(placed)
         dots = closures[:, 1].reshape(-1, 3)
         lines.append((closures[:, [0, 2]].reshape(-1, 2, 3), _CLOSURE))
-        is_open = np.array([opening.is_open for opening in openings_once(robot, q)[: len(closures)]], dtype=bool)
+        of = {opening.name: opening.is_open for opening in openings_once(robot, q)}
+        is_open = np.array([of[link.name] for link in scene.links], dtype=bool)
         lines.append((closures[~is_open, 1], _CLOSURE))  # of a distance; those of other closures have no length
         lines.append((closures[is_open, 1], _OPEN))
     points = [*(surface.vertices for surface, _ in solids), *(each.reshape(-1, 3) for each, _ in lines)]

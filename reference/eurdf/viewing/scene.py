@@ -81,11 +81,11 @@ class Axis:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Link:
-    """A closure between two bodies.
+    """A closure or contact between two bodies.
 
     Attributes:
         name: Name of the closure.
-        bodies: Indices of the bodies that carry frame A and frame B.
+        bodies: Indices of the bodies that carry frame A and frame B; -1 is the world.
         poses: Poses of A and B in these bodies, `pin.SE3`.
     """
 
@@ -117,8 +117,8 @@ class PlacedRobot:
         return self.poses[:, (6, 3, 4, 5)]
 
     def pose(self, body: int) -> Any:
-        """Pose of a body in the world, `pin.SE3`."""
-        return pin.XYZQUATToSE3(self.poses[body])
+        """Pose of a body in the world, `pin.SE3`; that of the world, -1, is the identity."""
+        return pin.SE3.Identity() if body < 0 else pin.XYZQUATToSE3(self.poses[body])
 
 
 def wxyz(pose: Any) -> Vector:
@@ -159,10 +159,10 @@ class Scene:
         self.links = tuple(
             Link(
                 closure.name,
-                (index[closure.a.body], index[closure.b.body]),
+                (index.get(closure.a.body, -1), index[closure.b.body]),
                 (placement_of(closure.a.pose), placement_of(closure.b.pose)),
             )
-            for closure in mechanism.closures
+            for closure in (*mechanism.closures, *mechanism.contacts)
         )
         points = self._points(self.at(q))
         low, high = points.min(axis=0), points.max(axis=0)
@@ -199,12 +199,14 @@ class Scene:
     def closure_lines(self, placed: PlacedRobot) -> Matrix:
         """For each closure three lines, (n, 3, 2, 3), in the world, m.
 
-        They lead from the origin of the body of A to A, from A to B, and from B to the origin of its body.
+        They lead from the origin of the body of A to A, from A to B, and from B to the origin of its body. A place in
+        the world is connected to nothing else.
         """
         lines = []
         for link in self.links:
             (a, b), (in_a, in_b) = (placed.pose(body) for body in link.bodies), link.poses
             points = (a.translation, a.act(in_a.translation), b.act(in_b.translation), b.translation)
+            points = (points[1], *points[1:]) if link.bodies[0] < 0 else points
             lines.append([points[:2], points[1:3], points[2:]])
         return np.array(lines).reshape(-1, 3, 2, 3)
 

@@ -120,6 +120,8 @@ def _refuse_unwritable(mechanism: Mechanism) -> None:
         for name in names:
             if representable(name) != name or not name:
                 raise NotWritable(f"the {kind} {name!r} has a name that XML cannot contain; give it another one")
+    for contact in mechanism.contacts:
+        raise NotWritable(f"the contact '{contact.name}' with the world is no part of a description; leave it out")
     for joint in mechanism.joints:
         properties = joint.properties
         is_unequal = len(set(properties.gear_ratio)) > 1 or len(set(properties.rotor_inertia)) > 1

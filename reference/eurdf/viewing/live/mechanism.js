@@ -190,6 +190,7 @@
     /** The poses of the bodies in the world, and the motion of each joint by its velocities. */
     place(q) {
       const bodies = new Array(this.above.length).fill(IDENTITY);
+      bodies[-1] = IDENTITY; // the world
       const motions = this.joints.map((joint, index) => {
         const { transform, motions } = TYPES[joint.type];
         const c = this.coordinates(q, index);
@@ -253,7 +254,8 @@
     /** The points that show a closure, in the world: origin of the body of A, A, B, origin of the body of B. */
     ends(constraint, placed) {
       const [a, b] = [placed.bodies[constraint.a.body], placed.bodies[constraint.b.body]];
-      return [a.p, compose(a, constraint.a.pose).p, compose(b, constraint.b.pose).p, b.p];
+      const start = compose(a, constraint.a.pose).p;
+      return [constraint.a.body < 0 ? start : a.p, start, compose(b, constraint.b.pose).p, b.p];
     }
 
     _between({ a, b }, placed) {
