@@ -40,7 +40,7 @@ def assert_same(found: eurdf.convert.Simplification) -> None:
     assert found.motion is not None
     assert found.motion.pose < 1e-10
     assert found.motion.acceleration is not None
-    assert found.motion.acceleration < 1e-8
+    assert found.motion.acceleration < 1e-6
 
 
 @pytest.mark.parametrize(

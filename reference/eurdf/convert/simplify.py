@@ -35,7 +35,7 @@ from eurdf.writing.saved_configuration import DECIMALS
 from eurdf.writing.simplification import Only, expanded, simplified
 
 #: Largest difference of poses (m, rad), and of accelerations (relative), of robots that move in the same way.
-_SAME_POSE, _SAME_ACCELERATION = 1e-10, 1e-8
+_SAME_POSE, _SAME_ACCELERATION = 1e-10, 1e-6
 
 #: A comment of a YAML file that is more than the line for editors.
 _COMMENT = re.compile(r"(^|\s)#(?! yaml-language-server)")
@@ -106,7 +106,7 @@ def simplify(
     with compliance. ``docs/simplify.md`` states the conditions.
 
     The result is compared with the robot along a random motion: the poses of all links differ by at most 1e-10 (m,
-    rad), and the accelerations of the joints that both have, under the same torques of the actuators, by at most 1e-8
+    rad), and the accelerations of the joints that both have, under the same torques of the actuators, by at most 1e-6
     of the largest. Links between merged axes, which have nothing, are not compared: they no longer turn.
 
     Args:

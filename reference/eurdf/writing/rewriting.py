@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
 
+from eurdf.linking.merging import MASSLESS
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import ROTARY
@@ -130,6 +131,21 @@ class MechanismTree:
     def mass(self, *links: str) -> float:
         """The mass of links, kg."""
         return sum(inertia.mass for link in links if (inertia := self.links[link].inertia) is not None)
+
+    def is_heavy(self, link: str) -> bool:
+        """Whether a link resists every motion by itself."""
+        inertia = self.links[link].inertia
+        if inertia is None or inertia.mass < MASSLESS:
+            return False
+        ixx, _, _, iyy, _, izz = inertia.moments
+        return min(ixx, iyy, izz) > 0.0
+
+    def is_bare(self, link: str, without: Joint) -> bool:
+        """Whether a moving link, with what is fixed to it, would have no mass and carry nothing without a joint."""
+        root = self.rigid[link][0]
+        own = {name for name, (above, _) in self.rigid.items() if above == root}
+        carried = (joint for joint in self.mechanism.joints if joint.parent in own and not joint.type.is_fixed)
+        return root in self.above and not self.mass(*own) and all(joint is without for joint in carried)
 
     def is_rigid(self, links: Collection[str]) -> bool:
         """Whether no moving joint hangs from one of the links."""

@@ -212,8 +212,12 @@ def _as_point(tree: MechanismTree, closure: FrameClosure) -> Rewriting:
             continue
         if tree.rigid[ball.parent][0] == tree.rigid[other.body][0]:
             continue  # no other joint is in the loop: a 3d closure would hold nothing
-        if closure.compliance != RIGID or ball.name in tree.why_not:
-            why = f"ball joint '{ball.name}' {tree.why_not[ball.name]}" if ball.name in tree.why_not else _SOFT
+        why = "" if closure.compliance == RIGID else _SOFT
+        if ball.name in tree.why_not:
+            why = f"ball joint '{ball.name}' {tree.why_not[ball.name]}"
+        elif tree.is_bare(ball.parent, ball):
+            why = f"without ball joint '{ball.name}', link '{ball.parent}' would move no mass"
+        if why:
             kept.append(f"closure '{closure.name}' stays 6d: {why}")
             continue
         # Rather a link that ends here than one that others hang from, or are closed to; else the lighter one.
@@ -240,13 +244,13 @@ def _as_point(tree: MechanismTree, closure: FrameClosure) -> Rewriting:
 def _as_frame(tree: MechanismTree, closure: PointClosure) -> Rewriting:
     """A ball joint and a 6d closure in place of a 3d closure: the inverse of `_as_point`.
 
-    The ball carries a link with mass that is fixed to the body of the closure, if there is one that nothing moving
+    The ball carries a link with inertia that is fixed to the body of the closure, if there is one that nothing moving
     hangs from; else a new link, which gets half of the inertia of that body.
     """
     bodies: tuple[Body, ...] = ()
     for own, other in ((closure.b, closure.a), (closure.a, closure.b)) if closure.compliance == RIGID else ():
         weld, links = tree.above.get(own.body), tree.below(own.body)
-        if weld and weld.type.is_fixed and tree.mass(own.body) and tree.is_rigid(links) and other.body not in links:
+        if weld and weld.type.is_fixed and tree.is_heavy(own.body) and tree.is_rigid(links) and other.body not in links:
             held = Anchor(weld.parent, weld.placement * weld.offset)
             name, link, offset = weld.name, own.body, Pose(own.pose.xyz).inverse()
             break
@@ -255,7 +259,7 @@ def _as_frame(tree: MechanismTree, closure: PointClosure) -> Rewriting:
             name = link = bodies[1].name
             break
     else:
-        why = _SOFT if closure.compliance != RIGID else "neither of its bodies has mass"
+        why = _SOFT if closure.compliance != RIGID else "neither of its bodies has inertia"
         return Rewriting(tree.mechanism, kept=(f"closure '{closure.name}' stays 3d: {why}",))
     ball = Joint(name, _SPHERICAL, other.body, link, Pose(other.pose.xyz), offset, properties=_FREE_BALL)
     ends = held, _anchor(link, IDENTITY)
@@ -274,12 +278,12 @@ def _as_frame(tree: MechanismTree, closure: PointClosure) -> Rewriting:
 
 
 def _halves(tree: MechanismTree, own: Anchor, closure: str) -> tuple[Body, ...]:
-    """The nearest body with mass that carries an anchor rigidly, and a new link there, with half of its inertia each.
+    """The nearest body with inertia that carries an anchor rigidly, and a new link there; each with half of it.
 
     None if there is no such body.
     """
     link, pose = own.body, Pose(own.pose.xyz)
-    while not tree.mass(link):
+    while not tree.is_heavy(link):
         joint = tree.above.get(link)
         if joint is None or not joint.type.is_fixed:
             return ()
