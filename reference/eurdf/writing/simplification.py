@@ -36,6 +36,8 @@ _CONTINUOUS, _SPHERICAL = JointType("continuous"), JointType("spherical")
 
 _FREE_BALL = JointProperties.unlimited(_SPHERICAL)
 
+_MOST_NOTED = 500
+
 _SOFT = "it has compliance"
 
 _LIMITS = ("velocity", "effort", "acceleration", "deceleration", "jerk")
@@ -51,7 +53,12 @@ def simplified(mechanism: Mechanism, only: Only = None) -> Rewriting:
 
 
 def saving(mechanism: Mechanism) -> tuple[str, ...]:
-    """A sentence about what `simplified` saves; none if it saves nothing."""
+    """A sentence about what `simplified` saves; none if it saves nothing, or the robot has more than 500 joints.
+
+    The time of a rewriting grows with joints times changes.
+    """
+    if len(mechanism.joints) > _MOST_NOTED:
+        return ()
     before = with_whole_joints(mechanism)
     after = simplified(before).mechanism
     if after is before:
