@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +13,10 @@ import pytest
 import eurdf
 from eurdf.collection import collection_names
 from eurdf.errors import CannotSimplify
+from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import build_robot
+from eurdf.writing.rewriting import Rewriting
+from eurdf.writing.simplification import simplified
 from support.described import body, load, revolute, written
 from support.plain_urdf import joint_element, link_element, robot
 
@@ -137,6 +142,27 @@ def test_loops_that_do_not_close_are_refused(tmp_path: Path) -> None:
         eurdf.simplify(written(tmp_path, TREE, far))
     with pytest.raises(ValueError, match="only is 'all'"):
         eurdf.simplify("delta", only="all")  # type: ignore[arg-type]
+
+
+def test_another_motion_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    def with_a_slip(mechanism: eurdf.Mechanism, only: str | None) -> Rewriting:
+        right = simplified(mechanism)
+        (closure,) = right.mechanism.closures
+        x, y, z = closure.a.pose.xyz
+        slipped = replace(closure, a=replace(closure.a, pose=Pose((x, y, z + 1e-6)), frame=""))
+        return replace(right, mechanism=replace(right.mechanism, closures=(slipped,)))
+
+    monkeypatch.setattr("eurdf.convert.simplify.simplified", with_a_slip)
+    with pytest.raises(CannotSimplify, match=r"'talos_leg', whose motion would change: poses differ by .*e-0. m or rad"):
+        eurdf.simplify("talos_leg")
+
+
+def test_accelerations_without_inertia_are_not_compared() -> None:
+    light = TREE.replace('<mass value="0.7"/>', '<mass value="0"/>')
+    found = eurdf.simplify(load(re.sub(r'(i[xyz]{2})="[^"]*"', r'\1="0"', light), HELD), only="joints")
+    assert found.motion is not None
+    assert (found.motion.acceleration, found.motion.times) == (None, None)
+    assert "accelerations are not compared" in str(found.motion)
 
 
 def test_meshes_are_copied(tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from eurdf.convert.export import files_of_meshes
 from eurdf.convert.names import FileNames
 from eurdf.convert.same_motion import SameMotion, compare_motion
 from eurdf.diagnostics import quoted
-from eurdf.errors import CannotSimplify, NotClosable
+from eurdf.errors import CannotSimplify, NotClosable, UndeterminedMotion
 from eurdf.format.schema import FILES, SchemaVersion, json_schema, schema_text
 from eurdf.kinematics.residual import residual
 from eurdf.kinematics.tolerances import CLOSED
@@ -196,13 +196,10 @@ def _compared(before: Robot, after: Robot, rewritten: Rewriting) -> SameMotion:
     name = before.mechanism.name
     try:
         found = compare_motion(before, after, rewritten.converted, rewritten.between)
-    except NotClosable as reason:
+    except (NotClosable, UndeterminedMotion) as reason:
         raise CannotSimplify(f"cannot rewrite '{name}', whose motion cannot be compared: {reason}") from None
     if not (found.pose <= _SAME_POSE and (found.acceleration or 0.0) <= _SAME_ACCELERATION):
-        raise CannotSimplify(
-            name,
-            f"its links would move by {found.pose:.2g} m or rad, and accelerations by {found.acceleration or 0:.2g}",
-        )
+        raise CannotSimplify(f"cannot rewrite '{name}', whose motion would change: {found}")
     return found
 
 
