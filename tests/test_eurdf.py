@@ -27,6 +27,7 @@ TAKE_NAMES = {
     "check": lambda given: len(eurdf.check("four_bar", package_dirs=given).diagnostics),
     "load": lambda given: eurdf.load("four_bar", package_dirs=given).model.nq,
     "export": lambda given: eurdf.export("four_bar", "mjcf", package_dirs=given).coordinates.nq,
+    "simplify": lambda given: eurdf.simplify("four_bar", package_dirs=given).before.nv,
     "joint_values": lambda given: len(
         eurdf.transmissions.joint_values(four_bar(), {"motor_crank": 1.0}, joints=given).values
     ),

@@ -11,6 +11,7 @@ from eurdf import viewing as viewing
 from eurdf.collection import collection_names as collection_names
 from eurdf.convert.export import export as export
 from eurdf.convert.import_robot import import_robot as import_robot
+from eurdf.convert.simplify import simplify as simplify
 from eurdf.diagnostics import Diagnostic as Diagnostic
 from eurdf.diagnostics.report import Report as Report
 from eurdf.errors import EurdfError as EurdfError

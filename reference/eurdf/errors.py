@@ -109,8 +109,7 @@ class NoConstraintModel(EurdfError, ValueError):  # noqa: N818 - part of the pub
     """
 
     def __init__(self, constraint: str, type_: str) -> None:
-        self.constraint = constraint
-        self.type = type_
+        self.constraint, self.type = constraint, type_
         super().__init__(
             f"Pinocchio has no constraint model for constraint '{constraint}' of type '{type_}'; use "
             "robot.model, robot.constraints and the other attributes one by one, and the functions of eurdf, such as "
@@ -370,6 +369,10 @@ class CannotExport(EurdfError, ValueError):  # noqa: N818 - part of the public i
     def __init__(self, message: str, losses: tuple[Loss, ...] = ()) -> None:
         self.losses = losses
         super().__init__(message)
+
+
+class CannotSimplify(EurdfError, ValueError):  # noqa: N818 - part of the public interface
+    """A robot cannot be rewritten so that it surely moves in the same way; the text says why."""
 
 
 class CannotImport(EurdfError, ValueError):  # noqa: N818 - part of the public interface

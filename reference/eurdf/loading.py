@@ -28,6 +28,7 @@ from eurdf.mesh_files.kinds import KINDS, suffix_of
 from eurdf.pinocchio.arguments import accepting
 from eurdf.pinocchio.meshes import Mesh, read_meshes
 from eurdf.reading.robot_source import RobotSource
+from eurdf.writing.simplification import saving
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -186,7 +187,8 @@ def check(
 ) -> Report:
     """Check a robot: EU-DIA-001, EU-DIA-003: every error that no other error hides is reported.
 
-    It also gives advice (EU-DIA-006): warnings without a clause, whose codes begin with ``x-``.
+    It also gives advice (EU-DIA-006): warnings without a clause, whose codes begin with ``x-``. Notes say what
+    `eurdf.simplify` saves.
 
     The arguments are those of `load`.
 
@@ -223,7 +225,8 @@ def check(
         warn_of_ignored_mimics(read.mechanism, read.urdf, diagnostics)
         advise_on_angles(read, diagnostics)
         advise_on_lengths(read, meshes, diagnostics)
-    return Report(read.path, tuple(diagnostics))
+    is_sound = read.linked is not None and read.yaml is not None and not diagnostics.error_count
+    return Report(read.path, tuple(diagnostics), saving(read.mechanism) if is_sound else ())
 
 
 def _check_loops(read: ReadRobot) -> None:

@@ -184,8 +184,9 @@ def test_json_contains_all_fields() -> None:
                         "pointer": "/closures/0/frames/1",
                     }
                 ],
+                "notes": [],
             },
-            {"path": "robots/hip", "ok": True, "diagnostics": []},
+            {"path": "robots/hip", "ok": True, "diagnostics": [], "notes": []},
         ],
         "skipped": [],
     }

@@ -63,7 +63,7 @@ ERRORS = [
     ("unknown-frame", ONE, "[rod_tip, slider]", "[rod_tpi, slider]", "did you mean 'rod_tip'?"),
     ("unknown-joint", ONE, "joint_name: [elbow,", "joint_name: [ellbow,", "did you mean 'elbow'?"),
     ("unknown-actuator", ONE, "name_mot: [motor, grip,", "name_mot: [motor, elbow,", "'elbow_Z' or 'elbow_X'"),
-    ("actuator-merged", ONE, "name_mot: [motor, grip,", "name_mot: [motor, wrist_x,", "'wrist_z'"),
+    ("actuator-merged", ONE, "name_mot: [motor, grip,", "name_mot: [motor, wrist_x,", "actuate 'wrist_z', or keep the three joints apart: give a link"),
     ("duplicate-replacement", YAML, "[wrist_x, wrist_y, wrist_z]", "[wrist_x, wrist_x, wrist_z]", "different"),
     # the URDF by itself
     ("urdf-not-found", YAML, "urdf: workbench.urdf", "urdf: workbnech.urdf", "workbench.urdf"),

@@ -1,4 +1,4 @@
-"""The outputs of ``eurdf export --format json`` and ``eurdf import --format json``."""
+"""The outputs of ``eurdf export``, ``eurdf import`` and ``eurdf simplify`` with ``--format json``."""
 
 from __future__ import annotations
 
@@ -7,11 +7,14 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from eurdf.convert.losses import Effect, Loss
+from eurdf.convert.same_motion import SameMotion
 from eurdf.convert.verification.read_model import Finding
 from eurdf.json_schema import Keywords, NullIfInfinite
 from eurdf.kinematics.opening import Opening
+from eurdf.writing.rewriting import RobotSize
 
 if TYPE_CHECKING:
+    from eurdf.convert.simplify import Simplification
     from eurdf.convert.verification.verify import Verification
     from eurdf.diagnostics import Place
 
@@ -154,6 +157,30 @@ class ImportInfo:
     """Every loss, in the order found."""
     diagnostics: tuple[dict[str, Any], ...]
     """What 'eurdf check --format json' reports of the robot, also where --strict refuses to write it."""
+
+
+@dataclass(frozen=True, slots=True)
+class SimplifyInfo:
+    """The output of 'eurdf simplify --format json'."""
+
+    LIKE: ClassVar = "eurdf.convert.simplify:Simplification"
+
+    path: str
+    """The robot, as given."""
+    files: tuple[str, ...]
+    """Files that were written; empty if none was."""
+    changes: tuple[str, ...]
+    kept: tuple[str, ...]
+    lost: tuple[str, ...]
+    before: RobotSize
+    after: RobotSize
+    motion: SameMotion | None
+
+    @classmethod
+    def of(cls, path: str, files: tuple[str, ...], found: Simplification) -> SimplifyInfo:
+        """What was found, and written."""
+        own = (found.changes, found.kept, found.lost, found.before, found.after, found.motion)
+        return cls(path, files, *own)
 
 
 def loss_infos(losses: Sequence[Loss], place_of: Callable[[Loss], Place | None]) -> tuple[LossInfo, ...]:

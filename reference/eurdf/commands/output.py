@@ -27,6 +27,7 @@ RESULTS = {
     "info": ("robot_info", "RobotInfo"),
     "robots": ("robots", "Collection"),
     "serial": ("transmission_info", "SerialInfo"),
+    "simplify": ("conversion_info", "SimplifyInfo"),
     "transmission": ("transmission_info", "TransmissionInfo"),
 }
 

@@ -82,6 +82,7 @@ def write_notes(sentences: Iterable[str]) -> None:
 def write_reports(reports: Sequence[Report], strict: bool = False, stream: TextIO | None = None) -> None:
     """Write diagnostics and verdicts as text, to the standard output by default."""
     from eurdf.diagnostics.text import SOURCE_WIDTH, report_lines, summary_line, total_line
+    from eurdf.diagnostics.wording import visible
 
     stream = stream or sys.stdout
     width = min(columns() - len("12345 | "), 2 * SOURCE_WIDTH) if is_terminal(stream) else SOURCE_WIDTH
@@ -92,6 +93,8 @@ def write_reports(reports: Sequence[Report], strict: bool = False, stream: TextI
             write_lines([[]], stream)
     if len(reports) > 1:
         write_lines([total_line(reports, strict)], stream)
+    else:
+        write_lines([[(f"note: {visible(note)}", "dim")] for report in reports for note in report.notes], stream)
 
 
 def write_refusal(path: str, diagnostics: Iterable[Diagnostic], as_json: bool, stream: TextIO | None = None) -> None:

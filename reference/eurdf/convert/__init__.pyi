@@ -4,3 +4,4 @@ from eurdf.convert.coordinates import Coordinates as Coordinates
 from eurdf.convert.export import Export as Export
 from eurdf.convert.import_robot import Import as Import
 from eurdf.convert.losses import Loss as Loss
+from eurdf.convert.simplify import Simplification as Simplification

@@ -21,10 +21,12 @@ class Report:
     Attributes:
         path: The robot as the user gave it: a folder, a file, or a name of the collection.
         diagnostics: In the order found.
+        notes: What could be done with the robot although nothing is wrong, one sentence each.
     """
 
     path: str
     diagnostics: tuple[Diagnostic, ...] = ()
+    notes: tuple[str, ...] = ()
 
     @property
     def errors(self) -> tuple[Diagnostic, ...]:
@@ -51,6 +53,7 @@ class Report:
             "path": encodable(self.path),
             "ok": self.passes(strict),
             "diagnostics": [_diagnostic_to_json(found) for found in self.diagnostics],
+            "notes": [encodable(note) for note in self.notes],
         }
 
     def __repr__(self) -> str:
@@ -133,6 +136,10 @@ def report_schema() -> dict[str, Any]:
         path=_value(text, "The robot as given: a folder, a file, or a name of the collection.", "robots/four_bar"),
         ok=_value({"type": "boolean"}, "Whether the robot passes: no error and, in a strict check, no warning."),
         diagnostics=_value({"type": "array", "items": diagnostic}, "The diagnostics, in the order found."),
+        notes=_value(
+            {"type": "array", "items": text},
+            "What could be done with the robot although nothing is wrong, as sentences.",
+        ),
     )
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",

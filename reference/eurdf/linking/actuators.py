@@ -8,6 +8,7 @@ from typing import Any
 
 from eurdf.format.joint_model import Geared
 from eurdf.linking.joints import Joints
+from eurdf.linking.merging import MASSLESS
 from eurdf.mechanism.joint import Joint
 from eurdf.reading.yaml_node import Pointer
 from eurdf.reading.yaml_reader import YamlDocument, YamlReporter
@@ -24,11 +25,15 @@ def link_actuators(entries: Iterable[Geared], joints: Joints) -> tuple[str, ...]
         joint = joints.by_name.get(name)
         if name in joints.merged:
             ball = joints.merged[name]
+            # Version 1 merges by itself.
+            apart = "do not merge the three joints"
+            if entry.pointer[0] == "name_mot":
+                apart = f"keep the three joints apart: give a link between them a mass of at least {MASSLESS:g} kg"
             reporter.report(
                 "actuator-merged",
                 f"joint '{name}' cannot be actuated: it was merged into the spherical joint '{ball}'",
                 pointer,
-                f"actuate '{ball}', or do not merge the three joints",
+                f"actuate '{ball}', or {apart}",
             )
         elif name in joints.split:
             first, second = joints.split[name]

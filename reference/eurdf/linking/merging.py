@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from eurdf.format.urdf.data import Urdf
+from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import ROTARY, JointType
 from eurdf.mechanism.pose import IDENTITY, ORIGIN, Pose, Vector3, cross, direction, squarable
@@ -29,6 +29,39 @@ _ORDERS = tuple(itertools.permutations(range(3)))
 
 #: Sums of cosines that differ by no more are equal (EU-JNT-028).
 _AS_LARGE = 1e-9
+
+
+class _Weighed(Protocol):
+    @property
+    def name(self) -> str: ...
+    @property
+    def inertia(self) -> Inertia | None: ...
+
+
+class _Edge(Protocol):
+    @property
+    def name(self) -> str: ...
+    @property
+    def child(self) -> str: ...
+
+
+class JointTree(Protocol):
+    """The links and joints of a URDF, or of a mechanism."""
+
+    @property
+    def links(self) -> Mapping[str, _Weighed]:
+        """Every link."""
+
+    @property
+    def joints(self) -> Mapping[str, _Edge]:
+        """Every joint."""
+
+    @property
+    def children(self) -> Mapping[str, Sequence[_Edge]]:
+        """By the name of a link, the joints that it carries; a link that carries none may be left out."""
+
+    def walk(self) -> Iterable[_Edge]:
+        """The joints depth first from the root."""
 
 
 class NotMergeable(Exception):  # noqa: N818 - a finding, which one of the two callers takes for an answer
@@ -57,7 +90,11 @@ class BallChain(NamedTuple):
 
 
 def check_chain(
-    chain: tuple[Joint, Joint, Joint], urdf: Urdf, closure_links: Collection[str], *, rotary: Collection[str] = ROTARY
+    chain: tuple[Joint, Joint, Joint],
+    urdf: JointTree,
+    closure_links: Collection[str],
+    *,
+    rotary: Collection[str] = ROTARY,
 ) -> BallChain:
     """EU-JNT-011 to -014: the joints follow one another, nothing else hangs or weighs between them, their axes meet.
 
@@ -115,10 +152,14 @@ def merge(chain: BallChain, name: str) -> tuple[Joint, Joint, Joint]:
 
 
 def find_chains(
-    urdf: Urdf, joints: Mapping[str, Joint], excluded: Collection[str], closure_links: Collection[str]
+    urdf: JointTree,
+    joints: Mapping[str, Joint],
+    excluded: Collection[str],
+    closure_links: Collection[str],
+    *,
+    rotary: Collection[str] = (JointType.REVOLUTE,),
 ) -> list[BallChain]:
     """EU-ONE-007: the chains that version 1 merges by itself, greedily from the root outwards."""
-    revolute = (JointType.REVOLUTE,)
     taken: set[str] = set()
     chains = []
     for start in urdf.walk():
@@ -132,7 +173,7 @@ def find_chains(
             continue
         try:
             three = joints[names[0]], joints[names[1]], joints[names[2]]
-            chain = check_chain(three, urdf, closure_links, rotary=revolute)
+            chain = check_chain(three, urdf, closure_links, rotary=rotary)
         except NotMergeable:
             continue
         taken.update(names)

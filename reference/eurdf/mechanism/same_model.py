@@ -83,6 +83,12 @@ def with_universal_joints(mechanism: Mechanism) -> Mechanism:
     )
 
 
+def with_whole_joints(mechanism: Mechanism) -> Mechanism:
+    """The same, as version 2 can have it: unless only one of two such joints is actuated."""
+    joined = with_universal_joints(mechanism)
+    return joined if {joint.name for joint in joined.joints}.issuperset(joined.actuators) else mechanism
+
+
 def _other(name: str, halves: Mapping[str, str], mechanism: Mechanism) -> str | None:
     """The first half of a universal joint, given the second."""
     first, second = (joint.name for joint in mechanism.joints if halves.get(joint.name) == halves[name])

@@ -36,7 +36,7 @@ from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import IDENTITY, Vector3
-from eurdf.mechanism.same_model import with_universal_joints
+from eurdf.mechanism.same_model import with_whole_joints
 from eurdf.writing import urdf_elements as elements
 from eurdf.writing.urdf_elements import Color
 from eurdf.writing.xml_text import file_content, representable, rpy_of
@@ -94,9 +94,7 @@ def describe_mechanism(
     Raises:
         NotWritable: A name cannot be in such a file, or a joint has properties that its type does not have.
     """
-    joined = with_universal_joints(mechanism)
-    if {joint.name for joint in joined.joints}.issuperset(joined.actuators):
-        mechanism = joined
+    mechanism = with_whole_joints(mechanism)
     _refuse_unwritable(mechanism)
     version = version_needed(mechanism)
     content = {VERSION_KEY: version, "urdf": urdf_path, **_content(mechanism)}

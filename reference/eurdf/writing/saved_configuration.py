@@ -31,7 +31,7 @@ CLOSED_IN_FULL = 1e-12
 _SAME = 1e-12
 
 #: Decimals, of m or rad, beyond which a coordinate is noise.
-_DECIMALS = 15
+DECIMALS = 15
 
 
 class CannotSave(EurdfError, ValueError):  # noqa: N818 - shown to the user as it is
@@ -112,7 +112,7 @@ def with_closed_configuration(read: ReadRobot, robot: Robot, q: Vector, name: st
     document = read.description.document
     exact = robot.joint_positions(q)
     enough = max(CLOSED_IN_FULL, _largest_row(robot, q))
-    rounded = {joint: tuple(round(value, _DECIMALS) for value in values) for joint, values in exact.items()}
+    rounded = {joint: tuple(round(value, DECIMALS) for value in values) for joint, values in exact.items()}
     text, diagnostics = "", Diagnostics()
     for coordinates in (rounded, exact):
         text = with_configuration(document, name, _to_state(read, robot, coordinates, name))
