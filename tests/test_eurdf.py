@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import eurdf
+from support.places import ROBOTS
 from support.public import MODULES, public_functions, public_names
 
 
@@ -30,6 +31,7 @@ TAKE_NAMES = {
     "joint_values": lambda given: len(
         eurdf.transmissions.joint_values(four_bar(), {"motor_crank": 1.0}, joints=given).values
     ),
+    "generate": lambda given: eurdf.generate(str(ROBOTS / "four_bar" / "robot.urdf"), motors=given).found.motors,
     "impedance_map": lambda given: eurdf.transmissions.impedance_map(four_bar(), given, None, [1.0]).motor_stiffness[
         0, 0
     ],

@@ -393,5 +393,9 @@ class CannotImport(EurdfError, ValueError):  # noqa: N818 - part of the public i
         super().__init__(visible(f"cannot import '{self.path}': {reason}"))
 
 
+class CannotMigrate(EurdfError, ValueError):  # noqa: N818 - part of the public interface
+    """A robot has no description, or one of version 1 that version 2 cannot state; the text says which."""
+
+
 class CannotRun(Exception):  # noqa: N818 - shown to the user as it is
     """A command of the command line cannot run, as opposed to errors of a robot; the text says why. Exit code 2."""
