@@ -10,8 +10,7 @@ import os
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from eurdf.diagnostics import Diagnostic
-from eurdf.diagnostics.registry import Severity
+from eurdf.diagnostics import Diagnostic, Severity
 from eurdf.diagnostics.wording import no_command, visible
 
 if TYPE_CHECKING:
