@@ -32,6 +32,9 @@ TAKE_NAMES = {
         eurdf.transmissions.joint_values(four_bar(), {"motor_crank": 1.0}, joints=given).values
     ),
     "generate": lambda given: eurdf.generate(str(ROBOTS / "four_bar" / "robot.urdf"), motors=given).found.motors,
+    "inverse_kinematics": lambda given: (
+        eurdf.inverse_kinematics(four_bar(), {"coupler": [0.1, 0.1, 0.0]}, hold=given, restarts=0).q
+    ),
     "impedance_map": lambda given: eurdf.transmissions.impedance_map(four_bar(), given, None, [1.0]).motor_stiffness[
         0, 0
     ],

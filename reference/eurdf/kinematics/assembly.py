@@ -115,7 +115,8 @@ def assemble(
         ValueError: ``q0`` or ``hold_at`` is not a configuration, ``hold`` has a name that is not a joint of the model,
             or axes that it does not have, or ``tolerance`` or ``restarts`` is negative.
     """
-    robot, held, q = holding(robot, start(robot, q0), hold, hold_at)
+    robot, joints, q = holding(robot, start(robot, q0), hold, hold_at)
+    held = tuple(velocity for name in joints for velocity in robot.tree.velocities_of(name))
     tolerance, chosen = checked_tolerance(tolerance), chosen_limits(robot, limits)
     restarts = checked_count("restarts", restarts, 0)
     with working_memory(robot, Problem, *([held] if held else [])) as problem:  # others use one that holds none, too

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,44 +21,54 @@ from eurdf.pinocchio.robot import Robot
 Hold = str | Iterable[str | tuple[str, str]]
 
 
-def holding(robot: Robot, q: Vector, hold: Hold, hold_at: Named | None) -> tuple[Robot, tuple[int, ...], Vector]:
+class Holding(NamedTuple):
     """A robot with held joints.
+
+    Attributes:
+        robot: The robot, which has a constraint more for each held axis of a ball joint.
+        joints: Names of the joints that do not move at all.
+        q: Where it starts (nq,): these joints are where they are held.
+    """
+
+    robot: Robot
+    joints: tuple[str, ...]
+    q: Vector
+
+
+def holding(robot: Robot, q: Vector, hold: Hold, hold_at: Named | None) -> Holding:
+    """Hold joints of a robot that starts at q (nq,).
 
     Args:
         robot: The robot.
-        q: Where it starts (nq,).
+        q: Where it starts.
         hold: What does not move.
         hold_at: Where that is, if it is not at q; of joints by name, those that are not named are at q.
-
-    Returns:
-        The robot, which has a constraint more for each held axis of a ball joint; the indices in v of the velocities
-        that do not move; and q, with the joints that are held as a whole where they are held.
 
     Raises:
         ValueError: There is no such joint, it has no such axes, or ``hold_at`` is no configuration.
     """
-    given = [hold] if isinstance(hold, str) else hold
-    named = [(each, "xyz") if isinstance(each, str) else each for each in given]
     if hold_at is not None and are_by_name(hold_at):
         hold_at = configuration_of(robot, {**robot.joint_positions(q), **hold_at}, "hold_at")
     at = q if hold_at is None else start(robot, hold_at, "hold_at")
     turns: list[HeldTurn] = []
-    held: dict[int, None] = {}
-    for name, axes in named:
-        velocities = robot.tree.velocities_of(name)  # refuses a name that no joint has
+    joints: list[str] = []
+    for given in [hold] if isinstance(hold, str) else hold:
+        name, axes = (given, "xyz") if isinstance(given, str) else given
+        robot.tree.velocities_of(name)  # refuses a name that no joint has
         if axes == "xyz":
-            held |= dict.fromkeys(velocities)
+            joints.append(name)
         else:
             turns += _turns(robot, name, axes, at)
     if hold_at is not None:
+        held = {velocity for name in joints for velocity in robot.tree.velocities_of(name)}
         q = np.array(q)
         for velocities, coordinates in zip(robot.tree.own_velocities, robot.tree.own_coordinates, strict=True):
-            if held.keys() & set(velocities):
+            if held & set(velocities):
                 q[list(coordinates)] = at[list(coordinates)]
     if turns:
         closures = (*robot.mechanism.closures, *turns)
         robot = Robot(replace(robot.mechanism, closures=closures), robot.model)  # a model that was changed stays so
-    return robot, tuple(held), q
+    return Holding(robot, tuple(joints), q)
 
 
 def _turns(robot: Robot, name: str, axes: str, at: Vector) -> list[HeldTurn]:
