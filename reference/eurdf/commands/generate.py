@@ -36,6 +36,7 @@ Write a description from the names in a URDF.
               closing_knee_2_z, which onshape-to-robot adds on the axis of a revolute mate, are a second point. Closures
               of type 3d that join the same two parts at points that are as far apart in both are one hinge.
   motors      joints whose name begins or ends with the word mot or motor: motor_knee, mot1, left_motor_hip, hip_motor.
+              The joints A_B_rev0, A_B_rev1 and A_B_rev2 of a ball mate, named after its parts, are none.
   sphericals  joints with spherical in their name.
   universals  none by their names: --universal says which, with the letters of their axes in the joint's frame.
 
