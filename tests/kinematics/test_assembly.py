@@ -182,6 +182,8 @@ def test_axes_that_cannot_be_held_are_refused(hold: list[tuple[str, str]], reaso
         eurdf.assemble("digit_leg", hold=hold)
     with pytest.raises(ValueError, match="hold_at: 'knee' is not a joint"):
         eurdf.assemble("digit_leg", hold="motor_knee", hold_at={"knee": 0.1})
+    with pytest.raises(ValueError, match="hold names no joint"):
+        eurdf.inverse_kinematics("digit_leg", {}, hold_at={"motor_knee": 0.1})
 
 
 def test_joints_outside_loops_stay() -> None:

@@ -60,6 +60,8 @@ def holding(robot: Robot, q: Vector, hold: Hold, hold_at: Named | None) -> Holdi
         else:
             turns += _turns(robot, name, axes, at)
     if hold_at is not None:
+        if not (joints or turns):
+            raise ValueError("hold_at is given, but hold names no joint")
         held = {velocity for name in joints for velocity in robot.tree.velocities_of(name)}
         q = np.array(q)
         for velocities, coordinates in zip(robot.tree.own_velocities, robot.tree.own_coordinates, strict=True):

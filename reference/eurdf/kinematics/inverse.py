@@ -155,7 +155,7 @@ def inverse_kinematics(
             neither a pose nor a finite position.
         LockedOpen: Held joints keep a closure open, whatever the others do.
     """
-    if hold != ():
+    if hold != () or hold_at is not None:
         options = {"limits": limits, "tolerance": tolerance, "restarts": restarts}
         return _with_joints_held(holding(robot, start(robot, q0), hold, hold_at), targets, options)
     if not isinstance(targets, Mapping):
