@@ -473,5 +473,8 @@ def test_a_killed_runner_ends_its_parser(end: signal.Signals, tmp_path: Path) ->
 def test_reference_parser_has_a_short_name() -> None:
     with Session("reference") as session:
         assert session.started.parser.name == "eurdf"
-    with pytest.raises(NotStarted, match="and a command line, nor 'reference'"):
-        Session("refference").__enter__()
+    with (
+        Session("refference") as session,
+        pytest.raises(NotStarted, match="and a command line, nor 'reference'"),
+    ):
+        _ = session.started

@@ -114,7 +114,7 @@ def test_graph_names_joints_closures_and_couplings(capsys, tmp_path):
     assert {f"{each.name} ({each.type})" for each in (*mechanism.joints, *mechanism.constraints)} <= shown
     assert {body.name for body in mechanism.bodies} <= shown
     assert main(["picture", "tello", "--graph", "--loops", "-o", str(tmp_path / "other.svg")]) == 2
-    assert "leave out --loops and --configuration" in capsys.readouterr().err
+    assert "leave out --loops, --open and --configuration" in capsys.readouterr().err
 
 
 def test_distance_is_no_open_closure():
