@@ -154,6 +154,7 @@ def inverse_kinematics(
             or axes that it does not have; ``targets`` is not a mapping; a frame is unknown or ambiguous; a target is
             neither a pose nor a finite position.
         LockedOpen: Held joints keep a closure open, whatever the others do.
+        CannotLock: ``hold`` has the joint of a floating root; give its link a target, the pose where it is.
     """
     if hold != () or hold_at is not None:
         options = {"limits": limits, "tolerance": tolerance, "restarts": restarts}
