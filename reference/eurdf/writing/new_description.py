@@ -74,7 +74,14 @@ def generate(
 
 
 def migrate(
-    path: RobotSource, urdf: RobotSource | None = None, *, urdf_path: str | None = None, **options: Any
+    path: RobotSource,
+    urdf: RobotSource | None = None,
+    *,
+    urdf_path: str | None = None,
+    package_dirs: Sequence[str | os.PathLike[str]] = (),
+    xacro_args: Mapping[str, str] | None = None,
+    confined: bool = False,
+    allow_outside: bool = False,
 ) -> Migration:
     """Convert a description from version 1 to version 2, with the same model, as ``eurdf migrate`` does.
 
@@ -86,13 +93,23 @@ def migrate(
         urdf: A URDF in place of the one that the description names.
         urdf_path: Path of the URDF from the folder of the new description. By default, that is the folder of the old
             one.
-        options: ``package_dirs``, ``xacro_args``, ``confined`` and ``allow_outside`` of `eurdf.load`.
+        package_dirs: As in `eurdf.load`.
+        xacro_args: As in `eurdf.load`.
+        confined: As in `eurdf.load`.
+        allow_outside: As in `eurdf.load`.
 
     Raises:
         CannotMigrate: Version 2 cannot state the same, or the robot has no description.
         InvalidRobot, RobotNotFound, CannotExpand, MissingExtra: See `eurdf.load`.
     """
-    read = read_valid(path, urdf=urdf, **options)
+    read = read_valid(
+        path,
+        urdf=urdf,
+        package_dirs=package_dirs,
+        xacro_args=xacro_args,
+        confined=confined,
+        allow_outside=allow_outside,
+    )
     source = described(read).source
     if read.description.version != "1":
         return Migration(source.text, (nothing_to_do(read),), read.mechanism)
