@@ -12,9 +12,9 @@ from pathlib import Path
 from eurdf_conformance.corpus.read import read_cases
 from eurdf_conformance.judging.conversation import Conversation
 from eurdf_conformance.judging.judge import judge
+from eurdf_conformance.runner.command import REFERENCE
 from eurdf_conformance.runner.session import Session
 from eurdf_conformance.suite.item import case_items
-from eurdf_conformance.suite.options import REFERENCE
 
 ROOT = Path(__file__).parents[1]
 

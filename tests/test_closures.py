@@ -23,6 +23,7 @@ from eurdf.closures.frame import FrameClosure
 from eurdf.closures.hinge import HingeClosure
 from eurdf.closures.point import PointClosure
 from eurdf.closures.se3 import plane_across
+from eurdf.closures.turn import HeldTurn
 from eurdf.commands.robot_info import robot_info
 from eurdf.kinematics.residual import acceleration_drift
 from eurdf.mechanism.body import Anchor
@@ -168,7 +169,23 @@ def far_from_half_a_turn(robot: Robot, q: Any) -> bool:
 @settings(max_examples=10, deadline=None)
 def test_jacobian_and_drift_are_derivatives_of_the_residual(kinds: Sequence[str], seed: int) -> None:
     random = np.random.default_rng(seed)
-    robot = some_robot(random, kinds)
+    check_derivatives(some_robot(random, kinds), random)
+
+
+@given(seed=seeds)
+@settings(max_examples=10, deadline=None)
+def test_held_turn_has_the_derivatives_of_its_residual(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    base = some_robot(random, ("6d",))
+    (cut,) = base.mechanism.closures
+    turns = [HeldTurn(axis, cut.a, cut.b, axis="xyz".index(axis)) for axis in "zx"]
+    check_derivatives(constrained(base, *turns), random)
+    q = pin.randomConfiguration(base.model, -np.ones(base.model.nq), np.ones(base.model.nq))
+    rows = eurdf.residual(base, q)[[5, 3]]
+    np.testing.assert_allclose(eurdf.residual(constrained(base, *turns), q), rows, atol=1e-12)
+
+
+def check_derivatives(robot: Robot, random: np.random.Generator) -> None:
     model, v = robot.model, random.uniform(-1.0, 1.0, robot.model.nv)
     q = pin.integrate(model, pin.neutral(model), random.uniform(-1.5, 1.5, model.nv))
     assume(far_from_half_a_turn(robot, q))

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import eurdf
+from support.places import ROBOTS
 from support.public import MODULES, public_functions, public_names
 
 
@@ -25,11 +26,16 @@ TAKE_NAMES = {
     "assemble": lambda given: eurdf.assemble(four_bar(), np.array([0.0, 1.0, 0.0, 0.0, 1.0]), hold=given).q,
     "lock": lambda given: eurdf.lock(four_bar(), given).locked_joints,
     "check": lambda given: len(eurdf.check("four_bar", package_dirs=given).diagnostics),
+    "migrate": lambda given: len(eurdf.migrate("four_bar", package_dirs=given).text),
     "load": lambda given: eurdf.load("four_bar", package_dirs=given).model.nq,
     "export": lambda given: eurdf.export("four_bar", "mjcf", package_dirs=given).coordinates.nq,
     "simplify": lambda given: eurdf.simplify("four_bar", package_dirs=given).before.nv,
     "joint_values": lambda given: len(
         eurdf.transmissions.joint_values(four_bar(), {"motor_crank": 1.0}, joints=given).values
+    ),
+    "generate": lambda given: eurdf.generate(str(ROBOTS / "four_bar" / "robot.urdf"), motors=given).found.motors,
+    "inverse_kinematics": lambda given: (
+        eurdf.inverse_kinematics(four_bar(), {"coupler": [0.1, 0.1, 0.0]}, hold=given, restarts=0).q
     ),
     "impedance_map": lambda given: eurdf.transmissions.impedance_map(four_bar(), given, None, [1.0]).motor_stiffness[
         0, 0

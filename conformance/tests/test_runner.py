@@ -468,3 +468,13 @@ def test_a_killed_runner_ends_its_parser(end: signal.Signals, tmp_path: Path) ->
     assert has_ended(parser)
     assert has_ended(child)
     assert has_ended(daemon) or not sys.platform.startswith("linux")
+
+
+def test_reference_parser_has_a_short_name() -> None:
+    with Session("reference") as session:
+        assert session.started.parser.name == "eurdf"
+    with (
+        Session("refference") as session,
+        pytest.raises(NotStarted, match="and a command line, nor 'reference'"),
+    ):
+        _ = session.started

@@ -41,5 +41,7 @@ from eurdf.robot_functions import split_configuration as split_configuration
 from eurdf.robot_functions import sweep as sweep
 from eurdf.transmissions.transmission import transmission as transmission
 from eurdf.viewing.viewer import view as view
+from eurdf.writing.new_description import generate as generate
+from eurdf.writing.new_description import migrate as migrate
 
 __version__: str

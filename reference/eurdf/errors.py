@@ -10,8 +10,7 @@ import os
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from eurdf.diagnostics import Diagnostic
-from eurdf.diagnostics.registry import Severity
+from eurdf.diagnostics import Diagnostic, Severity
 from eurdf.diagnostics.wording import no_command, visible
 
 if TYPE_CHECKING:
@@ -394,6 +393,10 @@ class CannotImport(EurdfError, ValueError):  # noqa: N818 - part of the public i
     ) -> None:
         self.path, self.reason, self.losses, self.diagnostics = os.fspath(path), reason, losses, diagnostics
         super().__init__(visible(f"cannot import '{self.path}': {reason}"))
+
+
+class CannotMigrate(EurdfError, ValueError):  # noqa: N818 - part of the public interface
+    """A robot has no description, or one of version 1 that version 2 cannot state; the text says which."""
 
 
 class CannotRun(Exception):  # noqa: N818 - shown to the user as it is

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 # A tuple: a union would be made in each call.
-_SOURCES = (str, bytes, os.PathLike)
+_SOURCES = (str, bytes, os.PathLike, Mapping)
 
 _Rest = ParamSpec("_Rest")
 _Result = TypeVar("_Result")
@@ -62,7 +62,9 @@ def load(
 
     Args:
         path: A folder, a YAML file, a bare URDF or xacro, the name of a robot of the collection, ``-`` for standard
-            input, a pipe, or a text: one that begins with ``<`` is a URDF, any other a description.
+            input, a pipe, or a text: one that begins with ``<`` is a URDF, any other a description, also of one line,
+            such as ``"closures: []"``. Or what a description contains, as a mapping; lines in diagnostics are then
+            those of its JSON with a line for each value.
         urdf: A URDF in place of the one that the description names (``robot.urdf`` beside it by default): a file,
             ``-``, a pipe or a text.
         root: ``fixed`` or ``floating``, in place of what the description says (fixed by default).

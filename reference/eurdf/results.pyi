@@ -16,3 +16,5 @@ from eurdf.kinematics.sensitivity import FrameVelocity as FrameVelocity
 from eurdf.kinematics.simulation import Simulation as Simulation
 from eurdf.kinematics.sweep import MotionPath as MotionPath
 from eurdf.kinematics.sweep import Sweep as Sweep
+from eurdf.writing.generation import Generation as Generation
+from eurdf.writing.migration import Migration as Migration

@@ -234,3 +234,19 @@ def test_damaged_files_are_refused_or_imported_as_they_are(tmp_path: Path) -> No
     assert not [outcome for outcome in outcomes if outcome.trouble]
     assert {outcome.kind for outcome in outcomes} == {f"import-{format_}" for format_ in IMPORTED}
     assert {"refused", "imported"} <= {outcome.word for outcome in outcomes}
+
+
+def test_folder_is_imported_by_its_only_file(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (here / "package.xml").write_text("<package/>")
+    assert main(["import", ".", "-o", "out"]) == main(["import", "four_bar.xml", "-o", "same"]) == 0
+    assert (here / "out/robot.yaml").read_text() == (here / "same/robot.yaml").read_text()
+    (here / "other.sdf").write_text("<sdf/>")
+    (here / "none").mkdir()
+    capsys.readouterr()
+    assert main(["import", ".", "-o", "out"]) == main(["import", "none", "-o", "out"]) == 2
+    several, none = capsys.readouterr().err.splitlines()
+    assert several.endswith("folder '.' contains 'four_bar.xml' and 'other.sdf'; name the file")
+    assert none.endswith("folder 'none' contains no file of .xml, .sdf, .urdf, .usda, .usd; name the file")
+    (here / "robot.xml").write_text("<mujoco>\n<worldbody>\n<nonsense/></worldbody></mujoco>")
+    assert main(["import", ".", "-o", "out2"]) == 1  # as `eurdf export` names it
+    assert "cannot import 'robot.xml'" in capsys.readouterr().err

@@ -31,8 +31,8 @@ from support.same_mechanism import unlike
 
 def round_trip(robot: Robot | str, to: str, folder: Path) -> tuple[eurdf.convert.Export, eurdf.convert.Import]:
     export = eurdf.export(robot, to)
-    main, *_ = export.write(folder)
-    return export, eurdf.import_robot(main, format=to)
+    export.write(folder)
+    return export, eurdf.import_robot(folder, format=to)
 
 
 def in_normal_form(mechanism: Mechanism) -> Mechanism:

@@ -125,6 +125,67 @@ def test_held_joints_stay_and_can_keep_loop_open() -> None:
     assert not nothing.closes
 
 
+def moved_leg(seed: int) -> tuple[eurdf.Robot, np.ndarray, np.ndarray]:
+    """Digit's leg, and two configurations; at the second one its loops are open."""
+    robot, random = eurdf.load("digit_leg", geometry=False), np.random.default_rng(seed)
+    first = eurdf.assemble(robot).q
+    one, other = (pin.integrate(robot.model, first, random.uniform(-0.2, 0.2, robot.model.nv)) for _ in range(2))
+    return robot, eurdf.assemble(robot, one).q, other
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_joints_are_held_where_another_configuration_has_them(seed: int) -> None:
+    robot, at, q0 = moved_leg(seed)
+    hold = ["motor_knee", "ball_rod1_end", "motor_hip_x"]
+    mixed = robot.configuration(robot.joint_positions(q0) | {name: robot.joint_positions(at)[name] for name in hold})
+    found = eurdf.assemble(robot, q0, hold=hold, hold_at=at)
+    assert found.closes
+    np.testing.assert_allclose(found.q, eurdf.assemble(robot, mixed, hold=hold).q, atol=1e-9)
+    for slot in (robot.slots[name] for name in hold):
+        here = slice(slot.idx_q, slot.idx_q + slot.nq)
+        np.testing.assert_array_equal(found.q[here], at[here])
+    knee = eurdf.assemble(robot, q0, hold=hold, hold_at={"motor_knee": 0.5}).q
+    assert robot.joint_positions(knee)["motor_knee"] == (0.5,)
+    assert robot.joint_positions(knee)["motor_hip_x"] == robot.joint_positions(q0)["motor_hip_x"]
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("axes", ["z", "xy"])
+def test_ball_is_held_about_axes_of_its_own(axes: str, seed: int) -> None:
+    robot, at, q0 = moved_leg(seed)
+    slot = robot.slots["ball_rod1_end"]
+
+    def turn(q: np.ndarray) -> np.ndarray:
+        from_, to = (pin.Quaternion(x[slot.idx_q : slot.idx_q + 4]).toRotationMatrix() for x in (at, q))
+        return np.array(pin.log3(from_.T @ to))[["xyz".index(axis) for axis in axes]]
+
+    found = eurdf.assemble(robot, q0, hold=["motor_knee", (slot.joint.name, axes)], hold_at=at)
+    assert found.converged
+    assert np.abs(turn(eurdf.assemble(robot, q0).q)).max() > 1e-2
+    np.testing.assert_allclose(turn(found.q), 0.0, atol=1e-8)
+    assert found.q[robot.slots["motor_knee"].idx_q] == at[robot.slots["motor_knee"].idx_q]
+    assert [opening.name for opening in found.open[3:]] == [f"ball_rod1_end about {axis}" for axis in axes]
+    np.testing.assert_allclose(eurdf.residual(robot, found.q), 0.0, atol=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("hold", "reason"),
+    [
+        ([("ball_rod1_end", "w")], "the axes of 'ball_rod1_end' are 'w'; expected one or two of x, y and z"),
+        ([("ball_rod1_end", "zz")], "are 'zz'"),
+        ([("motor_knee", "z")], "'motor_knee' is no spherical joint"),
+        ([("ball_rod1_ent", "z")], "did you mean 'ball_rod1_end'"),
+    ],
+)
+def test_axes_that_cannot_be_held_are_refused(hold: list[tuple[str, str]], reason: str) -> None:
+    with pytest.raises(ValueError, match=reason):
+        eurdf.assemble("digit_leg", hold=hold)
+    with pytest.raises(ValueError, match="hold_at: 'knee' is not a joint"):
+        eurdf.assemble("digit_leg", hold="motor_knee", hold_at={"knee": 0.1})
+    with pytest.raises(ValueError, match="hold names no joint"):
+        eurdf.inverse_kinematics("digit_leg", {}, hold_at={"motor_knee": 0.1})
+
+
 def test_joints_outside_loops_stay() -> None:
     linkage = n_bar(4, away=0.7)
     model = linkage.model

@@ -294,10 +294,24 @@ def test_redundant_motors_share_least_torque() -> None:
     # Least: the weighted solution is normal to what changes nothing.
     unseen = np.linalg.svd(free @ S)[2][1:]
     np.testing.assert_allclose(unseen @ (weights * dear), 0.0, atol=1e-8)
-    for u in (found.u, dear):
+    u0 = random.normal(size=3)
+    near = inverse_dynamics(robot, q, v, a, weights=weights, u0=u0).u
+    np.testing.assert_allclose(unseen @ (weights * (near - u0)), 0.0, atol=1e-8)
+    np.testing.assert_allclose(inverse_dynamics(robot, q, v, a, u0=near).u, near, rtol=1e-8)  # it is a solution
+    for u in (found.u, dear, near):
         np.testing.assert_allclose(forward_dynamics(robot, q, v, u).a, a, rtol=1e-7, atol=1e-7)
     with pytest.raises(ValueError, match="expected positive numbers"):
         inverse_dynamics(robot, q, v, a, weights=np.array([1.0, 0.0, 1.0]))
+    with pytest.raises(ValueError, match="u0 has the shape"):
+        inverse_dynamics(robot, q, v, a, u0=np.zeros(2))
+
+
+def test_reference_torques_do_not_change_the_only_solution() -> None:
+    robot = eurdf.load("digit_leg", geometry=False)
+    q, still = eurdf.assemble(robot).q, np.zeros(robot.model.nv)
+    a = eurdf.forward_dynamics(robot, q, still, np.arange(6.0)).a
+    for u0 in (None, np.full(6, 100.0)):
+        np.testing.assert_allclose(inverse_dynamics(robot, q, still, a, u0=u0).u, np.arange(6.0), atol=1e-7)
 
 
 def test_motion_without_motor_is_refused_with_joint_names() -> None:

@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import nnls
 
+import eurdf
 from eurdf import collection_names
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.bounded_step import bounded_step
@@ -270,6 +271,39 @@ def test_loops_and_limits_hold_together() -> None:
         assert np.abs(residual(robot, answer.q)).max() <= 1e-10
         found += answer.converged
     assert found >= 19
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_held_joints_stay_where_they_are_held(seed: int) -> None:
+    robot, random = robot_called("digit_leg"), np.random.default_rng(seed)
+    q0 = assemble(robot).q
+    at = assemble(robot, pin.integrate(robot.model, q0, random.uniform(-0.05, 0.05, robot.model.nv))).q
+    hold = ["motor_hip_x", ("ball_rod1_end", "z")]
+    found = inverse_kinematics(robot, {"foot": pose(robot, at, "foot")}, q0, hold=hold, hold_at=at, limits=False)
+    assert found.converged
+    np.testing.assert_allclose(residual(robot, found.q), 0.0, atol=1e-9)
+    np.testing.assert_allclose(pin.log6(pose(robot, found.q, "foot").actInv(pose(robot, at, "foot"))), 0.0, atol=1e-7)
+    hip, ball = (robot.slots[name] for name in ("motor_hip_x", "ball_rod1_end"))
+    assert found.q[hip.idx_q] == at[hip.idx_q] != q0[hip.idx_q]
+    R, S = (pin.Quaternion(q[ball.idx_q : ball.idx_q + 4]).toRotationMatrix() for q in (at, found.q))
+    assert abs(pin.log3(R.T @ S)[2]) < 1e-8
+    # With the hip where it is at the start, another target is out of reach.
+    there = pose(robot, at, "foot").translation + np.array([0.0, 0.2, 0.0])
+    kept = inverse_kinematics(robot, {"foot": there}, q0, hold="motor_hip_x", restarts=2)
+    assert not kept.converged
+    assert kept.q[hip.idx_q] == q0[hip.idx_q]
+
+
+def test_changed_limits_are_respected_while_joints_are_held() -> None:
+    robot = eurdf.load("digit_leg", geometry=False)
+    q0, knee = assemble(robot).q, robot.slots["motor_knee"].idx_q
+    values = dict(zip(robot.actuation.joints, q0[robot.actuation.idx_q].tolist(), strict=True))
+    bent = forward_kinematics(robot, values | {"motor_knee": values["motor_knee"] + 0.1}, q0)
+    robot.model.upperPositionLimit[knee] = q0[knee] + 0.01
+    target = {"foot": pose(robot, bent, "foot")}
+    assert inverse_kinematics(robot, target, q0, hold="motor_hip_x", restarts=1).q[knee] <= q0[knee] + 0.01 + 1e-12
+    free = inverse_kinematics(robot, target, q0, hold="motor_hip_x", limits=False)
+    assert free.q[knee] == pytest.approx(bent[knee], abs=1e-7)
 
 
 def test_start_outside_limits_is_clipped() -> None:

@@ -7,16 +7,24 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
+import yaml
+from hypothesis import given
+from hypothesis import strategies as st
 
 import eurdf
 from eurdf.collection.near_paths import near_path
 from eurdf.diagnostics import FileError
 from eurdf.diagnostics.sarif import sarif_log
 from eurdf.diagnostics.text import report_lines
+from eurdf.errors import RobotNotFound
+from eurdf.mechanism.same_model import differences
 from eurdf.reading import robot_source
 from eurdf.reading.robot_source import source_of
+from eurdf.reading.yaml_reader import read_yaml
 from support.described import ARM as URDF
 from support.described import ARM_DESCRIPTION as DESCRIPTION
 from support.places import ROBOTS
@@ -95,6 +103,70 @@ def test_existing_file_precedes_text(folder: Path) -> None:
         (folder / name).write_text(DESCRIPTION, encoding="utf-8")
         (folder / "robot.urdf").write_text(URDF, encoding="utf-8")
         assert eurdf.load(name).actuation.joints == ("shoulder",)
+
+
+@pytest.mark.parametrize(
+    "text", ["name_mot: [shoulder]", '"name_mot": [shoulder]', "{name_mot: [shoulder]}", "--- {name_mot: [shoulder]}"]
+)
+def test_description_text_may_have_one_line(text: str) -> None:
+    assert eurdf.load(text, URDF).actuation.joints == ("shoulder",)
+
+
+@pytest.mark.parametrize("path", ["C:/arm.yaml", "http://arm", "arm:yaml"])
+def test_path_with_colon_is_no_text(path: str) -> None:
+    with pytest.raises(RobotNotFound):
+        eurdf.load(path)
+
+
+def test_mapping_is_read_as_its_file() -> None:
+    content = yaml.safe_load((FOUR_BAR / "robot.yaml").read_text(encoding="utf-8"))
+    robot = eurdf.load(content, FOUR_BAR / "robot.urdf")
+    assert differences(robot.mechanism, eurdf.load(FOUR_BAR).mechanism) == []
+    assert eurdf.residual(content | {"urdf": str(FOUR_BAR / "robot.urdf")}, np.zeros(robot.model.nq)).shape == (3,)
+
+
+_PLAIN = st.none() | st.booleans() | st.integers(-99, 99) | st.floats(-1e9, 1e9) | st.text()
+
+
+@given(st.dictionaries(st.text(max_size=3), st.recursive(_PLAIN, st.lists, max_leaves=5), max_size=3))
+def test_values_of_mapping_are_read_as_they_are(values: dict[str, Any]) -> None:
+    source = source_of({"x-a": values})
+    assert source is not None
+    assert repr(read_yaml(source).data["x-a"]) == repr(values)
+
+
+def test_mapping_may_have_values_of_numpy() -> None:
+    robot = eurdf.load({"name_mot": ("shoulder",), "own": np.array([1e-5, 2.0]), "n": np.float64(1e-5)}, URDF)
+    assert robot.mechanism.own_data == {"/own": [1e-5, 2.0], "/n": 1e-5}
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        ({1: 2}, "has the key 1"),
+        ({"x-a": {2.0: 1}}, r"\['x-a'\] has the key"),
+        ({"x-a": [object()]}, r"\['x-a'\]\[0\] is <"),
+    ],
+)
+def test_what_no_description_contains_is_refused(content: Any, reason: str) -> None:
+    with pytest.raises(ValueError, match=reason):
+        eurdf.load(content, URDF)
+
+
+def test_infinite_number_of_mapping_is_reported() -> None:
+    assert [found.code for found in eurdf.check({"x-a": float("-inf")}, URDF).diagnostics] == ["yaml-not-finite"]
+
+
+def test_mapping_that_contains_itself_is_refused() -> None:
+    content: dict[str, Any] = {}
+    content["x-a"] = content
+    with pytest.raises(ValueError, match="contains itself"):
+        eurdf.load(content, URDF)
+
+
+def test_mapping_is_no_urdf() -> None:
+    with pytest.raises(ValueError, match="urdf is a mapping"):
+        eurdf.load(DESCRIPTION, {"a": 1})  # type: ignore[arg-type]
 
 
 def test_invalid_unicode_text_is_reported() -> None:

@@ -12,7 +12,8 @@ import eurdf
 from eurdf.commands.main import main
 from eurdf.linking.robot_files import read_robot
 from eurdf.viewing.graph import save_graph
-from eurdf.viewing.picture import VIEWS, picture
+from eurdf.viewing.opened import opened
+from eurdf.viewing.picture import VIEWS, drawn, picture
 from robots import picture as pictures
 from robots import sheet
 from support.places import ROBOTS, ROOT
@@ -43,25 +44,44 @@ def test_command_draws_a_configuration_with_its_loops(capsys, tmp_path):
     yaml = (folder / "robot.yaml").read_text()
     (tmp_path / "robot.yaml").write_text(yaml.replace("assembled: {}", "assembled: {}\n  apart: {motor_crank: 0.7}"))
     (tmp_path / "robot.urdf").write_text((folder / "robot.urdf").read_text())
-    drawn = {}
+    found = {}
     for name, options in {
         "assembled": [],
         "loops": ["--loops"],
         "apart": ["--loops", "--configuration", "apart"],
         "neutral": ["--configuration", "neutral"],
+        "cut": ["--open"],
     }.items():
         file = tmp_path / f"{name}.png"
         assert main(["picture", str(tmp_path), "-o", str(file), *options]) == 0
-        drawn[name] = on_white(np.asarray(Image.open(file).convert("RGBA")))
-    red = {name: ((pixels[..., 0] - pixels[..., 1:].max(axis=2)) > 120).sum() for name, pixels in drawn.items()}
+        found[name] = on_white(np.asarray(Image.open(file).convert("RGBA")))
+    red = {name: ((pixels[..., 0] - pixels[..., 1:].max(axis=2)) > 120).sum() for name, pixels in found.items()}
     assert red["apart"] > 100  # the line across the open closure
     assert red["loops"] < 20
-    violet = {name: ((pixels[..., 2] - pixels[..., 1]) > 100).sum() for name, pixels in drawn.items()}
+    violet = {name: ((pixels[..., 2] - pixels[..., 1]) > 100).sum() for name, pixels in found.items()}
     assert violet["assembled"] == 0
     assert violet["loops"] > 60  # a dot has a diameter of 12 pixels
-    assert drawn["assembled"].shape == drawn["neutral"].shape  # the assembled configuration is the neutral one
+    assert violet["cut"] > 1.8 * violet["loops"]  # two dots in the place of one, in each view
+    assert red["cut"] < 20
+    assert found["assembled"].shape == found["neutral"].shape  # the assembled configuration is the neutral one
     assert main(["picture", str(tmp_path), "-o", str(file), "--force", "--configuration", "aparr"]) == 2
     assert "there is no configuration 'aparr'; did you mean 'apart'?" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["digit_leg", "doggo_leg", "bennett", "kangaroo_leg", "double_wishbone", "unitree_g1"])
+def test_opened_closures_are_equally_far_apart(name):
+    robot = eurdf.load(name, geometry=False)
+    q = robot.configurations["assembled"]
+    apart = opened(robot, q, 0.01)
+    gaps = [each.position for each in eurdf.kinematics.closure_openings(robot, apart)[: len(robot.mechanism.closures)]]
+    assert min(gaps) == pytest.approx(max(gaps), rel=1e-4)
+    assert 0.0024 < min(gaps) < 0.0101  # a quarter at least
+    assert apart[robot.actuation.idx_q] == pytest.approx(q[robot.actuation.idx_q], abs=1e-12)
+
+
+def test_robot_without_closures_cannot_be_drawn_open():
+    with pytest.raises(ValueError, match="no closure to show open"):
+        drawn(eurdf.load(ROBOTS / "four_bar" / "robot.urdf"), None, True, True)
 
 
 def test_robot_without_shapes_is_drawn_as_lines(tmp_path):
@@ -94,7 +114,7 @@ def test_graph_names_joints_closures_and_couplings(capsys, tmp_path):
     assert {f"{each.name} ({each.type})" for each in (*mechanism.joints, *mechanism.constraints)} <= shown
     assert {body.name for body in mechanism.bodies} <= shown
     assert main(["picture", "tello", "--graph", "--loops", "-o", str(tmp_path / "other.svg")]) == 2
-    assert "leave out --loops and --configuration" in capsys.readouterr().err
+    assert "leave out --loops, --open and --configuration" in capsys.readouterr().err
 
 
 def test_distance_is_no_open_closure():

@@ -21,6 +21,7 @@ import numpy as np
 import pytest
 
 import eurdf
+from eurdf.collection import collection_folder
 from eurdf.errors import EurdfError, Portable
 from support.public import own_names, public_functions, public_names
 
@@ -77,6 +78,7 @@ class Case:
             "ranges": {name: tuple(coordinates[name][0] + np.array((-0.02, 0.02))) for name in joints},
             "path": name,
             "to": "mjcf",
+            "urdf": collection_folder() / name / "robot.urdf",
             "coordinates": coordinates,
         }
         self.arguments["q_actuated"], self.arguments["q_free"] = eurdf.split_configuration(robot, q)

@@ -13,6 +13,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from lxml import etree
 
+import eurdf
 from eurdf.commands.main import main
 from eurdf.diagnostics import Diagnostics
 from eurdf.format.urdf.data import Urdf
@@ -20,6 +21,7 @@ from eurdf.format.urdf.read import read_urdf
 from eurdf.format.yaml_text import lines_of, scalar
 from eurdf.kinematics.analysis import analyze
 from eurdf.linking.robot_files import read_robot
+from eurdf.mechanism.same_model import with_universal_joints
 from eurdf.pinocchio.robot import build_robot
 from eurdf.reading.source import Source, read_source
 from eurdf.reading.xml_reader import read_xml
@@ -333,6 +335,29 @@ def test_word_inside_name_is_no_motor(name: str) -> None:
     assert generated(f"{name} revolute base thigh", "motor revolute base other").found.motors == ("motor",)
 
 
+def test_revolutes_of_a_ball_mate_are_no_motors() -> None:
+    # As disney_like of the published robots: the part that turns about the ball is called motor_link.
+    ball = [f"motor_link_thigh_rev{joint[3:]}" for joint in BALL]
+    made = generated("motor_hip revolute base hip", *ball)
+    assert made.found.motors == ("motor_hip",)
+    assert list(made.merges) == ["motor_link_thigh_rev2"]
+    assert generated(*ball[:2]).found.motors == ("motor_link_thigh_rev0", "motor_link_thigh_rev1")
+    assert len(generated(*ball, motors=["_rev"]).found.motors) == 3
+
+
+@pytest.mark.parametrize("version", ["1", "2"])
+def test_user_pattern_gives_universal_joints(version: Literal["1", "2"]) -> None:
+    urdf = read(urdf_text("motor revolute base thigh", "spherical_knee revolute thigh shin", "heel fixed shin foot"))
+    made = generate(urdf, conventions(universals=["zx=knee|heel"]), version)
+    assert made.found.universals == {"spherical_knee": "zx"}
+    assert made.found.sphericals == ()
+    assert "'heel' is named as universal, but is fixed" in made.found.warnings[0]
+    assert made.mechanism is not None
+    (knee,) = [each for each in with_universal_joints(made.mechanism).joints if each.name == "spherical_knee"]
+    assert knee.type == "universal"
+    assert knee.axes == ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0))
+
+
 def test_missing_closures_or_motors_give_hints() -> None:
     urdf = read(urdf_text("knee revolute base thigh", "the.moteur revolute thigh shin", "j1 fixed shin rod_tip0"))
     found = find(urdf, conventions())
@@ -383,6 +408,8 @@ def test_motors_are_not_merged() -> None:
         ({"closures": ["loop(1"]}, r"'loop\(1' is not a regular expression: .* at position 4"),
         ({"motors": ["*"]}, "'\\*' is not a regular expression: nothing to repeat"),
         ({"closures": ["loop_(A|B)"]}, r"'loop_\(A\|B\)' has no group 'side'"),
+        ({"universals": ["knee"]}, "'knee' states no axes"),
+        ({"universals": ["xx=knee"]}, "'xx=knee' states no axes"),
     ],
 )
 def test_bad_pattern_is_reported(patterns: dict[str, list[str]], said: str) -> None:
@@ -551,6 +578,23 @@ def test_json_contains_text_and_notes(leg: Path, capsys: pytest.CaptureFixture[s
     assert read_back(answer["text"])["actuators"] == ["motor_hip"]
     assert answer["notes"][0].startswith("'closedloop1' is 3d: the loops close")
     assert answer["hints"] == []
+
+
+def test_python_generates_the_text_of_the_command(leg: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["generate", str(leg), "--universal", "xy=knee", "--motor", "hip", "--root", "floating"]) == 0
+    made = eurdf.generate(leg, universals="xy=knee", motors=["hip"], root="floating")
+    assert made.text == capsys.readouterr().out
+    robot = eurdf.load(made.text, leg, geometry=False)
+    assert robot.mechanism == made.mechanism
+    assert repr(made) == "<Generation: version 2, 1 closures, 1 motors>"
+
+
+def test_python_refuses_contradicting_names(tmp_path: Path) -> None:
+    with pytest.raises(eurdf.InvalidRobot, match=r"contradict each other\n.*actuator-merged"):
+        eurdf.generate(urdf_text(*BALL), version="1", motors="rev")
+    with pytest.raises(eurdf.InvalidRobot, match="urdf-two-roots"):
+        eurdf.generate("<robot name='r'><link name='a'/><link name='b'/></robot>")
+    assert eurdf.generate(urdf_text(*LEG), urdf_path="../leg.urdf").text.splitlines()[1] == "urdf: ../leg.urdf"
 
 
 # -- files of unusual names, line ends or encodings ---------------------------------------------------------------

@@ -16,8 +16,10 @@ import yaml
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+import eurdf
 from eurdf.commands.main import main
 from eurdf.diagnostics import Diagnostics, FileError
+from eurdf.errors import CannotMigrate
 from eurdf.format.read import read_description
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.urdf.read import read_urdf
@@ -591,3 +593,24 @@ def test_json_contains_text_and_changes(folder: Path, capsys: pytest.CaptureFixt
     assert (answer["from"], answer["to"], answer["output"]) == ("1", "2.0", None)
     assert answer["text"] == MIGRATED
     assert any("wrist_z" in note for note in answer["notes"])
+
+
+def test_python_migrates_as_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text, urdf = (ROBOTS / "four_bar" / "robot.v1.yaml"), ROBOTS / "four_bar" / "robot.urdf"
+    assert main(["migrate", str(text), "--schema", "none"]) == 0
+    made = eurdf.migrate(text)
+    assert made.text == capsys.readouterr().out
+    assert differences(eurdf.load(made.text, urdf).mechanism, eurdf.load(text).mechanism) == []
+    assert "urdf: ../a.urdf" in eurdf.migrate(text, urdf_path="../a.urdf").text.splitlines()
+    assert repr(made).startswith("<Migration to version 2.0: ")
+    again = eurdf.migrate(made.text, urdf)
+    assert (again.text, again.mechanism) == (made.text, made.mechanism)
+    assert again.notes == ("'<description>' already has version 2.0: nothing to do",)
+
+
+def test_python_says_why_nothing_is_migrated() -> None:
+    with pytest.raises(CannotMigrate, match="is a plain URDF"):
+        eurdf.migrate(ROBOTS / "four_bar" / "robot.urdf")
+    elbow = "joint_name: [elbow]\njoint_type: [UJOINT_XY]\nname_mot: [elbow_X]\n"
+    with pytest.raises(CannotMigrate, match=r"cannot migrate: <description>:3: actuator 'elbow_X' is one of"):
+        eurdf.migrate(elbow, PLAIN_WORKBENCH)

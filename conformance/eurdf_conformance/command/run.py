@@ -38,7 +38,8 @@ _DESCRIPTION = """\
 Run the conformance suite on a parser written in any language, and report the certified levels.
 
 A parser is 'package.module:object', a Python object, or 'cmd:' and a command line that starts a program with the
-protocol of the suite. --verify runs the command in the certificate: read it first, or give your own with --parser.
+protocol of the suite, or 'reference', which is eurdf. --verify runs the command in the certificate: read it first, or
+give your own with --parser.
 --compare runs every parser with one seed, and writes one page of all of them.
 """
 _EPILOG = ending(

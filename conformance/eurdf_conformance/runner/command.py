@@ -8,6 +8,9 @@ import shlex
 import sys
 from pathlib import Path
 
+#: The adapter of the reference parser, eurdf.
+REFERENCE = "eurdf_conformance.adapters.reference:PARSER"
+
 _OBJECT = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*(\.[^\W\d]\w*)*")
 
 
@@ -16,11 +19,13 @@ def command_of(parser: str) -> list[str]:
 
     Args:
         parser: ``package.module:object``, a Python object that `protocol.serve` serves; or ``cmd:`` and a command line,
-            split as a shell does it, but not run by one.
+            split as a shell does it, but not run by one; or ``reference``, the reference parser.
 
     Raises:
-        ValueError: It is neither.
+        ValueError: It is none of them.
     """
+    if parser == "reference":
+        parser = REFERENCE
     if parser.startswith("cmd:"):
         command = shlex.split(parser.removeprefix("cmd:"))
         if not command:
@@ -28,7 +33,7 @@ def command_of(parser: str) -> list[str]:
         return command
     if _OBJECT.fullmatch(parser):
         return [sys.executable, "-m", "eurdf_conformance.protocol.serve", parser]
-    raise ValueError(f"'{parser}' is neither 'package.module:object' nor 'cmd:' and a command line")
+    raise ValueError(f"'{parser}' is neither 'package.module:object' nor 'cmd:' and a command line, nor 'reference'")
 
 
 def why_not(program: str, error: Exception) -> str:

@@ -20,13 +20,11 @@ from eurdf_conformance.judging.known_failures import (
 from eurdf_conformance.judging.result import Item
 from eurdf_conformance.level import VERSIONS, Level, Version
 from eurdf_conformance.named_folder import named_folder
+from eurdf_conformance.runner.command import REFERENCE
 from eurdf_conformance.suite.reproduce import FOLDER, PACKAGE, START_TIMEOUT, TIMEOUT, Setting, command_line
 
 #: Where the options of a run of pytest are kept.
 OPTIONS: pytest.StashKey[Options] = pytest.StashKey()
-
-#: The parser that is tested by default.
-REFERENCE = "eurdf_conformance.adapters.reference:PARSER"
 
 
 @dataclass(frozen=True)
@@ -72,7 +70,11 @@ class Options:
 def add_options(parser: pytest.Parser) -> None:
     """The options of the suite."""
     group = parser.getgroup("eurdf", "conformance suite of Extended URDF")
-    group.addoption("--parser", metavar="PARSER", help="package.module:object, or 'cmd:./my_parser --flag'")
+    group.addoption(
+        "--parser",
+        metavar="PARSER",
+        help="package.module:object, or 'cmd:./my_parser --flag'; default: reference, which is eurdf",
+    )
     group.addoption(
         "--parser-timeout",
         type=float,

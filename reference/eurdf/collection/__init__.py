@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -46,8 +47,9 @@ def find_robot(path: RobotSource, urdf: RobotSource | None = None) -> RobotFiles
 
     Args:
         path: A folder, a YAML file, a bare URDF or xacro, the name of a robot of the collection, ``-`` for standard
-            input, a pipe, or a text. A file that ends in ``.urdf``, ``.xml`` or ``.xacro`` is a URDF, any other a
-            description. A text, or what comes from a stream, is a URDF if it begins with ``<``.
+            input, a pipe, a text, or a mapping. A file that ends in ``.urdf``, ``.xml`` or ``.xacro`` is a URDF, any
+            other a description. A text, or what comes from a stream, is a URDF if it begins with ``<``; a mapping is
+            what a description contains.
         urdf: A URDF in place of the one that the description names: a file, ``-``, a pipe or a text.
 
     Raises:
@@ -57,7 +59,7 @@ def find_robot(path: RobotSource, urdf: RobotSource | None = None) -> RobotFiles
     if urdf is not None and is_stream(path) and path == urdf:
         raise RobotNotFound(display_name(path), f"{display_name(path)} cannot be both the description and its URDF")
     # With os.path, which takes any string for a path that may not exist, where Path can raise.
-    if not isinstance(path, bytes) and path != STDIN and os.path.isdir(path):
+    if not isinstance(path, bytes | Mapping) and path != STDIN and os.path.isdir(path):
         return _in_folder(path if isinstance(path, Path) else Path(path), _given_urdf(urdf))
     source = source_of(path)
     if source is not None:
@@ -65,7 +67,7 @@ def find_robot(path: RobotSource, urdf: RobotSource | None = None) -> RobotFiles
             _refuse_second_urdf(path, urdf)
             return RobotFiles(None, source)
         return RobotFiles(source, _given_urdf(urdf))
-    assert not isinstance(path, bytes)
+    assert not isinstance(path, bytes | Mapping)
     if os.fspath(path) == "":  # Path takes it for the working directory
         raise RobotNotFound("", "the path of the robot is empty; '.' is the working directory")
     where = Path(path)
@@ -104,6 +106,8 @@ def _files(folder: Path) -> list[Path]:
 def _given_urdf(urdf: RobotSource | None) -> Path | Source | None:
     if urdf is None:
         return None
+    if isinstance(urdf, Mapping):
+        raise ValueError("urdf is a mapping, which is a description; expected the path or the text of a URDF")
     source = source_of(urdf)
     if source is not None:
         return source

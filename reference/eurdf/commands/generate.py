@@ -16,7 +16,6 @@ from eurdf.commands.output_file import (
     EditorSchema,
     refuse_to_replace,
     schema_beside,
-    urdf_named,
     urdf_notes,
 )
 from eurdf.commands.terminal import write_notes, write_refusal
@@ -37,7 +36,9 @@ Write a description from the names in a URDF.
               closing_knee_2_z, which onshape-to-robot adds on the axis of a revolute mate, are a second point. Closures
               of type 3d that join the same two parts at points that are as far apart in both are one hinge.
   motors      joints whose name begins or ends with the word mot or motor: motor_knee, mot1, left_motor_hip, hip_motor.
+              The joints A_B_rev0, A_B_rev1 and A_B_rev2 of a ball mate, named after its parts, are none.
   sphericals  joints with spherical in their name.
+  universals  none by their names: --universal says which, with the letters of their axes in the joint's frame.
 
 A closure whose name does not state its type is 6d. It is 3d if with 6d the loops cannot close or move, or motors
 depend on one another, and with 3d they do not. A note gives the reason; --type sets the type of all closures.
@@ -63,6 +64,7 @@ def _pattern(what: str) -> Any:
     examples=(
         "eurdf generate arm.urdf -o arm.yaml",
         "eurdf generate arm.urdf --closure '(?P<loop>rod\\d+)_(?P<side>top|bottom)' --motor 'drive$'",
+        "eurdf generate leg.urdf --universal 'xy=free_(knee|foot)'",
     ),
 )
 def generate(
@@ -74,6 +76,12 @@ def generate(
     closure: list[str] = _pattern("the frames of closures"),
     motor: list[str] = _pattern("actuated joints"),
     spherical: list[str] = _pattern("spherical joints"),
+    universal: list[str] = option(
+        "names of universal joints, after their axes: xy=PATTERN (repeatable)",
+        metavar="AXES=PATTERN",
+        action="append",
+        default=[],
+    ),
     closure_type: Literal["3d", "6d"] | None = option(
         "type of all closures, instead of the type from name or motion", "--type", choices=("3d", "6d")
     ),
@@ -87,13 +95,14 @@ def generate(
     from eurdf.diagnostics import Diagnostics
     from eurdf.linking.robot_files import read_urdf_alone
     from eurdf.writing import generation
-    from eurdf.writing.naming_conventions import BadPattern, conventions, hints
+    from eurdf.writing.naming_conventions import BadPattern, conventions
+    from eurdf.writing.new_description import urdf_named
 
     if version == "1" and root != "fixed":
         raise CannotRun("version 1 cannot state a floating root; use version 2")
     require_urdf(urdf)
     with cannot_run(BadPattern):
-        convention = conventions(closure, motor, spherical)
+        convention = conventions(closure, motor, spherical, universal)
     diagnostics = Diagnostics()
     tree = read_urdf_alone(urdf, diagnostics, **options)
     source = tree.document.source
@@ -112,7 +121,6 @@ def generate(
         return None if made is None else made.reference
 
     made = generation.generate(tree, convention, version, root, urdf_path, reference, closure_type)
-    advice = hints(tree, made.found, convention)
     if made.mechanism is None:
         write_refusal(display_name(urdf), made.diagnostics, json)
         write_notes(["nothing was written: the names contradict each other"])
@@ -128,7 +136,7 @@ def generate(
         *_summary(made),
         *(f"note: {note}" for note in made.notes),
         *(f"warning: {warning}" for warning in warnings),
-        *(f"hint: {hint}" for hint in advice),
+        *(f"hint: {hint}" for hint in made.hints),
     ]
     file = DescriptionFile(output, made.text, beside(made.version))
     file.write(force)
@@ -138,7 +146,8 @@ def generate(
             {"name": each.name, "type": each.type, "frames": each.frames, **each.axis_keys} for each in found.closures
         ]
         names = {"motors": found.motors, "sphericals": found.sphericals, "merges": made.merges}
-        sentences = {"notes": made.notes, "warnings": warnings, "hints": advice}
+        names["universals"] = dict(found.universals)
+        sentences = {"notes": made.notes, "warnings": warnings, "hints": made.hints}
         write_result({**file.paths, "closures": closures, **names, **sentences, "text": made.text})
     else:
         file.show(notes if output is not None or schema == "none" else [*notes, NOT_BESIDE], as_text=output is None)
@@ -153,6 +162,7 @@ def _summary(generation: Generation) -> list[str]:
         _count("closure", closures),
         _count("motor", found.motors),
         *([_count("spherical joint", found.sphericals)] if found.sphericals else []),
+        *([_count("universal joint", found.universals)] if found.universals else []),
         *([_count("spherical joint", generation.merges, merged)] if generation.merges else []),
     ]
 

@@ -36,10 +36,14 @@ What was written is checked, as by `eurdf check`.
     summary="describe a robot that is in a file of a simulator, and show what is lost",
     description=_DESCRIPTION,
     exit_codes="0 imported, 1 the file or the robot has errors, or losses with --strict, 2 the command cannot run.",
-    examples=("eurdf import cassie.xml -o cassie", "eurdf import scene/arm.xml -o arm --within ."),
+    examples=(
+        "eurdf import cassie.xml -o cassie",
+        "eurdf import scene/arm.xml -o arm --within .",
+        "eurdf import leg_mjcf -o leg",
+    ),
 )
 def import_robot(
-    file: str = option("the file to import", "file", metavar="FILE"),
+    file: str = option("the file to import, or a folder that `eurdf export` wrote", "file", metavar="FILE"),
     output: str = OUTPUT_FOLDER,
     format_: str | None = option(
         f"{', '.join(IMPORTED)}; default: recognized by the content", "--from", choices=IMPORTED, metavar="FORMAT"
@@ -63,7 +67,7 @@ def import_robot(
     try:
         found = eurdf.import_robot(file, format=format_, within=within, strict=strict, allow_outside=allow_outside)
     except CannotImport as reason:
-        place_of = _places((Path(file),))
+        place_of = _places((Path(reason.path),))
         if form == "json":
             reported = tuple(Report(file, reason.diagnostics).to_json()["diagnostics"])
             losses = loss_infos(reason.losses, place_of)

@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 from typing import Any
 
-from eurdf.commands.command import FORCE_DESCRIPTION, OUTPUT, ROBOT, command, flag
+from eurdf.commands.command import FORCE_DESCRIPTION, OUTPUT, ROBOT, cannot_run, command, flag
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import (
     NOT_BESIDE,
@@ -15,10 +15,9 @@ from eurdf.commands.output_file import (
     EditorSchema,
     refuse_to_replace,
     schema_beside,
-    urdf_named,
     urdf_notes,
 )
-from eurdf.errors import CannotRun
+from eurdf.errors import CannotMigrate
 
 _DESCRIPTION = """\
 Convert a description from version 1 to version 2, with the same model.
@@ -46,20 +45,18 @@ def migrate(
 ) -> int:
     """Migrate and write a description, and print notes."""
     from eurdf.linking.robot_files import read_valid
-    from eurdf.writing import migration
-    from eurdf.writing.migrated_text import NotMigratable, schema_named, version_needed
+    from eurdf.writing.migrated_text import schema_named, version_needed
+    from eurdf.writing.new_description import described, migrated, nothing_to_do, urdf_named
 
     read = read_valid(path, **options)
-    if read.yaml is None:
-        raise CannotRun(
-            f"'{read.path}' is a plain URDF, which has nothing to migrate; `eurdf generate` writes a description"
-        )
-    document, version, tree = read.description.document, read.description.version, read.urdf
+    with cannot_run(CannotMigrate):
+        document = described(read)
+    version, tree = read.description.version, read.urdf
     source, urdf = document.source, tree.document.source
     if version != "1":
         written: str = version
         file = DescriptionFile(None, source.text, None)
-        notes = [f"'{source.file}' already has version {version}: nothing to do"]
+        notes = [nothing_to_do(read)]
     else:
         beside: EditorSchema | None = None
         reference = schema_named(document, tree) if schema == "format" else None
@@ -68,14 +65,10 @@ def migrate(
             beside = schema_beside(output, version_needed(tree), schema, tree, force)
             reference = None if beside is None else beside.reference
         urdf_path = urdf_named(output or source.file, urdf)
-        try:
-            migrated = migration.migrate(read, urdf_path, reference)
-        except NotMigratable as reason:
-            line = document.place(reason.pointer).line if reason.pointer else None
-            where = f"{source.file}:{line}" if line else source.file
-            raise CannotRun(f"cannot migrate: {where}: {reason}") from None
-        file, written = DescriptionFile(output, migrated.text, beside), migrated.mechanism.version
-        notes = [*migrated.notes, *urdf_notes(urdf, urdf_path, options["xacro_args"])]
+        with cannot_run(CannotMigrate):
+            made = migrated(read, urdf_path, reference)
+        file, written = DescriptionFile(output, made.text, beside), made.mechanism.version
+        notes = [*made.notes, *urdf_notes(urdf, urdf_path, options["xacro_args"])]
         file.write(force)
         if output is None and reference is None and schema != "none":
             notes.append(NOT_BESIDE)

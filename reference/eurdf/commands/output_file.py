@@ -148,19 +148,6 @@ class DescriptionFile:
             write_notes([f"wrote '{self.schema.path}', the schema for editors"])
 
 
-def urdf_named(description: str | os.PathLike[str], urdf: Source) -> str:
-    """The name of the URDF, or of its xacro, in a description; ``robot.urdf`` if it is not a file."""
-    if not urdf.files:
-        return "robot.urdf"
-    home, file = os.path.realpath(Path(description).parent), Path(urdf.files[0])
-    # Resolve the folder, because '..' is relative to the target of a link; the file can stay a link.
-    place = Path(os.path.realpath(file.parent)) / file.name
-    try:
-        return Path(os.path.relpath(place, home)).as_posix()
-    except ValueError:  # on another drive
-        return place.as_posix()
-
-
 def urdf_notes(urdf: Source, name: str, xacro_args: Mapping[str, str]) -> tuple[str, ...]:
     """The notes if the URDF of a description is more than a file that the description names."""
     if not urdf.files:

@@ -14,6 +14,9 @@ _DESCRIPTION = """\
 Draw the visual shapes of a robot to a PNG file: from the right, from the front right above, and from behind. A robot
 without visual shapes is drawn as lines from link to link. The background is transparent. No window is opened.
 
+With --open, the passive joints move so far that the closures are open: the picture shows where the loops are cut, with
+the two frames of each closure and a line between them.
+
 With --graph, draw the graph of its links, joints, closures and couplings to an SVG file instead.
 """
 
@@ -25,6 +28,7 @@ With --graph, draw the graph of its links, joints, closures and couplings to an 
     examples=(
         "eurdf picture my_robot -o my_robot.png",
         "eurdf picture my_robot -o crouched.png --configuration crouched --loops",
+        "eurdf picture my_robot -o cut.png --open",
         "eurdf picture my_robot -o graph.svg --graph",
     ),
     has_output=False,
@@ -37,12 +41,13 @@ def picture(
         f"one of the description, or {NEUTRAL}; default: assembled, which is searched if there is none", metavar="NAME"
     ),
     loops: bool = flag("show the closures, and the shapes translucent"),
+    open_: bool = flag("show the closures open", "--open"),
     graph: bool = flag("draw the graph of links and loops as SVG"),
     force: bool = FORCE_FILE,
 ) -> int:
     """Draw."""
-    if graph and (loops or configuration):
-        raise CannotRun("--graph shows no configuration; leave out --loops and --configuration")
+    if graph and (loops or open_ or configuration):
+        raise CannotRun("--graph shows no configuration; leave out --loops, --open and --configuration")
     refuse_to_replace(output, force)
 
     import eurdf
@@ -57,7 +62,7 @@ def picture(
                 q = eurdf.assemble(robot).q
             else:
                 q = named_configuration(robot, configuration or NAME)
-            image = drawing.picture(robot, q=q, loops=loops)
+            image = drawing.picture(robot, q=q, loops=loops, apart=open_)
     with writing():
         if graph:
             save_graph(robot.mechanism, output)

@@ -21,7 +21,7 @@ from eurdf.convert.losses import Effect, Loss, Losses, dropped, exact
 from eurdf.convert.readme import licence_file, readme
 from eurdf.convert.xml_elements import places_of_names, recognized
 from eurdf.diagnostics import Diagnostic, Severity, did_you_mean
-from eurdf.diagnostics.wording import visible
+from eurdf.diagnostics.wording import enumerated, visible
 from eurdf.errors import CannotImport, RobotNotFound
 from eurdf.format.schema import FILES, SchemaVersion, json_schema, schema_text
 from eurdf.kinematics.assembly import assemble
@@ -34,6 +34,7 @@ from eurdf.linking.robot_files import read_robot
 from eurdf.loading import check
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.spanning_tree import rigid_poses
+from eurdf.mesh_files.folders import MANIFEST
 from eurdf.pinocchio.robot import Robot, build_robot
 from eurdf.reading.other_formats import IMPORTED
 from eurdf.reading.resource import FileFinder
@@ -41,6 +42,9 @@ from eurdf.writing.description import DescriptionFiles, NotWritable, describe_me
 from eurdf.writing.joined_closures import join_points
 from eurdf.writing.output_folder import write_files
 from eurdf.writing.saved_configuration import NAME as ASSEMBLED
+
+# Of the files that a folder may be imported by; what cannot be imported is refused with its reason.
+_ENDINGS = (".xml", ".sdf", ".urdf", ".usda", ".usd")
 
 #: Losses of every format.
 COMMON = loss_kinds(
@@ -160,7 +164,8 @@ def import_robot(
     or reference pose of the file, a configuration is searched that closes them, ``assembled``.
 
     Args:
-        path: The file.
+        path: The file, or a folder with one of these formats, as `eurdf.export` writes it: ``robot.xml``,
+            ``robot.sdf``, ``robot.urdf``, or another name if there is no other file of these endings.
         format: Name of its format: ``mjcf``, ``sdf``, ``loop-joint``, ``drake`` or ``urdf-plus``. By default it is
             recognized by its content.
         within: A folder that files may be in which the file names, besides the robot's folder: the nearest one, from
@@ -173,12 +178,10 @@ def import_robot(
         CannotImport: The file is not of this format, has an error, or uses files outside the folder; or, if `strict`,
             it cannot be imported without losses, or the robot does not pass `eurdf.check`.
         MissingExtra: What reads the format is not installed.
-        RobotNotFound: There is no such file.
+        RobotNotFound: There is no such file, or the folder has none or several.
         ValueError: There is no such format.
     """
-    file = Path(path)
-    if not file.is_file():
-        raise RobotNotFound(os.fspath(path), f"'{file}' is not a file")
+    file = _file_at(Path(path))
     if format is not None and format not in IMPORTED:
         hint = did_you_mean(format, IMPORTED) or f"the formats are: {', '.join(IMPORTED)}"
         raise ValueError(f"there is no format '{format}'; {hint}")
@@ -193,6 +196,24 @@ def import_robot(
         more = f"; and {len(errors) - 1} more" if len(errors) > 1 else ""
         raise CannotImport(file, f"the robot has errors: {errors[0]}{more}", diagnostics=errors)
     return imported
+
+
+def _file_at(path: Path) -> Path:
+    """The file to import: the one given, or the one in a folder.
+
+    Raises:
+        RobotNotFound: There is none, or several.
+    """
+    if path.is_file():
+        return path
+    if not path.is_dir():
+        raise RobotNotFound(os.fspath(path), f"'{path}' is not a file or a folder")
+    files = sorted(each for each in path.iterdir() if each.suffix.lower() in _ENDINGS and each.name != MANIFEST)
+    found = [each for each in files if each.stem == "robot"] or files
+    if len(found) == 1:
+        return found[0]
+    what = enumerated([each.name for each in found]) if found else f"no file of {', '.join(_ENDINGS)}"
+    raise RobotNotFound(os.fspath(path), f"folder '{path}' contains {what}; name the file")
 
 
 def _relative(found: Diagnostic, folder: str) -> Diagnostic:

@@ -16,12 +16,13 @@ import numpy as np
 from eurdf.array import Matrix, Vector
 from eurdf.errors import NotClosable
 from eurdf.kinematics.closing import close, start
+from eurdf.kinematics.holding import holding
 from eurdf.kinematics.named import Named
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits, chosen_limits
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.tolerances import MOST_WORK, RESTARTS, SOLVED
-from eurdf.pinocchio.arguments import as_names, checked_count, checked_tolerance
+from eurdf.pinocchio.arguments import checked_count, checked_tolerance
 from eurdf.pinocchio.memory import working_memory
 
 if TYPE_CHECKING:
@@ -76,7 +77,8 @@ def assemble(
     robot: Robot,
     q0: Named | None = None,
     *,
-    hold: str | Iterable[str] = (),
+    hold: str | Iterable[str | tuple[str, str]] = (),
+    hold_at: Named | None = None,
     tolerance: float = SOLVED,
     limits: bool = False,
     restarts: int = RESTARTS,
@@ -95,7 +97,12 @@ def assemble(
     Args:
         robot: The robot.
         q0: Where to start (nq,). The default is the `assembled` configuration, or the neutral one if there is none.
-        hold: Names of joints that do not move, or one name. A mimic joint is held with its leader.
+        hold: Names of joints that do not move, or one name. A mimic joint is held with its leader. Of a ball joint also
+            its name and the axes about which it does not turn, as in ``[("hip", "z")]``: the vector of its rotation
+            from where it is held has no component along these axes, x, y or z of the joint. Each is then one more
+            constraint, named as in ``"hip about z"``.
+        hold_at: Where the joints of ``hold`` are held: a configuration (nq,), or positions of joints by name. The
+            default, also for joints that are not named, is ``q0``.
         tolerance: Bound of each row of the residual for closed loops, m or rad.
         limits: Whether to respect the position limits of joints whose coordinates are angles or lengths. A start
             outside the limits is clipped first. Limits that are both 0 are no range (`urdf-no-range`).
@@ -105,11 +112,11 @@ def assemble(
         The closed configuration, or the least open one found.
 
     Raises:
-        ValueError: ``q0`` is not a configuration, ``hold`` has a name that is not a joint of the model, or
-            ``tolerance`` or ``restarts`` is negative.
+        ValueError: ``q0`` or ``hold_at`` is not a configuration, ``hold`` has a name that is not a joint of the model,
+            or axes that it does not have, or ``tolerance`` or ``restarts`` is negative.
     """
-    q = start(robot, q0)
-    held = tuple(velocity for name in as_names(hold) for velocity in robot.tree.velocities_of(name))
+    robot, joints, q = holding(robot, start(robot, q0), hold, hold_at)
+    held = tuple(velocity for name in joints for velocity in robot.tree.velocities_of(name))
     tolerance, chosen = checked_tolerance(tolerance), chosen_limits(robot, limits)
     restarts = checked_count("restarts", restarts, 0)
     with working_memory(robot, Problem, *([held] if held else [])) as problem:  # others use one that holds none, too

@@ -166,13 +166,14 @@ def inverse_dynamics(
     external: External | None = None,
     dissipation: bool = False,
     weights: Named | None = None,
+    u0: Named | None = None,
     tolerance: float = 1e-6,
     data: Any = None,
 ) -> InverseDynamics:
     """Motor torques for a motion of the closed mechanism, and the forces in its closures.
 
-    Solves S u + Kᵀ λ = M a + h - τ. With N a basis of the free motions, K N = 0, the torques minimise Σ wᵢ uᵢ² subject
-    to Nᵀ S u = Nᵀ (M a + h - τ); λ is the solution with the least norm, in units of the characteristic length.
+    Solves S u + Kᵀ λ = M a + h - τ. With N a basis of the free motions, K N = 0, the torques minimise Σ wᵢ (uᵢ - u0ᵢ)²
+    subject to Nᵀ S u = Nᵀ (M a + h - τ); λ is the solution with the least norm, in units of the characteristic length.
     (Nakamura, Ghodoussi, *Dynamics computation of closed-link robot mechanisms with nonredundant and redundant
     actuators*, 1989.) It is the inverse of `forward_dynamics`.
 
@@ -192,6 +193,8 @@ def inverse_dynamics(
         external: As in `forward_dynamics`.
         dissipation: As in `forward_dynamics`.
         weights: w (nu,), positive; all 1 by default.
+        u0: Motor torques (nu,) to change least, N·m and N; zero by default. If the motors are independent, there is
+            only one solution, and they have no effect.
         tolerance: Accepted difference of v and a from the nearest ones that keep the closures closed, and of a from the
             nearest one that the motors can produce, relative to 1 plus the largest component (rad and s, or
             characteristic lengths).
@@ -206,6 +209,7 @@ def inverse_dynamics(
     with working_memory(robot, ForwardSolver) as solver, working_memory(robot, InverseSolver) as inverse_solver:
         q, v, a, dynamics = _state(robot, q, v, a, solver, data)
         norm, tolerance = _norm(robot, weights), checked_tolerance(tolerance)
+        near = np.zeros(len(norm)) if u0 is None else motor_values_of(robot, u0, "u0")
         applied = AppliedForce(robot, external, dissipation).total(q, v, None, tau)
         found = inverse_solver.solve(solver, q, v, a, applied, tolerance, dynamics)
         if found is not None:
@@ -218,7 +222,7 @@ def inverse_dynamics(
         deviation, missing = _uncontrolled(motion, inertial, force)
         _refuse_uncontrolled(motion, a, deviation, missing, tolerance)
         required = force + inertial
-        u = motion.torques(required, norm)
+        u = near + motion.torques(required - S @ near, norm)
         forces = Forces.of(solver, motion.P.T @ (required - S @ u))
     finite("the motor torques", u, *forces)
     return InverseDynamics(u, forces)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from pinocchio import SE3
@@ -17,21 +17,22 @@ from eurdf.kinematics.blocks import checked_rows, shape_of
 from eurdf.kinematics.closing import start
 from eurdf.kinematics.frame_jacobian import frames_of
 from eurdf.kinematics.frame_targets import Target
+from eurdf.kinematics.holding import Holding, holding
 from eurdf.kinematics.inverse_newton import InverseNewton
 from eurdf.kinematics.inverse_search import InverseKinematicsReason, InverseTask, search
+from eurdf.kinematics.locking import lock
 from eurdf.kinematics.named import Named
 from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.position_limit import JointAtLimit, chosen_limits
 from eurdf.kinematics.problem import Problem
+from eurdf.kinematics.residual import all_openings
 from eurdf.kinematics.tolerances import (
     RESTARTS,
     SOLVED,
 )
 from eurdf.pinocchio.arguments import all_finite, checked_array, checked_count, checked_tolerance
 from eurdf.pinocchio.memory import working_memory
-
-if TYPE_CHECKING:
-    from eurdf.pinocchio.robot import Robot
+from eurdf.pinocchio.robot import Robot
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -111,6 +112,8 @@ def inverse_kinematics(
     targets: Mapping[str, Any],
     q0: Named | None = None,
     *,
+    hold: str | Iterable[str | tuple[str, str]] = (),
+    hold_at: Named | None = None,
     limits: bool = True,
     tolerance: float = 1e-8,
     restarts: int = 20,
@@ -140,6 +143,9 @@ def inverse_kinematics(
         q0: Where to start (nq,); the solution is near it. It is closed and clipped to the limits first. If it already
             is a solution, within 1e-6 for the closures, it is returned. The default is the `assembled` configuration,
             or the neutral one if there is none.
+        hold: Names of joints that do not move, or one name, and axes of ball joints, as in `assemble`. A smaller robot
+            is made first, which takes some milliseconds: to hold the same joints in many calls, use `lock`.
+        hold_at: As in `assemble`.
         limits: Whether to respect the position limits of joints whose coordinates are angles or lengths. Limits of
             mimic joints are ignored. Limits that are both 0 are no range (`urdf-no-range`).
         tolerance: Bound of the distance of a frame from its target, m and rad. Loops are closed to 1e-10 if possible.
@@ -150,9 +156,15 @@ def inverse_kinematics(
         The configuration found: how near it is, and what was tried. The result is deterministic.
 
     Raises:
-        ValueError: ``q0`` is not a configuration; ``targets`` is not a mapping; a frame is unknown or ambiguous; a
-            target is neither a pose nor a finite position.
+        ValueError: ``q0`` or ``hold_at`` is not a configuration; ``hold`` has a name that is not a joint of the model,
+            or axes that it does not have; ``targets`` is not a mapping; a frame is unknown or ambiguous; a target is
+            neither a pose nor a finite position.
+        LockedOpen: Held joints keep a closure open, whatever the others do.
+        CannotLock: ``hold`` has the joint of a floating root; give its link a target, the pose where it is.
     """
+    if hold != () or hold_at is not None:
+        options = {"limits": limits, "tolerance": tolerance, "restarts": restarts}
+        return _with_joints_held(holding(robot, start(robot, q0), hold, hold_at), targets, options)
     if not isinstance(targets, Mapping):
         raise ValueError(f"targets must map names of frames to poses or positions, not {type(targets).__name__}")
     checked = {name: checked_target(f"targets['{name}']", target) for name, target in targets.items()}
@@ -190,6 +202,20 @@ def inverse_kinematics(
         reason=found.reason[0],
         at_limits=at_limits,
     )
+
+
+def _with_joints_held(held: Holding, targets: Mapping[str, Any], options: Mapping[str, Any]) -> InverseKinematics:
+    """The result for the robot in which the held joints are fixed, as one for the robot."""
+    robot, leaders = held.robot, held.robot.mechanism.leaders
+    names = (leaders[name].joint if name in leaders else name for name in held.joints)
+    locked = lock(Robot(robot.mechanism, robot.model), names, held.q)
+    # The model may have been changed.
+    locked.model.lowerPositionLimit = robot.model.lowerPositionLimit[locked.idx_q]
+    locked.model.upperPositionLimit = robot.model.upperPositionLimit[locked.idx_q]
+    found = inverse_kinematics(locked, targets, held.q[locked.idx_q], **options)
+    q = np.array(held.q)
+    q[locked.idx_q] = found.q
+    return replace(found, q=q, open=all_openings(robot, q))
 
 
 def checked_target(argument: str, target: Any) -> Any:

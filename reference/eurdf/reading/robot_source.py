@@ -5,20 +5,23 @@ Only a caller can give a text or a stream: a path that a file names is that of a
 
 from __future__ import annotations
 
+import json
 import os
+import re
 import select
 import stat
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from eurdf.diagnostics import FileError, Place
 from eurdf.reading.source import BOM, FILE_LIMIT, Source, decoded, too_large, unreadable
 from eurdf.regular_file import open_now
 
-#: What is given: a path, ``-`` for standard input, or the text itself.
-RobotSource = str | bytes | os.PathLike[str]
+#: What is given: a path, ``-`` for standard input, the text itself, or what a description contains.
+RobotSource = str | bytes | os.PathLike[str] | Mapping[str, Any]
 
 #: The path that means standard input.
 STDIN = "-"
@@ -28,28 +31,37 @@ PATIENCE = 2.0
 
 _CHUNK = 1 << 16
 _SPACE = " \t\r\n"
+# How a text of one line begins: a URDF, or a mapping of YAML with its first key, quoted or not.
+_ONE_LINE = re.compile(r"""<|\{|---\s|(["']?)[\w.-]+\1:(\s|$)""")
+# What JSON states otherwise than YAML: characters in quotes that YAML would change or refuse, infinite numbers.
+_NOT_PLAIN = re.compile(r"[^\x20-\x7e\n]")
+_NUMBERS = {"NaN": ".nan", "Infinity": ".inf", "-Infinity": "-.inf"}
+_NUMBER_OR_TEXT = re.compile(r'"(?:[^"\\]|\\.)*"|-?Infinity|NaN')
 
 
 def is_stream(given: RobotSource) -> bool:
     """Whether it can be read only once: standard input, or a pipe."""
-    if isinstance(given, bytes):
+    if isinstance(given, bytes | Mapping):
         return False
     return given == STDIN or _is_pipe(given)
 
 
 def is_text(given: RobotSource) -> bool:
-    """Whether it is a text and no path: bytes, or a string that begins with ``<`` or has several lines."""
-    if isinstance(given, bytes):
+    """Whether it is content and no path: bytes, a mapping, or a string that begins as a URDF or a mapping of YAML does.
+
+    A string of several lines is one, too.
+    """
+    if isinstance(given, bytes | Mapping):
         return True
     if not isinstance(given, str):
         return False
     text = given.strip("\ufeff" + _SPACE)
-    return ("\n" in text or text.startswith("<")) and not os.path.lexists(given)
+    return ("\n" in text or _ONE_LINE.match(text) is not None) and not os.path.lexists(given)
 
 
 def display_name(given: RobotSource) -> str:
     """What a report calls it: a path as it is."""
-    if is_text(given):
+    if isinstance(given, Mapping) or is_text(given):
         return "<text>"
     return "<stdin>" if given == STDIN else os.fsdecode(given)
 
@@ -57,8 +69,11 @@ def display_name(given: RobotSource) -> str:
 def source_of(given: RobotSource, limit: int = FILE_LIMIT) -> Source | None:
     """The source of a text, or of what a stream holds; None for the path of anything else.
 
-    Relative paths in it start from the working directory. The errors are those of `read_source`.
+    Relative paths in it start from the working directory. The errors are those of `read_source`; `ValueError` if a
+    mapping contains what no file can.
     """
+    if isinstance(given, Mapping):
+        given = _text_of(given).encode()
     if is_text(given):
         data = given if isinstance(given, bytes) else str(given).encode("utf-8", "surrogatepass")
         return _checked(data, "<urdf>" if _is_xml(data) else "<description>", limit)
@@ -73,6 +88,30 @@ def source_of(given: RobotSource, limit: int = FILE_LIMIT) -> Source | None:
 def is_xml(source: Source) -> bool:
     """Whether a text is XML, so a URDF, rather than YAML."""
     return _is_xml(source.data)
+
+
+def _text_of(description: Mapping[str, Any]) -> str:
+    """A description as JSON, which is YAML, a line for each value."""
+    try:
+        text = json.dumps(_plain(description, "the description"), indent=1, ensure_ascii=False)
+    except RecursionError:
+        raise ValueError("the description contains itself, or is nested too deeply") from None
+    text = _NUMBER_OR_TEXT.sub(lambda found: _NUMBERS.get(found[0], found[0]), text)
+    return _NOT_PLAIN.sub(lambda found: f"\\U{ord(found[0]):08x}", text)
+
+
+def _plain(value: Any, where: str) -> Any:
+    """A value of a description as lists, dictionaries, texts and numbers, which are those of Python, not of NumPy."""
+    value = value.tolist() if hasattr(value, "tolist") else value
+    if isinstance(value, Mapping):
+        if other := next((key for key in value if not isinstance(key, str)), None):
+            raise ValueError(f"{where} has the key {other!r}; keys must be texts")
+        return {key: _plain(each, f"{where}['{key}']") for key, each in value.items()}
+    if value is None or isinstance(value, str | bool | int | float):
+        return value
+    if isinstance(value, Sequence) and not isinstance(value, bytes):
+        return [_plain(each, f"{where}[{index}]") for index, each in enumerate(value)]
+    raise ValueError(f"{where} is {value!r}; a description has texts, numbers, true, false, null, lists and mappings")
 
 
 def _is_xml(data: bytes) -> bool:

@@ -17,6 +17,7 @@ from eurdf.diagnostics.extras import install_command
 from eurdf.errors import MissingExtra
 from eurdf.kinematics.residual import openings_once
 from eurdf.pinocchio.robot import Robot
+from eurdf.viewing.opened import opened
 from eurdf.viewing.scene import Scene
 from eurdf.viewing.session import ASSEMBLED
 from eurdf.viewing.surface import Surface
@@ -41,6 +42,7 @@ _GAMMA = 2.2  # of colours; near enough to that of sRGB
 _SKELETON: Color = (0.5, 0.5, 0.5)
 _CLOSURE: Color = (0.55, 0.2, 0.8)
 _OPEN: Color = (0.9, 0.1, 0.1)
+_GAP = 0.08  # between the frames of a closure that is shown open, as a part of the size of the robot
 
 
 #: A view without perspective: from the robot to the camera, in the world; any length.
@@ -75,7 +77,14 @@ class Drawn:
     points: Points
 
 
-def picture(robot: Robot, views: Sequence[View] = VIEWS, *, q: Vector | None = None, loops: bool = False) -> Image:
+def picture(
+    robot: Robot,
+    views: Sequence[View] = VIEWS,
+    *,
+    q: Vector | None = None,
+    loops: bool = False,
+    apart: bool = False,
+) -> Image:
     """Views of a robot side by side, all at one scale, on a transparent background.
 
     It shows the visual shapes, or lines from link to link if there are none.
@@ -86,6 +95,8 @@ def picture(robot: Robot, views: Sequence[View] = VIEWS, *, q: Vector | None = N
         q: Its configuration (nq,); by default ``assembled``, or the neutral one.
         loops: Whether to show the closures: dots at their frames, lines to them from the origins of their links, and,
             if a closure is open, a red line between its frames. The shapes are then translucent.
+        apart: Whether to show the closures open, where the loops of the robot are cut: the frames of each are apart,
+            and a line leads from one to the other.
 
     Returns:
         Pixels (height, width, 4): red, green, blue, alpha.
@@ -93,10 +104,10 @@ def picture(robot: Robot, views: Sequence[View] = VIEWS, *, q: Vector | None = N
     Raises:
         MissingExtra: The extra ``pictures`` is not installed.
         InvalidRobot: A mesh is missing.
-        ValueError: There is nothing to draw.
+        ValueError: There is nothing to draw, or no closure to show open.
     """
     _renderer()
-    shown = drawn(robot, q, loops)
+    shown = drawn(robot, q, loops or apart, apart)
     boxes = []
     for view in views:
         points = shown.points @ axes_of(view).T
@@ -180,13 +191,17 @@ def _nearest(colors: Image, palette: npt.NDArray[np.float64]) -> npt.NDArray[np.
     return nearest
 
 
-def drawn(robot: Robot, q: Vector | None, loops: bool) -> Drawn:
+def drawn(robot: Robot, q: Vector | None, loops: bool, apart: bool = False) -> Drawn:
     """What is shown of a robot; see `picture`, also for the errors."""
     visual_model = robot.visual_model  # raises if a mesh is missing
     if q is None:
         q = robot.configurations.get(ASSEMBLED)
     q = pin.neutral(robot.model) if q is None else q
     scene = Scene(robot, q)
+    if apart:
+        if not scene.links:
+            raise ValueError("it has no closure to show open")
+        q = opened(robot, q, _GAP * scene.size)
     placed = scene.at(q)
     solids: list[tuple[Surface, Color]] = []
     lines: list[tuple[Points, Color]] = []
@@ -205,7 +220,7 @@ def drawn(robot: Robot, q: Vector | None, loops: bool) -> Drawn:
         of = {opening.name: opening.is_open for opening in openings_once(robot, q)}
         is_open = np.array([of[link.name] for link in scene.links], dtype=bool)
         lines.append((closures[~is_open, 1], _CLOSURE))  # of a distance; those of other closures have no length
-        lines.append((closures[is_open, 1], _OPEN))
+        lines.append((closures[is_open, 1], _CLOSURE if apart else _OPEN))
     points = [*(surface.vertices for surface, _ in solids), *(each.reshape(-1, 3) for each, _ in lines)]
     together = np.concatenate(points)
     if not (len(together) and np.ptp(together, axis=0).any()):

@@ -26,12 +26,13 @@ from eurdf.writing.naming_conventions import (
     GeneratedVersion,
     NamedClosure,
     find,
+    hints,
     mimic_pairs,
     with_type,
 )
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Generation:
     """A description that was generated.
 
@@ -43,6 +44,7 @@ class Generation:
         mechanism: That the text describes; None where the names say what cannot be.
         diagnostics: Found in the text.
         notes: Why closures have the types that they have, where their names do not say it; one sentence each.
+        hints: How to get closures, or motors, where the names say none; one sentence each.
     """
 
     text: str
@@ -52,6 +54,11 @@ class Generation:
     mechanism: Mechanism | None
     diagnostics: Diagnostics
     notes: tuple[str, ...] = ()
+    hints: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        found = self.found
+        return f"<Generation: version {self.version}, {len(found.closures)} closures, {len(found.motors)} motors>"
 
 
 def generate(
@@ -95,7 +102,8 @@ def generate(
         head, *rest = _version1(said) if chosen == "1" else _version2(said, merges, root, urdf_path, number)
         text = text_of([head._replace(above=() if reference is None else (modeline(reference),)), *rest])
         mechanism, diagnostics = reread(text, urdf, "the description")
-        return Generation(text, chosen, said, merges, mechanism, diagnostics, _mate_notes(mates, chosen))
+        notes, advice = _mate_notes(mates, chosen), hints(urdf, said, conventions)
+        return Generation(text, chosen, said, merges, mechanism, diagnostics, notes, advice)
 
     generation = written(found)
     undecided = [index for index, closure in enumerate(generation.found.closures) if closure.type is None]
@@ -136,7 +144,7 @@ def _merges(urdf: Urdf, found: Found, version: GeneratedVersion) -> dict[str, tu
     """EU-ONE-007, but for motors, which version 1 would merge as well."""
     joints = {joint.name: joint_of(joint) for joint in urdf.joints.values()}
     links = {_link(urdf, frame) for closure in found.closures for frame in closure.frames}
-    excluded = {*found.sphericals, *mimic_pairs(urdf), *(() if version == "1" else found.motors)}
+    excluded = {*found.sphericals, *found.universals, *mimic_pairs(urdf), *(() if version == "1" else found.motors)}
     chains = [tuple(joint.name for joint in chain.joints) for chain in find_chains(urdf, joints, excluded, links)]
     # A key that begins with x- would be user data.
     return {third: (first, second, third) for first, second, third in chains if version == "1" or not is_own_key(third)}
@@ -192,6 +200,7 @@ def _version2(
 ) -> Iterator[YamlEntry]:
     """The entries of a description in version 2.0, which has no hinges, or 2.1."""
     joints: dict[str, Value] = dict.fromkeys(found.sphericals, "spherical")
+    joints |= {name: {"type": "universal", "axes": axes} for name, axes in found.universals.items()}
     joints |= {name: {"type": "spherical", "merges": three} for name, three in merges.items()}
     content: dict[str, Value] = {
         "extended_urdf": version,
@@ -213,8 +222,11 @@ def _version1(found: Found) -> Iterator[YamlEntry]:
         "closed_loop": [closure.frames for closure in found.closures],
         "type": [closure.type or "6d" for closure in found.closures],
         "name_mot": found.motors,
-        "joint_name": found.sphericals,
-        "joint_type": ["SPHERICAL"] * len(found.sphericals),
+        "joint_name": [*found.sphericals, *found.universals],
+        "joint_type": [
+            *["SPHERICAL"] * len(found.sphericals),
+            *(f"UJOINT_{axes.upper()}" for axes in found.universals.values()),
+        ],
     }
     # Without any key of the format, it would still be a description of version 1: of nothing.
     return (YamlEntry(lines_of(key, value)) for key, value in values.items() if value or key in ("closed_loop", "type"))

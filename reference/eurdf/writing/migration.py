@@ -17,13 +17,16 @@ from eurdf.reading.yaml_node import json_pointer
 from eurdf.writing.migrated_text import MigratedText, NotMigratable, own_keys
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Migration:
     """A description in version 2: its text, what was done, one sentence each, and the mechanism that it describes."""
 
     text: str
     notes: tuple[str, ...]
     mechanism: Mechanism
+
+    def __repr__(self) -> str:
+        return f"<Migration to version {self.mechanism.version}: {self.mechanism!r}; {len(self.notes)} notes>"
 
 
 def migrate(read: ReadRobot, urdf_path: str = "robot.urdf", schema: str | None = None) -> Migration:

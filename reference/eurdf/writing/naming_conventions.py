@@ -1,10 +1,10 @@
-"""Closures, motors and spherical joints from the names in a URDF, and the text of a description with them."""
+"""Closures, motors, spherical and universal joints from the names in a URDF."""
 
 from __future__ import annotations
 
 import re
 import shlex
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal, cast
 
@@ -57,9 +57,12 @@ MOTOR_LAST = r"(?i)^(?!(?:free|passive|frame|fixed)[_.-]).*(?<![^\W_])mot(?:or)?
 #: Names that have the word in them.
 SPHERICAL = r"(?i)spherical|to_rotule"
 
+# As onshape-to-robot names the three revolutes of a ball mate: the names of the two parts, and a number.
+_OF_BALL = re.compile(r"(?s)(.*_rev)[012]")
+
 
 class BadPattern(ValueError):  # noqa: N818 - shown to the user as it is
-    """A pattern that is no regular expression, or lacks a group; its text says which."""
+    """A pattern that is no regular expression, or lacks a group or axes; its text says which."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,20 +77,26 @@ class Conventions:
             axis of the loop's hinge.
         motors: Matches a part of the name of an actuated joint.
         sphericals: Matches a part of the name of a joint that is spherical, not revolute.
+        universals: Matches a part of the name of a joint that is universal; and its axes, such as ``xy``.
     """
 
     closures: tuple[re.Pattern[str], ...]
     motors: tuple[re.Pattern[str], ...]
     sphericals: tuple[re.Pattern[str], ...]
+    universals: tuple[tuple[re.Pattern[str], str], ...] = ()
 
 
 def conventions(
-    closures: Sequence[str] = (), motors: Sequence[str] = (), sphericals: Sequence[str] = ()
+    closures: Sequence[str] = (),
+    motors: Sequence[str] = (),
+    sphericals: Sequence[str] = (),
+    universals: Sequence[str] = (),
 ) -> Conventions:
-    """The user's conventions; of a kind that has none, the published ones.
+    """The user's conventions; of a kind that has none, the published ones, which say nothing of universal joints.
 
     Raises:
-        BadPattern: Not a regular expression, or one of a closure without the group ``side``.
+        BadPattern: Not a regular expression, one of a closure without the group ``side``, or one of a universal joint
+            without its axes, as in ``xy=PATTERN``.
     """
     closing = tuple(map(_compiled, closures or (PUBLISHED_CLOSURE, TYPE_LAST_CLOSURE, MATE_CLOSURE)))
     for pattern in closing:
@@ -96,8 +105,20 @@ def conventions(
                 f"the closure pattern '{pattern.pattern}' has no group 'side', which distinguishes its two frames: "
                 r"for instance '(?P<loop>loop\d+)_(?P<side>A|B)'"
             )
+    turning = []
+    for given in universals:
+        axes, _, names = given.partition("=")
+        if not re.fullmatch("[xyz]{2}", axes) or axes[0] == axes[1]:
+            raise BadPattern(
+                f"'{given}' states no axes of universal joints; write the letters of the two axes in the joint's frame "
+                f"before the pattern: 'xy={given}'"
+            )
+        turning.append((_compiled(names), axes))
     return Conventions(
-        closing, tuple(map(_compiled, motors or (MOTOR, MOTOR_LAST))), tuple(map(_compiled, sphericals or (SPHERICAL,)))
+        closing,
+        tuple(map(_compiled, motors or (MOTOR, MOTOR_LAST))),
+        tuple(map(_compiled, sphericals or (SPHERICAL,))),
+        tuple(turning),
     )
 
 
@@ -144,12 +165,14 @@ class Found:
         motors: Actuated joints, in the order of the tree.
         sphericals: Spherical joints, in the order of the tree.
         warnings: Names that could not be used, one sentence each.
+        universals: The axes of each universal joint, such as ``xy``.
     """
 
     closures: tuple[NamedClosure, ...]
     motors: tuple[str, ...]
     sphericals: tuple[str, ...]
     warnings: tuple[str, ...]
+    universals: Mapping[str, str] = field(default_factory=dict)
 
 
 def find(urdf: Urdf, convention: Conventions) -> Found:
@@ -157,8 +180,11 @@ def find(urdf: Urdf, convention: Conventions) -> Found:
     warnings: list[str] = []
     closures = tuple(_closures(urdf, convention.closures, warnings))
     motors = tuple(_motors(urdf, convention.motors, warnings))
-    sphericals = tuple(_sphericals(urdf, convention.sphericals, warnings))
-    return Found(closures, motors, sphericals, tuple(warnings))
+    universals: dict[str, str] = {}
+    for pattern, axes in convention.universals:
+        universals |= dict.fromkeys(_replaced(urdf, (pattern,), "universal", warnings, universals), axes)
+    sphericals = tuple(_replaced(urdf, convention.sphericals, "spherical", warnings, universals))
+    return Found(closures, motors, sphericals, tuple(warnings), universals)
 
 
 def with_type(found: Found, closure_type: ClosureType) -> Found:
@@ -283,6 +309,8 @@ def _natural(name: str) -> list[tuple[int, str]]:
 
 def _motors(urdf: Urdf, patterns: Sequence[re.Pattern[str]], warnings: list[str]) -> list[str]:
     named = [joint for joint in urdf.walk() if any(pattern.search(joint.name) for pattern in patterns)]
+    if tuple(patterns) == conventions().motors:  # names of parts, which may be motors, are no names of joints
+        named = [joint for joint in named if not _is_of_ball(joint.name, urdf)]
     motors = []
     for joint in named:
         if joint.type.is_fixed:
@@ -294,18 +322,26 @@ def _motors(urdf: Urdf, patterns: Sequence[re.Pattern[str]], warnings: list[str]
     return motors
 
 
+def _is_of_ball(name: str, urdf: Urdf) -> bool:
+    match = _OF_BALL.fullmatch(name)
+    return match is not None and all(f"{match[1]}{number}" in urdf.joints for number in range(3))
+
+
 def mimic_pairs(urdf: Urdf) -> set[str]:
     """Names of the joints that mimic others, and of those that they mimic."""
     return {name for joint in urdf.joints.values() if joint.mimic for name in (joint.name, joint.mimic.joint)}
 
 
-def _sphericals(urdf: Urdf, patterns: Sequence[re.Pattern[str]], warnings: list[str]) -> Iterable[str]:
+def _replaced(
+    urdf: Urdf, patterns: Sequence[re.Pattern[str]], kind: str, warnings: list[str], others: Container[str]
+) -> Iterable[str]:
+    """Names of joints that become of another kind, without others that are given."""
     coupled = mimic_pairs(urdf)
     for joint in urdf.walk():
-        if not any(pattern.search(joint.name) for pattern in patterns):
+        if joint.name in others or not any(pattern.search(joint.name) for pattern in patterns):
             continue
         if joint.type not in ROTARY:
-            why = f"is {joint.type}, and only a revolute joint becomes spherical"
+            why = f"is {joint.type}, and only a revolute joint becomes {kind}"
         elif joint.name in coupled:
             why = "mimics or is mimicked"
         elif is_own_key(joint.name):
@@ -313,7 +349,7 @@ def _sphericals(urdf: Urdf, patterns: Sequence[re.Pattern[str]], warnings: list[
         else:
             yield joint.name
             continue
-        warnings.append(f"joint '{joint.name}' is named as spherical, but {why}: left out")
+        warnings.append(f"joint '{joint.name}' is named as {kind}, but {why}: left out")
 
 
 # -- hints --------------------------------------------------------------------------------------------------------

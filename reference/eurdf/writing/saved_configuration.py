@@ -45,7 +45,7 @@ class ConfigurationExists(CannotSave):
 def file_to_save_to(path: RobotSource, read: ReadRobot) -> str:
     """The file of a description that configurations can be saved to; `CannotSave` if there is none."""
     source = read.description.document.source
-    if not source.is_file:
+    if not source.is_file or isinstance(path, Mapping):
         raise CannotSave(f"saving needs a file, but the description came from {source.file}")
     if read.description.version == "1":
         raise CannotSave(
