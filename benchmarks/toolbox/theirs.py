@@ -17,6 +17,7 @@ import importlib
 import io
 import json
 import os
+import resource
 import sys
 import warnings
 from types import ModuleType, SimpleNamespace
@@ -36,6 +37,9 @@ MODULES = (
 
 #: Imported by these, but not used by what is called.
 UNUSED = ("meshcat",)
+
+#: Bound of its memory, bytes: what reads beyond an array may reserve any amount.
+_MEMORY = 8 << 30
 
 
 def with_calc(names: dict[str, Any]) -> str:
@@ -146,6 +150,7 @@ def _no_key(*_: object) -> str:
 def main() -> None:
     """Answer the request."""
     request = json.load(sys.stdin)
+    resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, _MEMORY))
     sys.path += [os.path.dirname(os.path.abspath(__file__)), *request["folders"]]
     warnings.simplefilter("ignore")
     builtins.input = _no_key
