@@ -3,7 +3,8 @@
 Motors are within 0.05 rad or 1 mm of the assembled configuration; tolerances are the default ones of both. A batch
 of 100,000 elements runs once; it is left out if that would take more than a minute. Smaller batches, and 40 calls for
 one element, run twice, and the shorter time counts. Residual and K are those of 10,000 elements, inverse kinematics
-those of 1,000 places of a link, and of 10 calls.
+those of 1,000 places of a link, and of 10 calls. An earlier version is another process, with the same motor positions;
+the goal is that of the median.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import numpy as np
 import pinocchio as pin
 
 import eurdf
+from benchmarks.earlier import earlier_forward_kinematics
 from benchmarks.robots import ROBOTS, chains, robot_called
 from benchmarks.table import Goal, Table, duration, ratio
 
@@ -24,7 +26,7 @@ ELEMENTS = 10_000
 SINGLES = 40
 TURNS = 2
 
-_SMALL = Goal(1.5)
+_SMALL, _SMALLER = Goal(1.5), Goal(0.67)
 _MOST_SECONDS = 60.0  # that a batch may take
 
 
@@ -53,8 +55,10 @@ def tables() -> Iterator[Table]:
     """Of forward kinematics by sizes, and of the other functions."""
     sizes = tuple(f"{size:,}" for size in SIZES)
     columns = ("robot", "nv", *sizes, _SMALL.of("4,096 to 100,000"), "one call", "one call to 10,000")
-    rows = [_forward_row(name, SIZES) for name in ROBOTS]
-    yield Table(columns, rows, "Forward kinematics, per element")
+    yield Table(columns, [_forward_row(name, SIZES) for name in ROBOTS], "Forward kinematics, per element")
+    if rows := [row for name in ROBOTS for row in _earlier_rows(name)]:
+        columns = ("robot", "10,000", "earlier version", "its commit", _SMALLER.of("ratio"))
+        yield Table(columns, rows, "The same against an earlier version")
     rows = [_forward_row(name, SIZES[:1]) for name in chains()[:1]]
     yield Table(("chain of four-bars", "nv", sizes[0], "one call", "one call to it"), rows, "The same, of chains")
     columns = ("robot", "function", "per element", "one call", "one call to element")
@@ -85,6 +89,17 @@ def _forward_row(name: str, sizes: tuple[int, ...]) -> tuple[str, ...]:
         duration(one),
         ratio(one, each[max(size for size in each if size <= ELEMENTS)]),
     )
+
+
+def _earlier_rows(name: str) -> Iterator[tuple[str, ...]]:
+    robot = robot_called(name)
+    q0 = eurdf.assemble(robot).q
+    values = configurations(robot, q0, ELEMENTS)[:, robot.actuation.idx_q]
+    earlier = earlier_forward_kinematics(name, values, q0)
+    if earlier is not None:
+        commit, peer = earlier
+        now = least(partial(eurdf.batch.forward_kinematics, robot, values, q0))
+        yield name, duration(now / ELEMENTS), duration(peer / ELEMENTS), commit, _SMALLER.cell(now, peer)
 
 
 def _rows(name: str) -> Iterator[tuple[str, ...]]:

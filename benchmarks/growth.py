@@ -3,16 +3,18 @@
 Links are in chains of ten; Pinocchio's own parser, which recurses, crashes on one chain of 10,000. Loops are those of
 independent four-bars, side by side on the ground or each on the rocker of the one before: 100 to 1,000 for what is done
 once, 10 to 300 for what is done at each configuration. The exponent p of time ~ loops^p is fitted: 1 is linear; the
-steepest one is that of two neighbouring sizes. The models of Pinocchio are quadratic by themselves, and measured apart;
-so are its dynamics of chains in series.
+steepest one is that of two neighbouring sizes. The models of Pinocchio are quadratic by themselves, and measured apart.
+Its dynamics of chains in series are quadratic to cubic, and left out. Times are the least of the wall clock.
 """
 
 from __future__ import annotations
 
 import itertools
+import math
 import tempfile
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +23,7 @@ import pinocchio as pin
 import eurdf
 from benchmarks.loops import four_bars
 from benchmarks.robots import chain
+from benchmarks.table import MET, MISSED, Table, duration, ratio
 from eurdf.kinematics.evaluate import frames
 from eurdf.linking.robot_files import read_robot
 from eurdf.mechanism.constraint import Closure
@@ -34,6 +37,10 @@ from eurdf.pinocchio.tree import build_tree
 SIZES = (10, 100, 1000, 4000)
 LOOPS = (100, 200, 500, 1000)
 MOVING_LOOPS = (10, 30, 100, 300)
+
+MOST = 1.2  # the exponent that is the goal of what is done at each configuration
+
+_LAYOUT = {False: "side by side", True: "in series"}
 
 
 def forest(links: int, length: int = 10) -> str:
@@ -94,57 +101,52 @@ def exponent(sizes: Sequence[float], times: Sequence[float]) -> float:
     return float(np.polyfit(np.log(sizes), np.log(times), 1)[0])
 
 
-def by_links() -> None:
-    """Print a table, in µs a link."""
-    print(f"{'links':>7} {'reading and checks':>20} {'eurdf.load':>12} {'pin':>10} {'load/pin':>9}   (µs a link)")
+def by_links() -> Table:
+    """Reading and loading of links, in µs a link."""
+    rows = []
     with tempfile.TemporaryDirectory() as folder:
         for links in SIZES:
             urdf = Path(folder) / f"{links}.urdf"
             urdf.write_text(forest(links), encoding="utf-8")
-            (Path(folder) / f"{links}.yaml").write_text(
-                f'extended_urdf: "2.0"\nurdf: {links}.urdf\nactuators: [j000001]\n', encoding="utf-8"
-            )
             path = Path(folder) / f"{links}.yaml"
+            path.write_text(f'extended_urdf: "2.0"\nurdf: {links}.urdf\nactuators: [j000001]\n', encoding="utf-8")
             read, load, peer = (
-                best(function) / links * 1e6
+                best(function) / links
                 for function in (
-                    lambda p=path: read_robot(p),
-                    lambda p=path: eurdf.load(p, geometry=False),
-                    lambda u=str(urdf): pin.buildModelFromUrdf(u),
+                    partial(read_robot, path),
+                    partial(eurdf.load, path, geometry=False),
+                    partial(pin.buildModelFromUrdf, str(urdf)),
                 )
             )
-            print(f"{links:7} {read:20.1f} {load:12.1f} {peer:10.1f} {load / peer:8.2f}x")
+            rows.append((f"{links:,}", *map(duration, (read, load, peer)), ratio(load, peer)))
+    columns = ("links", "reading and checks", "`eurdf.load`", "`pin.buildModelFromUrdf`", "load to pin")
+    return Table(columns, rows, "Chains of ten links, per link")
 
 
-def by_loops() -> None:
-    """Print tables, in ms a loop, and the exponents."""
-    names = ("read", "pin models", "load", "assemble", "analyze", "check")
-    for in_series in (False, True):
-        print(f"\nfour-bars {'in series' if in_series else 'side by side'}, ms a loop")
-        print(f"{'loops':>8} " + " ".join(f"{name:>11}" for name in names))
-        rows = []
-        for count in LOOPS:
-            with tempfile.TemporaryDirectory() as folder:
-                mechanism = four_bars(count, in_series).mechanism
-                path = write_loops(mechanism, Path(folder))
-                robot = eurdf.load(path, geometry=False)
+def by_loops(in_series: bool) -> Table:
+    """What is done once for a robot, by numbers of loops."""
+    times: dict[str, list[float]] = {}
+    for count in LOOPS:
+        with tempfile.TemporaryDirectory() as folder:
+            mechanism = four_bars(count, in_series).mechanism
+            path = write_loops(mechanism, Path(folder))
+            robot = eurdf.load(path, geometry=False)
 
-                def models(mechanism: Mechanism = mechanism) -> None:
-                    tree = build_tree(mechanism, build_model(mechanism), slots(mechanism))
-                    build_constraint_models(mechanism.constraints, tree)
+            def models(mechanism: Mechanism = mechanism) -> None:
+                tree = build_tree(mechanism, build_model(mechanism), slots(mechanism))
+                build_constraint_models(mechanism.constraints, tree)
 
-                tasks: tuple[Callable[[], object], ...] = (
-                    lambda p=path: read_robot(p),  # type: ignore[misc]
-                    models,
-                    lambda p=path: eurdf.load(p, geometry=False),  # type: ignore[misc]
-                    lambda r=robot: eurdf.assemble(r),  # type: ignore[misc]
-                    lambda r=robot: eurdf.analyze(r),  # type: ignore[misc]
-                    lambda p=path: eurdf.check(p),  # type: ignore[misc]
-                )
-                rows.append([best(task, 0.0) for task in tasks])
-            print(f"{count:8} " + " ".join(f"{seconds / count * 1e3:11.3f}" for seconds in rows[-1]))
-        fitted = (exponent(LOOPS, times) for times in zip(*rows, strict=True))
-        print(f"{'exponent':>8} " + " ".join(f"{p:11.2f}" for p in fitted))
+            tasks: dict[str, Callable[[], object]] = {
+                "reading": partial(read_robot, path),
+                "models of Pinocchio": models,
+                "load": partial(eurdf.load, path, geometry=False),
+                "assemble": partial(eurdf.assemble, robot),
+                "analyze": partial(eurdf.analyze, robot),
+                "check": partial(eurdf.check, path),
+            }
+            for name, task in tasks.items():
+                times.setdefault(name, []).append(best(task, 0.0))
+    return _growing(LOOPS, times, in_series, "done once")
 
 
 def motions(robot: eurdf.Robot, dynamics: bool) -> dict[str, Callable[[], object]]:
@@ -174,26 +176,34 @@ def motions(robot: eurdf.Robot, dynamics: bool) -> dict[str, Callable[[], object
     return found
 
 
-def by_motion() -> None:
-    """Print tables, in ms, and the exponents."""
-    for in_series in (False, True):
-        times: dict[str, list[float]] = {}
-        for count in MOVING_LOOPS:
-            for name, function in motions(chain(count, in_series), not in_series).items():
-                times.setdefault(name, []).append(best(function, 0.3))
-        print(f"\nfour-bars {'in series' if in_series else 'side by side'}, ms")
-        print(
-            f"{'loops':>12} " + " ".join(f"{count:>9}" for count in MOVING_LOOPS) + f" {'exponent':>9} {'steepest':>9}"
-        )
-        for name, own in times.items():
-            pairs = zip(itertools.pairwise(MOVING_LOOPS), itertools.pairwise(own), strict=True)
-            steepest = max(exponent(*pair) for pair in pairs)
-            cells = " ".join(f"{seconds * 1e3:9.3f}" for seconds in own)
-            print(f"{name:>12} {cells} {exponent(MOVING_LOOPS, own):9.2f} {steepest:9.2f}")
+def by_motion(in_series: bool) -> Table:
+    """What is done at each configuration, by numbers of loops."""
+    times: dict[str, list[float]] = {}
+    for count in MOVING_LOOPS:
+        for name, function in motions(chain(count, in_series), not in_series).items():
+            times.setdefault(name, []).append(best(function, 0.3))
+    return _growing(MOVING_LOOPS, times, in_series, "at each configuration", MOST)
 
 
-def main() -> None:
-    """Print the tables."""
-    by_links()
-    by_loops()
-    by_motion()
+def _growing(
+    sizes: Sequence[int], times: dict[str, list[float]], in_series: bool, what: str, most: float = math.inf
+) -> Table:
+    """A row for each function: its times, the fitted exponent and the steepest one."""
+    goal = f", ≤ {most:g}" if math.isfinite(most) else ""
+    columns = (f"four-bars {_LAYOUT[in_series]}", *map(str, sizes), f"exponent{goal}", "steepest")
+    rows = []
+    for name, own in times.items():
+        pairs = zip(itertools.pairwise(sizes), itertools.pairwise(own), strict=True)
+        steepest = max(exponent(*pair) for pair in pairs)
+        fitted = exponent(sizes, own)
+        judged = f" {MET if fitted <= most else MISSED}" if goal else ""
+        rows.append((name, *map(duration, own), f"{fitted:.2f}{judged}", f"{steepest:.2f}"))
+    return Table(columns, rows, f"Four-bars {_LAYOUT[in_series]}, {what}")
+
+
+def tables() -> Iterator[Table]:
+    """By links, by loops that are read, and by loops that move."""
+    yield by_links()
+    for measure in (by_loops, by_motion):
+        for in_series in (False, True):
+            yield measure(in_series)

@@ -25,13 +25,13 @@ from eurdf.kinematics.forward import driving_many, given_many, goals, in_equilib
 from eurdf.kinematics.frame_jacobian import checked_reference
 from eurdf.kinematics.inverse import checked_targets
 from eurdf.kinematics.inverse_search import InverseKinematicsReason, InverseTask, Target, search
+from eurdf.kinematics.metric import metric
 from eurdf.kinematics.named import Named, NamedRows, configurations_of
 from eurdf.kinematics.position_limit import chosen_limits
 from eurdf.kinematics.problem import Problem, for_many
 from eurdf.kinematics.project import ProjectionTask, nearest_closed
 from eurdf.kinematics.residual import residual as residual_of_one
 from eurdf.kinematics.sensitivity import JacobianTask, actuated_jacobians
-from eurdf.kinematics.tangent_space import metric
 from eurdf.kinematics.tolerances import RESTARTS, SOLVED
 from eurdf.pinocchio.arguments import checked_count, checked_tolerance
 from eurdf.pinocchio.memory import working_memory

@@ -189,9 +189,7 @@ def inverse_dynamics(
         deviation, missing = _uncontrolled(motion, inertial, force)
         _refuse_uncontrolled(motion, a, deviation, missing, tolerance)
         required = force + inertial
-        controlled, _ = motion.by_motors
-        along = controlled.T @ motion.N.T
-        u = norm * (np.linalg.pinv(along @ S * norm) @ (along @ required))
+        u = motion.torques(required, norm)
         forces = per_constraint(robot, motion.P.T @ (required - S @ u))
     finite("the motor torques", u, *forces)
     return InverseDynamics(u, forces)
@@ -300,18 +298,18 @@ def _uncontrolled(motion: EquationOfMotion, inertial: Vector, force: Vector) -> 
         The deviation of a (nv,) along the uncontrolled motions, and the missing generalized force (nv,) along those of
         them that have no inertia.
     """
-    _, Z = motion.by_motors
+    Z = motion.uncontrolled
     if not Z.shape[1]:
         return np.zeros(len(force)), np.zeros(len(force))
-    free_inertia = motion.N.T @ motion.mass_along(motion.N)
-    inertia, axes = np.linalg.eigh(Z.T @ free_inertia @ Z)
-    massive = inertia > MASSLESS * np.diagonal(free_inertia).max()
-    U = motion.N @ Z @ axes
+    U = motion.unit[:, None] * Z
+    inertia, axes = np.linalg.eigh(U.T @ motion.mass_along(U))
+    massive = inertia > MASSLESS * np.einsum("ij,ij->j", motion.N, motion.mass_along(motion.N)).max()
+    U = U @ axes
     along = U.T @ (inertial + force)
     terms = np.abs(U.T) @ (np.abs(inertial) + np.abs(force))
     unborne = np.where(massive | (np.abs(along) <= FORCES_SOLVED * terms), 0.0, along)
     deviation = U[:, massive] @ (along[massive] / inertia[massive])
-    return deviation, motion.free @ (Z @ (axes @ unborne)) / motion.unit
+    return deviation, Z @ (axes @ unborne) / motion.unit
 
 
 def _refuse_uncontrolled(
@@ -322,7 +320,7 @@ def _refuse_uncontrolled(
         raise UnderactuatedMotion(by_joint(tree, missing), np.inf)
     if motion.differ(deviation, a, tolerance):
         # The least additional force that produces the motion.
-        along = motion.free @ motion.by_motors[1]
+        along = motion.uncontrolled
         force = along @ (along.T @ (motion.unit * motion.mass(deviation))) / motion.unit
         raise UnderactuatedMotion(by_joint(tree, force), float(np.abs(deviation / motion.unit).max()))
 

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from eurdf.array import Matrix, Vector
+from eurdf.array import Indices, Matrix, Vector
 from eurdf.errors import InconsistentMotion, UndeterminedMotion
 from eurdf.kinematics.finite import finite
 from eurdf.kinematics.loop import find_loops
-from eurdf.kinematics.rank import numerical_rank
+from eurdf.kinematics.rank import numerical_rank, times
 from eurdf.kinematics.residual import acceleration_drift, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.kinematics.tolerances import MASSLESS
@@ -28,6 +28,24 @@ class Acceleration(NamedTuple):
 
     a: Vector
     lambdas: Vector
+
+
+class _Driven(NamedTuple):
+    """Free motions of g groups that are alike, each of n velocities and f free motions.
+
+    Attributes:
+        velocities: (g, n).
+        motor: Motors (g, n) of the velocities; -1 for those without.
+        motions: Bases (g, n, f), orthonormal in the units of the velocities, by how much the motors move.
+        values: By how much (g, f): the singular values, 0 for a motion that no motor moves.
+        right: Orthonormal velocities (g, n, f) of the motors that move them so.
+    """
+
+    velocities: Indices
+    motor: Indices
+    motions: Matrix
+    values: Matrix
+    right: Matrix
 
 
 class EquationOfMotion:
@@ -55,27 +73,56 @@ class EquationOfMotion:
         finite("the equation of motion", self.r, self.drift, self.bias, self.P)
 
     @cached_property
-    def free(self) -> Matrix:
-        """Basis (nv, f) of the free motions, orthonormal in the units of the velocities."""
-        return np.asarray(self.N / self.unit[:, None])
-
-    @cached_property
     def N(self) -> Matrix:  # noqa: N802 - the field's own symbol
-        """The same in rad/s and m/s: K N = 0."""
+        """Basis (nv, f) of the free motions, K N = 0, in rad/s and m/s; orthonormal in the units of the velocities."""
         return self._space.free
 
     @cached_property
-    def by_motors(self) -> tuple[Matrix, Matrix]:
-        """Orthonormal bases, (f, k) and (f, f - k), of the controlled and of the uncontrolled free motions.
+    def _driven(self) -> list[_Driven]:
+        """The free motions by how the motors move them; the `numerical_rank` of all of them tells which are moved."""
+        motor = np.full(len(self.unit), -1)
+        motor[self.robot.actuation.idx_v] = range(len(self.robot.actuation.idx_v))
+        found = []
+        for velocities, (free,) in self._space.free_motions():
+            own = motor[velocities]
+            basis, values, right = np.linalg.svd((free * (own >= 0)[:, :, None]).swapaxes(1, 2), full_matrices=False)
+            found.append(_Driven(velocities, own, free @ basis, values, right.swapaxes(1, 2)))
+        every = np.concatenate([each.values.ravel() for each in found])
+        every[::-1].sort()
+        rank = numerical_rank(every)
+        if rank < len(every):
+            least = every[rank - 1] if rank else np.inf
+            for each in found:
+                each.values[each.values < least] = 0.0
+        return found
 
-        The rank k is the `numerical_rank`. With the second, Z, no motor moves along N Z.
-        """
-        S = self.robot.actuation.selection
-        if not S.shape[1]:
-            return np.zeros((self.N.shape[1], 0)), np.eye(self.N.shape[1])
-        basis, values, _ = np.linalg.svd(self.free.T @ S)
-        rank = numerical_rank(values)
-        return basis[:, :rank], basis[:, rank:]
+    @cached_property
+    def uncontrolled(self) -> Matrix:
+        """Basis (nv, k) of the free motions that no motor moves, orthonormal in the units of the velocities."""
+        columns = []
+        for velocities, _, motions, values, _ in self._driven:
+            for group, column in zip(*np.nonzero(values == 0.0), strict=True):
+                columns.append(np.zeros(len(self.unit)))
+                columns[-1][velocities[group]] = motions[group, :, column]
+        return np.array(columns).reshape(-1, len(self.unit)).T
+
+    def torques(self, required: Vector, norm: Vector) -> Vector:
+        """The u (nu,) with the required force (nv,) on the free motions that motors move, and the least |u / norm|."""
+        u, required = np.zeros(len(norm)), self.unit * required
+        are_independent = sum(np.count_nonzero(each.values) for each in self._driven) == len(norm)
+        for velocities, motor, motions, values, right in self._driven:
+            moved, is_motor = values[:, :, None] > 0.0, motor >= 0
+            along = times(motions.swapaxes(1, 2), required[velocities])[:, :, None]
+            if are_independent:  # no other u
+                own = 1.0 / self.unit[velocities]
+                found = right @ np.divide(along, values[:, :, None], out=np.zeros(along.shape), where=moved)
+            else:
+                own = np.zeros(motor.shape)
+                own[is_motor] = norm[motor[is_motor]]
+                effect = moved * (values[:, :, None] * right.swapaxes(1, 2)) * (own * self.unit[velocities])[:, None]
+                found = np.linalg.pinv(effect) @ (moved * along)
+            u[motor[is_motor]] = (own * found[:, :, 0])[is_motor]
+        return u
 
     def differ(self, change: Vector, given: Vector, tolerance: float) -> bool:
         """Whether a change of a velocity or acceleration (nv,) exceeds tolerance · (1 + its largest entry)."""

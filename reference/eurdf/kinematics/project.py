@@ -16,10 +16,11 @@ from eurdf.errors import NotClosable
 from eurdf.kinematics.assembly import assembled
 from eurdf.kinematics.closing import close, start
 from eurdf.kinematics.finite import finite, overflow_refused
+from eurdf.kinematics.metric import metric, weighted
 from eurdf.kinematics.named import Named, velocity_of
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.residual import acceleration_drift, residual_and_jacobian
-from eurdf.kinematics.tangent_space import SpacePart, TangentSpaces, metric, weighted
+from eurdf.kinematics.tangent_space import SpacePart, TangentSpaces
 from eurdf.kinematics.tolerances import RESTARTS, SOLVED
 from eurdf.pinocchio.arguments import checked_tolerance
 from eurdf.pinocchio.memory import working_memory

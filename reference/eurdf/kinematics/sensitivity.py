@@ -13,11 +13,12 @@ from eurdf.errors import DependentActuators
 from eurdf.kinematics.closing import start
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.frame_jacobian import checked_reference, frame_jacobian, frames_of, in_reference
+from eurdf.kinematics.metric import metric, orthonormal
 from eurdf.kinematics.named import Named
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import numerical_rank, numerical_ranks, product
 from eurdf.kinematics.residual import residual_and_jacobian
-from eurdf.kinematics.tangent_space import TangentSpaces, metric, orthonormal
+from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.pinocchio.memory import working_memory
 

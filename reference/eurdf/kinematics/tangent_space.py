@@ -1,8 +1,8 @@
-"""The tangent space of the closed configurations: the velocities that keep the loops closed, ker K; and its metrics."""
+"""The tangent space of the closed configurations: the velocities that keep the loops closed, ker K."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -12,11 +12,9 @@ import numpy as np
 from eurdf.array import Indices, Matrix, Vector
 from eurdf.kinematics.finite import finite
 from eurdf.kinematics.loop import LoopGroup, independent_groups
-from eurdf.kinematics.named import Named, velocity_of
 from eurdf.kinematics.rank import inverses, least_by_squares, least_by_values, norms, numerical_ranks, product
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
 from eurdf.kinematics.tolerances import CERTAIN, MANY_ALIKE, MOST_VELOCITIES_AT_ONCE
-from eurdf.pinocchio.arguments import checked_array
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -106,18 +104,41 @@ class TangentSpace:
         if together:
             Z, inverse = (np.reshape(each, (-1, 1, *each.shape[-2:])) for each in (self.basis, self.inverse))
             return [SpacePart(np.arange(len(scale))[None], np.arange(len(row_scale))[None], Z, inverse)]
+        found = []
+        for velocities, rows, free, inverse in self.alike():
+            unit = scale[velocities][:, :, None]
+            Z = free if (unit == 1.0).all() else np.linalg.qr(unit * free)[0]
+            found.append(SpacePart(velocities, rows, Z, unit * inverse * row_scale[rows][:, None]))
+        return found
+
+    def alike(self) -> Iterator[tuple[Indices, Indices, Matrix, Matrix]]:
+        """Groups of loops that are alike.
+
+        Returns:
+            Their velocities (g, n) and rows (g, m), their bases (b, g, n, f) of the free motions and their
+            pseudoinverses (b, g, n, m), dimensionless.
+        """
         alike: dict[tuple[int, int, int], list[_Block]] = {}
         for block in self._blocks:
             alike.setdefault((*block.free.shape[1:], len(block.group.rows)), []).append(block)
-        found = []
         for blocks in alike.values():
             velocities = np.array([block.group.velocities for block in blocks])
             rows = np.array([block.group.rows for block in blocks])
-            unit, free = scale[velocities][:, :, None], np.stack([block.free for block in blocks], axis=1)
-            Z = free if (unit == 1.0).all() else np.linalg.qr(unit * free)[0]
-            inverse = unit * np.stack([block.inverse for block in blocks], axis=1) * row_scale[rows][:, None]
-            found.append(SpacePart(velocities, rows, Z, inverse))
-        return found
+            free, inverse = ([getattr(block, each) for block in blocks] for each in ("free", "inverse"))
+            yield velocities, rows, np.stack(free, axis=1), np.stack(inverse, axis=1)
+
+    def free_motions(self) -> Iterator[tuple[Indices, Matrix]]:
+        """Velocities and bases as in `alike`, also those of the velocities outside; a small robot is one group."""
+        count = len(self._spaces.scale)
+        if count <= MOST_VELOCITIES_AT_ONCE:
+            free = self.free / self._spaces.scale[:, None]
+            yield np.arange(count)[None], free.reshape(len(self.which), 1, count, free.shape[-1])
+            return
+        for velocities, _, free, _ in self.alike():
+            yield velocities, free
+        outside = self._spaces.outside[:, None]
+        if len(outside):
+            yield outside, np.ones((len(self.which), len(outside), 1, 1))
 
     def nearest(self, W: Matrix, v: Vector) -> Vector:
         """The v' = Z y (nv,) nearest to v in the metric W: Z (Zᵀ W Z)⁻¹ Zᵀ W v."""
@@ -344,47 +365,3 @@ class LeastSolutions:
                 x = least_by_values(A, rows)
             v[block.velocities] = block.unit * x[:, :, 0]
         return v
-
-
-def metric(robot: Robot, weights: Named | Matrix | None) -> Matrix:
-    """The matrix W of the norm |v|² = vᵀ W v: (nv, nv), or its diagonal (nv,) if it is diagonal.
-
-    Args:
-        robot: The robot.
-        weights: W itself, such as the mass matrix; its diagonal (nv,), also by joint, where one that is not named has
-            the weight 1; or None for the identity, in which 1 rad/s and 1 m/s have the same norm.
-
-    Raises:
-        ValueError: The weights have a wrong shape, or W is not symmetric and positive definite.
-    """
-    nv = robot.tree.nv
-    if weights is None:
-        return np.ones(nv)
-    if isinstance(weights, Mapping):
-        weights = velocity_of(robot, weights, "weights", others=1.0)
-    W = checked_array("weights", weights, (nv,), (nv, nv))
-    if W.ndim == 2 and np.count_nonzero(W) <= nv and W.diagonal().all():
-        W = np.array(W.diagonal())
-    if W.ndim == 1:
-        if not (W > 0.0).all():
-            raise ValueError("weights are not positive definite")
-        return W
-    if np.abs(W - W.T).max(initial=0.0) > 1e-9 * np.abs(W).max(initial=0.0):
-        raise ValueError("weights are not a symmetric matrix")
-    try:
-        np.linalg.cholesky(W)
-    except np.linalg.LinAlgError:
-        raise ValueError("weights are not positive definite") from None
-    return W
-
-
-def weighted(W: Matrix, motions: Matrix) -> Matrix:
-    """W times the columns of motions (…, nv, m)."""
-    return W[:, None] * motions if W.ndim == 1 else W @ motions
-
-
-def orthonormal(basis: Matrix, W: Matrix) -> Matrix:
-    """Orthonormal bases in the metric, Zᵀ W Z = 1, of the spans of Z (…, nv, m)."""
-    across = basis.swapaxes(-1, -2)
-    lower = np.linalg.cholesky(across @ weighted(W, basis))
-    return np.asarray(np.linalg.solve(lower, across).swapaxes(-1, -2))
