@@ -73,8 +73,8 @@ class Case:
         arrays: By name: ``q`` (nq,) closed, ``near`` (nq,) open by some centimetres, ``v`` and ``a`` (nv,) any velocity
             and acceleration, ``vc`` and ``ac`` such that the loops stay closed, ``motors`` (nu,) positions near those
             of q in the order of q, ``moved`` (nq,) the configuration there, ``target`` (4, 4) the pose of the frame at
-            it, ``twist`` (6,) of the frame, ``S`` (nv, nu), ``more`` (nv, nu + 1) with the first joint that
-            has no motor as a motor, ``u0`` (nu + 1,) any torques.
+            it, ``twist`` (6,) of the frame, ``S`` (nv, nu), ``more`` (nv, nu + 1) with one motor more, ``u0`` (nu + 1,)
+            any torques.
     """
 
     name: str
@@ -87,6 +87,16 @@ class Case:
             return self.arrays[name]
         except KeyError:
             raise AttributeError(name) from None
+
+
+def more_motor(robot: eurdf.Robot) -> str:
+    """The first joint of one velocity without a motor."""
+    motors = robot.actuation.joints
+    return next(
+        name
+        for name, joint in zip(robot.model.names, robot.model.joints, strict=True)
+        if joint.nv == 1 and name not in motors
+    )
 
 
 def case(name: str, frame: str) -> Case:
@@ -106,8 +116,8 @@ def case(name: str, frame: str) -> Case:
     arrays = {"q": q, "near": near, "v": v, "a": a, "vc": vc, "ac": ac, "moved": moved}
     arrays |= {"motors": moved[np.sort(motors)], "target": data.oMf[model.getFrameId(frame)].homogeneous.copy()}
     arrays |= {"twist": np.array([0.1, 0.2, -0.1, 0.3, -0.2, 0.1]), "S": robot.actuation.selection}
-    first = np.setdiff1d(np.arange(model.nv), robot.actuation.idx_v)[:1]
-    arrays |= {"more": np.hstack([robot.actuation.selection, np.eye(model.nv)[:, first]])}
+    column = model.joints[model.getJointId(more_motor(robot))].idx_v
+    arrays |= {"more": np.hstack([robot.actuation.selection, np.eye(model.nv)[:, [column]]])}
     arrays |= {"u0": random.normal(size=len(motors) + 1)}
     return Case(name, frame, robot, arrays)
 
