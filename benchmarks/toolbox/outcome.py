@@ -91,12 +91,8 @@ class Case:
 
 def more_motor(robot: eurdf.Robot) -> str:
     """The first joint of one velocity without a motor."""
-    motors = robot.actuation.joints
-    return next(
-        name
-        for name, joint in zip(robot.model.names, robot.model.joints, strict=True)
-        if joint.nv == 1 and name not in motors
-    )
+    joints = zip(robot.model.names, robot.model.joints, strict=True)
+    return next(str(name) for name, joint in joints if joint.nv == 1 and name not in robot.actuation.joints)
 
 
 def case(name: str, frame: str) -> Case:

@@ -12,12 +12,13 @@ from pathlib import Path
 import pytest
 
 import eurdf
+from benchmarks.toolbox.calls import PYTHON, Version, folders, pythons
 from benchmarks.toolbox.checks import CHECKS, nothing
 from benchmarks.toolbox.outcome import Agrees, Fails, Found, Off, Outcome, judged, same
 from benchmarks.toolbox.page import PAGE, written
 from benchmarks.toolbox.robots import PUBLISHED
 from benchmarks.toolbox.rows import ROWS
-from benchmarks.toolbox.run import PYTHON, Version, folders, pythons, reruns
+from benchmarks.toolbox.run import reruns
 from eurdf_conformance.adapters.published_loader import FOLDERS
 from support.places import ROOT
 
@@ -88,6 +89,6 @@ def test_both_sides_do_what_the_page_states(version: Version) -> None:
     pytest.importorskip("casadi")
     if version not in pythons():
         pytest.skip(f"set {PYTHON}: see python -m benchmarks toolbox --help")
-    seen = list(reruns(version, pythons()[version]))
+    seen = list(reruns(version))
     assert len(seen) > 100
     assert [each for each in seen if each.otherwise is not None] == []
