@@ -91,8 +91,10 @@ class Case:
 
 def more_motor(robot: eurdf.Robot) -> str:
     """The first joint of one velocity without a motor."""
-    joints = zip(robot.model.names, robot.model.joints, strict=True)
-    return next(str(name) for name, joint in joints if joint.nv == 1 and name not in robot.actuation.joints)
+    model, motors = robot.model, robot.actuation.joints
+    return next(
+        str(model.names[i]) for i in range(1, model.njoints) if model.joints[i].nv == 1 and model.names[i] not in motors
+    )
 
 
 def case(name: str, frame: str) -> Case:
