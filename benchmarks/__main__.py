@@ -1,7 +1,7 @@
 """Run measurements by name: ``python -m benchmarks load growth commands``.
 
-``python -m benchmarks fuzz`` runs the mutation campaign, ``… simulators`` other simulators on exported robots, and
-``… claims`` what the comparison with other formats says was seen by running.
+``python -m benchmarks fuzz`` runs the mutation campaign, ``… simulators`` other simulators on exported robots,
+``… claims`` what the comparison with other formats says was seen by running, and ``… toolbox`` the published toolbox.
 """
 
 from __future__ import annotations
@@ -34,6 +34,7 @@ from benchmarks import (
 from benchmarks.claims import claims
 from benchmarks.fuzz import campaign
 from benchmarks.simulators import table as simulators
+from benchmarks.toolbox import run as toolbox
 
 MEASUREMENTS: dict[str, ModuleType] = {
     "load": load,
@@ -54,6 +55,14 @@ MEASUREMENTS: dict[str, ModuleType] = {
     "conformance": conformance,
 }
 
+#: Those that have options of their own.
+OTHERS: dict[str, ModuleType] = {
+    "fuzz": campaign,
+    "simulators": simulators,
+    "claims": claims,
+    "toolbox": toolbox,
+}
+
 
 def _first_line(module: ModuleType) -> str:
     return (module.__doc__ or "").splitlines()[0]
@@ -72,20 +81,14 @@ def _run(module: ModuleType, markdown: bool) -> None:
 
 def main() -> int:
     """Run the measurements named on the command line, all if none is; or write a page; or what has its own options."""
-    if sys.argv[1:2] == ["fuzz"]:
-        return campaign.main(sys.argv[2:])
-    if sys.argv[1:2] == ["simulators"]:
-        return simulators.main(sys.argv[2:])
-    if sys.argv[1:2] == ["claims"]:
-        return claims.main(sys.argv[2:])
+    if sys.argv[1:] and sys.argv[1] in OTHERS:
+        return int(OTHERS[sys.argv[1]].main(sys.argv[2:]))
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks",
         description="Measure, as ratios to a named peer in the same run.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
         epilog="\n".join(f"{name:20}{_first_line(module)}" for name, module in MEASUREMENTS.items())
-        + f"\n{'fuzz':20}{_first_line(campaign)} See `fuzz --help`."
-        + f"\n{'simulators':20}{_first_line(simulators)} See `simulators --help`."
-        + f"\n{'claims':20}{_first_line(claims)}",
+        + "".join(f"\n{name:20}{_first_line(module)} See `{name} --help`." for name, module in OTHERS.items()),
     )
     parser.add_argument("names", nargs="*", choices=[*MEASUREMENTS, []], help="which to run; all by default")
     parser.add_argument("--markdown", action="store_true", help="print tables in Markdown, where there are any")

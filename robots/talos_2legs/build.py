@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from robots.builder import Box, Cylinder, Drawing, Motor, Vector3, midpoint, revolute, write
+from robots.builder.drawing import End
 from robots.talos_leg.build import FORWARD, LEFT, UP, draw_leg, draw_pelvis
 
 BACK = (-1.0, 0.0, 0.0)
@@ -82,9 +83,14 @@ GRIPPER_MOTOR = Motor(effort=1.0, velocity=1.0, damping=1.0, friction=1.0)
 
 def draw() -> Drawing:
     """The robot with every joint at zero."""
-    robot = draw_pelvis("talos_2legs", "PAL Robotics' humanoid Talos, drawn from primitive shapes", "floating")
+    return draw_talos("talos_2legs", "PAL Robotics' humanoid Talos, drawn from primitive shapes", ("ball", "point"))
+
+
+def draw_talos(name: str, description: str, ends: tuple[End, End]) -> Drawing:
+    """The robot, with what the rods of its ankles have at the crank and at the ankle."""
+    robot = draw_pelvis(name, description, "floating")
     draw_torso(robot)
-    draw_leg(robot, prefix="left_", ends=("ball", "point"))
+    draw_leg(robot, prefix="left_", ends=ends)
     draw_arm(robot)
     draw_forearm(robot)
     draw_gripper(robot)

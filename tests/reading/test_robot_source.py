@@ -306,6 +306,34 @@ def test_missing_path_suggests_a_similar_one(folder: Path, path: str, near: str 
     assert "cassie" not in said
 
 
+#: Robots of Gepetto/example-parallel-robots, by their names and folders, beside those that have the same name here.
+PUBLISHED = {
+    "battobot": "battobot_6d",
+    "cassie_leg": "cassie_like",
+    "delta": "robot_delta",
+    "digit_2legs": "digit_2legs_6D digit_like_2legs digit_like_2legs_6D digit_like_2legs_old",
+    "digit_leg": "digit_like",
+    "disney_2legs": "disney_robot",
+    "disney_leg": "disney_like",
+    "five_bar": "5bar 5bar_linkage",
+    "five_bar_3d": "5bar3d 5bar_linkage_iso3d",
+    "five_bar_6d": "5bar6d 5bar_linkage_iso6d",
+    "kangaroo_2legs": "kangaroo_like_2leg kangaroo_like_2legs",
+    "kangaroo_leg": "kangaroo_like",
+    "talos_2legs": "talos_2legs_urdf talos_full_closed talos_only_leg true_talos_2_legs",
+    "talos_leg": "talos_like",
+    "wl16_leg": "wl16_like",
+}
+
+
+def test_a_published_name_suggests_the_robot_here(folder: Path) -> None:
+    for ours, theirs in PUBLISHED.items():
+        assert ours in eurdf.collection_names()
+        for name in theirs.split():
+            with pytest.raises(eurdf.errors.RobotNotFound, match=rf"there is no '{name}'.*did you mean '{ours}'\?$"):
+                eurdf.load(name)
+
+
 @pytest.mark.parametrize("command", ["check", "info", "assemble"])
 def test_missing_urdf_or_folder_suggests_similar_one(
     folder: Path, command: str, capsys: pytest.CaptureFixture[str]

@@ -1,4 +1,4 @@
-"""The examples run and are right; the page about the published toolbox names what there is, and its facts are facts."""
+"""The examples run and are right, and so are code and signs on the page about the published toolbox."""
 
 from __future__ import annotations
 
@@ -29,24 +29,6 @@ pytestmark = pytest.mark.slow
 
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
 PAGE = (ROOT / "docs" / "toolbox.md").read_text(encoding="utf-8")
-
-#: What `toolbox_parallel_robots` 1.2.0 exports.
-PUBLISHED = frozenset(
-    re.findall(
-        r"\w+",
-        """
-ActuationModel ActuationData qfree qmot vfree vmot mergeq mergev partialLoopClosure partialLoopClosureFrames
-constraintResidual constraintResidual3d constraintResidual6d constraintsResidual closedLoopForwardKinematics
-closedLoopForwardKinematicsCasadi closedLoopForwardKinematicsScipy freezeJoints closedLoopInverseDynamicsCasadi
-closedLoopInverseKinematics closedLoopInverseKinematicsCasadi closedLoopInverseKinematicsScipy
-closedLoopInverseKinematicsProximal separateConstraintJacobian computeClosedLoopFrameJacobian
-computeDerivative_dq_dqmot inverseConstraintKinematicsSpeed closedLoopMount closedLoopMountCasadi
-closedLoopMountProximal closedLoopMountScipy configurationProjection configurationProjectionProximal
-velocityProjection accelerationProjection
-""",
-    )
-)
-
 
 needs_matplotlib = pytest.mark.skipif(
     importlib.util.find_spec("matplotlib") is None, reason="matplotlib is not installed: pip install -e '.[examples]'"
@@ -155,20 +137,6 @@ def test_robots_squat_on_both_feet(name: str) -> None:
 def test_examples_readme_lists_all() -> None:
     listed = re.findall(r"^\| `(\w+\.py)`", (ROOT / "examples" / "README.md").read_text(encoding="utf-8"), re.M)
     assert sorted(listed) == [path.name for path in EXAMPLES]
-
-
-def test_names_on_toolbox_page_exist() -> None:
-    functions = set(re.findall(r"\beurdf\.(\w+)", PAGE))
-    assert len(functions) > 20
-    assert functions <= set(dir(eurdf))
-    robot = eurdf.load("four_bar", geometry=False)
-    for name in set(re.findall(r"`robot\.actuation\.(\w+)`", PAGE)):
-        assert hasattr(robot.actuation, name), name
-
-
-def test_toolbox_page_lists_all_published_functions() -> None:
-    theirs = {name for row in re.findall(r"^\|([^|]*)\|", PAGE, re.M) for name in re.findall(r"`(\w+)`", row)}
-    assert theirs >= PUBLISHED
 
 
 def test_code_on_page_gives_the_twist() -> None:

@@ -17,6 +17,21 @@ _FOLDER = Path(__file__).parent
 # What a folder may have instead: a message names it, so that the next one says what to do with it.
 _OTHERS = (".xacro", ".xml", ".sdf", ".usd", ".usda", ".usdc", ".usdz")
 
+#: Names in the published collection (Gepetto/example-parallel-robots), of robots and folders, whose robot here has no
+#: name that is near theirs.
+_PUBLISHED = {
+    "5bar": "five_bar",
+    "5bar_linkage": "five_bar",
+    "5bar3d": "five_bar_3d",
+    "5bar_linkage_iso3d": "five_bar_3d",
+    "5bar6d": "five_bar_6d",
+    "5bar_linkage_iso6d": "five_bar_6d",
+    "disney_robot": "disney_2legs",
+    "talos_2legs_urdf": "talos_2legs",
+    "talos_only_leg": "talos_2legs",
+    "talos_full_closed": "talos_2legs",
+}
+
 
 class RobotFiles(NamedTuple):
     """The files of one robot: a description that names its URDF, or a URDF alone.
@@ -80,7 +95,8 @@ def find_robot(path: RobotSource, urdf: RobotSource | None = None) -> RobotFiles
     name = os.fspath(path)
     if folder is not None and "/" not in name and os.sep not in name and os.path.isfile(folder / name / "robot.yaml"):
         return RobotFiles(folder / name / "robot.yaml", _given_urdf(urdf))
-    near = near_path(name, collection_names())
+    names = collection_names()
+    near = _PUBLISHED[name] if _PUBLISHED.get(name) in names else near_path(name, names)
     hint = f"did you mean '{near}'?" if near else "`eurdf robots` lists the collection"
     raise RobotNotFound(name, f"there is no '{name}': it is not a file, a folder, or a robot of the collection; {hint}")
 
