@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pinocchio as pin
+import yaml
 
 import eurdf
+from benchmarks.toolbox.calls import checkout
 from benchmarks.toolbox.outcome import (
     Agrees,
     Case,
@@ -17,6 +20,7 @@ from benchmarks.toolbox.outcome import (
     Off,
     Outcome,
     frame_error,
+    more_motor,
     opening,
     same,
     stretch,
@@ -79,11 +83,17 @@ def dynamics(of: Case) -> Any:
 
 
 def nearest_torques(of: Case, u0: Any) -> Any:
-    """The torques nearest to given ones, where one motor is superfluous, by least squares along the free motions."""
-    model, J = of.robot.model, K(of)
-    free = np.linalg.svd(J)[2][np.linalg.matrix_rank(J) :]
-    tau = pin.rnea(model, model.createData(), of.q, of.vc, of.ac)
-    return u0 + np.linalg.lstsq(free @ of.more, free @ (tau - of.more @ u0), rcond=None)[0]
+    """The torques nearest to given ones, where one motor is superfluous."""
+    folder = Path(eurdf.__file__).parents[2] / "robots" / of.name
+    said = yaml.safe_load((folder / "robot.yaml").read_text(encoding="utf-8"))
+    said["actuators"].append(more_motor(of.robot))
+    robot = eurdf.load(said, folder / "robot.urdf", geometry=False)
+    return eurdf.inverse_dynamics(robot, of.q, of.vc, of.ac, u0=u0).u
+
+
+def _same_closures(_: object, theirs: Any) -> float:
+    ours = eurdf.generate(checkout() / "robots" / "cassie_like" / "robot.urdf").found.closures
+    return float({frozenset(pair) for pair in theirs} != {frozenset(each.frames) for each in ours})
 
 
 def nothing(_: Any, __: Any) -> float:
@@ -303,7 +313,8 @@ CHECKS: dict[str, tuple[Check, ...]] = {
         ),
     ),
     "generateYAML": (
-        Check("[model.getJointId(name) for name in generated(names)['name_mot']]", _MOTORS, EQUAL, what="motors"),
+        Check("[model.getJointId(name) for name in generated(folder)['name_mot']]", _MOTORS, EQUAL, what="motors"),
+        Check("generated('robots/cassie_like')['closed_loop']", _same_closures, EQUAL, what="closures", robots=NONE),
     ),
     "getNameFrameConstraint": (
         Check(_FOUND % ("closedloop2", "closedloop2", [1, 2]), is_(2.0), EQUAL, what="1 and 2", robots=NONE),

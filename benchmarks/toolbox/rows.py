@@ -138,14 +138,14 @@ CONFIGURATIONS = (
     Row(
         "partialLoopClosure",
         "the least open configuration with some joints held, within limits",
-        "`eurdf.assemble` with `hold` and `limits`",
-        "joints by name, held as a whole; no separate start; cannot hold the rotation about one axis of a ball joint",
+        "`eurdf.assemble` with `hold`, `hold_at` and `limits`",
+        "joints by name; also a ball joint about some of its axes, where theirs holds an entry of its rotation matrix",
     ),
     Row(
         "partialLoopClosureFrames",
         "the least open configuration with some frames held, within limits",
         "`eurdf.inverse_kinematics`",
-        "the frames by name, with their poses; cannot hold the rotation about one axis of a ball joint",
+        "the frames by name, with their poses; `hold` holds joints, too",
     ),
     Row(
         "closedLoopForwardKinematics closedLoopForwardKinematicsCasadi",
@@ -224,8 +224,8 @@ DYNAMICS = (
         "closedLoopInverseDynamicsCasadi",
         "motor torques and closure forces of a motion",
         "`eurdf.inverse_dynamics`",
-        "the forces have the opposite sign: theirs act on the body of A, ours on the body of B; minimizes weighted "
-        "torques, but not relative to given ones, where theirs finds those nearest to **minus** the given ones; "
+        "the forces have the opposite sign: theirs act on the body of A, ours on the body of B; finds the "
+        "torques nearest to `u0`, weighted, where theirs finds those nearest to **minus** the given ones; "
         "external forces, damping and friction; `eurdf.errors.InconsistentMotion` for a motion that opens the loops, "
         "`eurdf.errors.UnderactuatedMotion` for one that the motors cannot produce; "
         "`eurdf.kinematics.achievable_acceleration` gives the nearest possible one",
@@ -272,19 +272,19 @@ FILES = (
     Row(
         "generateYAML",
         "a YAML file from the names of joints and frames",
-        "`eurdf generate`",
+        "`eurdf.generate`, `eurdf generate`",
         "names are options; theirs makes every closure 6d, and writes over a `robot.yaml` that exists",
     ),
     Row(
         "getNameFrameConstraint",
         "the closures, from the names of frames",
-        "`eurdf generate`",
+        "`eurdf.generate`, `eurdf generate`",
         "theirs looks for parts of names: with a `closedloop10`, it loses `closedloop1`",
     ),
     Row(
         "simplifyModel",
         "three revolute joints through one point become a ball joint",
-        "`eurdf.load`, in version 1; `merges` in version 2",
+        "`eurdf.load`, in version 1; `eurdf.simplify`, for all versions",
         "`completeRobotLoader` does it to each robot; theirs does not see continuous joints",
         "for [each of their robots](#their-robots)",
     ),

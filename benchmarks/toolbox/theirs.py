@@ -92,10 +92,10 @@ def with_frames(names: str) -> Any:
     return model
 
 
-def generated(names: dict[str, Any]) -> Any:
-    """What `generateYAML` writes of the robot."""
+def generated(folder: str) -> Any:
+    """What `generateYAML` writes of a robot."""
     text = io.StringIO()
-    names["generateYAML"](names["folder"], file=text)
+    importlib.import_module("example_parallel_robots.loader_tools").generateYAML(folder, file=text)
     return yaml.safe_load(text.getvalue())
 
 
