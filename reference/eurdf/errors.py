@@ -306,8 +306,7 @@ class NoTransmission(EurdfError, ValueError):  # noqa: N818 - part of the public
     """
 
     def __init__(self, of: str, reason: str) -> None:
-        self.map = of
-        self.reason = reason
+        self.map, self.reason = of, reason
         super().__init__(f"{of} is not determined: {reason}")
 
 
@@ -321,9 +320,7 @@ class DependentVelocities(EurdfError, ValueError):  # noqa: N818 - part of the p
     """
 
     def __init__(self, names: tuple[str, ...], given: Vector, nearest: Vector) -> None:
-        self.names = names
-        self.given = given
-        self.nearest = nearest
+        self.names, self.given, self.nearest = names, given, nearest
         allowed = shown(zip(names, nearest.tolist(), strict=True))
         super().__init__(f"the loops do not allow these velocities together; the nearest that they allow: {allowed}")
 
