@@ -280,8 +280,8 @@ class InverseNewton:
         well_closed, solved = self._closed
         for step in range(MOST_STEPS):
             (r,) = aimed.residual(at)
-            opened, there = square(r[None, : self._m]), not is_last or largest(r[None, self._m :]) <= tolerance
-            if step and there and opened <= (solved if is_last else well_closed):
+            is_closed = square(r[None, : self._m]) <= (solved if is_last else well_closed)
+            if step and is_closed and (not is_last or largest(r[None, self._m :]) <= tolerance):
                 return _Stepped(q, at, True, step, later / first)
             b = self._row_scale * r
             if not is_last:

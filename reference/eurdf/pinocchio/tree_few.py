@@ -294,7 +294,7 @@ class _Bundle:
     def place(self, index: int, placement: Any) -> None:
         """Move frame A of one of its pairs to another pose in its joint."""
         a, b = self._pairs[index]
-        self._pairs[index] = a._replace(placement=placement), b
+        self._pairs[index] = Site(a.joint, placement), b
         self._each[index][0].joint1_placement = placement
 
     def jacobian(self) -> Matrix:
