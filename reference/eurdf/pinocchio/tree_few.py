@@ -7,6 +7,7 @@ have a model of their own, of the joints between the frames alone.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from operator import attrgetter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -30,6 +31,8 @@ class Site(NamedTuple):
 
 
 Pair = tuple[Site, Site]
+
+_ROTATION, _TRANSLATION = attrgetter("rotation"), attrgetter("translation")
 
 #: A model of several clusters has at most this many velocities, ...
 BUNDLED = 40
@@ -56,29 +59,29 @@ class FewPoses(RelativePoses):
     def rotation(self) -> Matrix:  # type: ignore[override]
         """ᴬR_B (B, k, 3, 3)."""
         if self._rotation is None:
-            self._rotation = self._array([aMb.rotation for aMb in self._each()], 3, 3)
+            self._rotation = np.array(list(map(_ROTATION, self._each()))).reshape(*self._shape, 3, 3)
         return self._rotation
 
     @property
     def position(self) -> Matrix:  # type: ignore[override]
         """Origin p of B in A (B, k, 3), m."""
         if self._position is None:
-            self._position = self._array([aMb.translation for aMb in self._each()], 3)
+            self._position = np.array(list(map(_TRANSLATION, self._each()))).reshape(*self._shape, 3)
         return self._position
 
     def logarithm(self) -> Matrix:
         """log6(ᴬM_B) (B, k, 6)."""
         if self._logarithm is None:
-            self._logarithm = self._array([pin.log6(aMb).vector for aMb in self._each()], 6)
+            self._logarithm = np.array([pin.log6(aMb).vector for aMb in self._each()]).reshape(*self._shape, 6)
         return self._logarithm
 
     def logarithm_by_twist(self) -> Matrix:
         """Jlog6(ᴮM_A) (B, k, 6, 6)."""
-        return self._array([pin.Jlog6(aMb.inverse()) for aMb in self._each()], 6, 6)
+        return np.array([pin.Jlog6(aMb.inverse()) for aMb in self._each()]).reshape(*self._shape, 6, 6)
 
     def twist_in_b(self) -> Matrix:
         """Ad(ᴮM_A) (B, k, 6, 6)."""
-        return self._array([aMb.toActionMatrixInverse() for aMb in self._each()], 6, 6)
+        return np.array([aMb.toActionMatrixInverse() for aMb in self._each()]).reshape(*self._shape, 6, 6)
 
     def turn_from(self, rotation: Matrix) -> Matrix:
         each = zip(rotation.reshape(-1, 3, 3), self._each(), strict=True)
@@ -88,10 +91,6 @@ class FewPoses(RelativePoses):
         each = zip(turn.reshape(-1, 3), self._each(), strict=True)
         found = [pin.Jlog3(pin.exp3(own)).dot(aMb.rotation.T) for own, aMb in each]
         return np.array(found).reshape(*self._shape, 3, 3)
-
-    def _array(self, each: Sequence[Any], *shape: int) -> Matrix:
-        """Of each pair an array of a shape, of one element after the other, as (B, k, …)."""
-        return np.array([each]) if each and self._shape[0] == 1 else np.array(each).reshape(*self._shape, *shape)
 
     def _each(self) -> Sequence[Any]:
         pairs, q = self._pairs, self.q
