@@ -185,7 +185,7 @@ def inverse_kinematics(
             q=found.q[0],
             converged=searched.get("reason") is None,
             errors=tuple(map(FrameError, checked, found.position[0].tolist(), found.angle[0].tolist())),
-            open=openings(problem, found.q) if found.openings is None else opened(problem, *found.openings),
+            open=openings(problem, found.q) if near.openings is None else opened(problem, *near.openings),
             iterations=int(found.iterations[0]),
             tolerance=tolerance,
             **searched,

@@ -105,7 +105,6 @@ class SearchResult(NamedTuple):
         same_branch: Whether (B,) each step to q was short enough to stay on the branch of the start.
         reason: For each element why it did not converge; None if it did.
         at_limits: For each element the joints that are at their limits and would have to exceed them to come nearer.
-        openings: That they are not known.
     """
 
     q: Matrix
@@ -116,7 +115,6 @@ class SearchResult(NamedTuple):
     same_branch: Mask
     reason: list[InverseKinematicsReason | None]
     at_limits: list[tuple[JointAtLimit, ...]]
-    openings: None = None
 
 
 @np.errstate(all="ignore")
