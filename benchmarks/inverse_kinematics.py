@@ -11,8 +11,7 @@ solver cannot do a robot.
 less time for large robots. For a small one, the calls of Pinocchio and LAPACK in these steps take about a third of the
 time of plain Newton, and the checks of arguments and limits, with the result, a sixth. The rest is Python: one code
 evaluates each kind of closure, for one configuration and for many. Where Newton's steps do not stay on the branch
-beyond doubt, as near a singular configuration (`digit_leg`, some targets of `cassie_leg`), the search of `eurdf` takes
-over.
+beyond doubt, as near a singular configuration (`digit_leg`), the search of `eurdf` takes over.
 
 Pink and mink have the loops as equality constraints of their quadratic program, or, where that has no solution
 (redundant rows), as a task of cost 100; they take the whole step that it says. Pink has the rows of plain Newton

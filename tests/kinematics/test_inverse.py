@@ -332,6 +332,7 @@ def test_start_is_closed_without_targets() -> None:
         ({"foot": "here"}, r"expected finite numbers of shape \(3,\), or a pose"),
         ({"foot": pin.SE3(2.0 * np.eye(3), np.zeros(3))}, "is not a pose"),
         ({"foot": pin.SE3(-np.eye(3), np.zeros(3))}, "is not a pose"),
+        ({"foot": pin.SE3(np.diag([1.0, np.nan, 1.0]), np.zeros(3))}, "is not a pose"),
         ({"foot": pin.SE3(np.eye(3), np.full(3, np.inf))}, "is not a pose"),
     ],
 )

@@ -87,3 +87,25 @@ def test_doubtful_targets_are_left_to_the_search(few: bool) -> None:
     assert not reached(q, far)
     assert not reached(q, q)  # a solution is left as it is
     assert not reached(pin.integrate(robot.model, q, np.full(robot.model.nv, 1e-3)), near)  # open at the start
+
+
+def test_doubtful_way_is_gone_in_two_halves() -> None:
+    robot, frame = eurdf.load("cassie_leg", geometry=False), "plantar_end"
+    q = eurdf.assemble(robot).q
+    motors = q[robot.actuation.idx_q]
+    ends = [eurdf.forward_kinematics(robot, motors + move, q) for move in np.linspace(0.0, 0.06, 9)[1:]]
+    newton, problem = InverseNewton(robot, (True,), frame), Problem(robot)
+
+    def near(start: Any, end: Any) -> Any:
+        return newton.near(problem, [poses(robot, frame, [end])], start[None], None, TOLERANCE)
+
+    whole, small = near(q, ends[-1]), q
+    assert whole.reached[0]
+    for end in ends:  # small ways are gone at once
+        found = near(small, end)
+        assert found.reached[0]
+        assert found.iterations[0] < 5 <= whole.iterations[0]
+        small = found.q[0]
+    np.testing.assert_allclose(whole.q[0], small, atol=1e-2)
+    assert np.abs(eurdf.residual(robot, whole.q[0])).max() < 1e-10
+    assert np.abs(whole.q[0] - q).max() > 0.05  # the ways differ by much less than they are long

@@ -53,3 +53,8 @@ class FrameClosure(ClosureKind):
 
 
 KIND = FrameClosure
+
+
+def kind_of_target(is_pose: bool) -> type[ClosureKind]:
+    """The closure that holds a frame at a target in the world: at a pose, or at a position."""
+    return FrameClosure if is_pose else PointClosure

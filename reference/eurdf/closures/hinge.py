@@ -11,7 +11,7 @@ import numpy as np
 from eurdf.array import Matrix, Vector
 from eurdf.closures.kind import ClosureKind, Contact, RelativeMotions, RelativePoses
 from eurdf.closures.point import PointClosure
-from eurdf.closures.se3 import cross, dot, norm, outer, plane_across, skew, transposed, turned, velocity_of_origin
+from eurdf.closures.se3 import cross, dot, norm, plane_across, skew, turned, velocity_of_origin
 from eurdf.mechanism.constraint import ClosureKey, Form, Unit, key
 from eurdf.mechanism.pose import Vector3, direction
 
@@ -20,9 +20,13 @@ _ON_AXIS = 0.1
 
 # The sine of θ near half a turn, where the shortest rotation has no derivative, is taken as no less than this.
 _LEAST_SINE = 1e-9
+_MOST_STRETCH = np.pi / _LEAST_SINE
 
-# In place of θ = 0, where θ / sin θ is 1.
+# Added to an angle or a length that can be 0 and divides; to what is not 0, it adds nothing.
 _TINY = 1e-300
+
+# The coordinates of a vector in a plane, swapped, times these are those of the vector turned by a quarter.
+_QUARTER_TURN = np.array((-1.0, 1.0))
 
 # Coefficients of the series of θ / sin θ in powers of cos θ - 1, for angles below _SMALL rad, where the quotients of
 # the second derivative are of small numbers: each is -(n + 1) / (2n + 3) of the one before.
@@ -37,29 +41,27 @@ class Axes(NamedTuple):
     Attributes:
         a: Axis (k, 3) in A.
         b: Axis (k, 3) in B.
-        across: E (k, 3, 2), which spans the plane across a.
-        about: Eᵀ [a]ₓ (k, 2, 3).
-        onto: The same, followed by aᵀ (k, 3, 3).
+        plane: Eᵀ (k, 2, 3), whose rows span the plane across a.
+        onto: F = (Eᵀ [a]ₓ; aᵀ) (k, 3, 3), a rotation.
+        onto_by_rotation: Fβ over the entries of ᴬR_B (k, 9, 3).
     """
 
     a: Matrix
     b: Matrix
-    across: Matrix
-    about: Matrix
+    plane: Matrix
     onto: Matrix
+    onto_by_rotation: Matrix
 
 
 class _Turn(NamedTuple):
     """How k hinges are turned.
 
     Attributes:
-        beta: β (…, k, 3).
-        theta: The angle θ (…, k) from a to β, in [0, π].
+        theta: The angle θ (…, k, 1) from a to β, in [0, π].
         n: Eᵀ n (…, k, 2) of the unit vector n about which it turns.
     """
 
-    beta: Matrix
-    theta: Vector
+    theta: Matrix
     n: Matrix
 
 
@@ -133,65 +135,60 @@ class HingeClosure(ClosureKind):
         axes = np.array([closure.axes for closure in closures], dtype=np.float64)
         axes /= np.abs(axes).max(axis=2, keepdims=True)  # of any length, also of one whose square is out of range
         axes /= norm(axes)[..., None]
-        a, across = axes[:, 0], np.array([plane_across(a) for a in axes[:, 0]])
-        about = transposed(across) @ skew(a)
-        return Axes(a, axes[:, 1], across, about, np.concatenate((about, a[:, None]), axis=1))
+        a, b = axes[:, 0], axes[:, 1]
+        plane = np.array([plane_across(each).T for each in a])
+        onto = np.concatenate((plane @ skew(a), a[:, None]), axis=1)
+        return Axes(a, b, plane, onto, np.einsum("kri,kj->kijr", onto, b).reshape(-1, 9, 3))
 
     @staticmethod
     def residual(poses: RelativePoses, fixed: Axes) -> Matrix:
         """p and Eᵀ s."""
-        turn = poses.once(_turn, fixed)
-        return np.concatenate((poses.position, turn.theta[..., None] * turn.n), axis=-1)
+        theta, n = poses.once(_turn, fixed)
+        return np.concatenate((poses.position, theta * n), axis=-1)
 
     @staticmethod
     def jacobian(poses: RelativePoses, fixed: Axes) -> Matrix:
-        """[1, -skew(p); 0, Eᵀ S], where ṡ = S ω = g a × (ω × β) + (1 - g c) (n · ω) n."""
-        beta, theta, n = poses.once(_turn, fixed)
-        g = _stretch(theta)
-        rows = np.zeros((*theta.shape, 5, 6))
+        """[1, -skew(p); 0, Eᵀ S], where ṡ = S ω = g a × (ω × β) + (1 - g c) (n · ω) n.
+
+        With Eᵀ n = (n₁, n₂), Eᵀ S = Eᵀ + (-n₂, n₁)ᵀ ((1 - g c) n₁, (1 - g c) n₂, θ) F.
+        """
+        theta, n = poses.once(_turn, fixed)
+        angle = theta + _TINY
+        along = np.concatenate(((1.0 - np.maximum(angle / np.tan(angle), -_MOST_STRETCH)) * n, theta), axis=-1)
+        rows = np.zeros((*n.shape[:-1], 5, 6))
         rows[..., :3, :] = velocity_of_origin(poses.position)
-        rows[..., 3:, 3:] = outer((1.0 - g * np.cos(theta))[..., None] * n, turned(fixed.across, n))
-        rows[..., 3:, 3:] -= g[..., None, None] * (fixed.about @ skew(beta))
+        rows[..., 3:, 3:] = fixed.plane + (n[..., ::-1] * _QUARTER_TURN)[..., None] * (along[..., None, :] @ fixed.onto)
         return rows
 
     @staticmethod
     def drift(motions: RelativeMotions, fixed: Axes) -> Matrix:
         """p̈ and Eᵀ s̈, with s̈ = g a × β̈ + 2 g' ċ a × β̇ + (g' c̈ + g'' ċ²) a × β."""
         a = fixed.a
-        beta, theta, n = motions.poses.once(_turn, fixed)
-        n = turned(fixed.across, n)
-        g, slope, bend = (values[..., None] for values in _profile(theta))
+        beta = turned(motions.poses.rotation, fixed.b)
+        g, slope, bend = _profile(motions.poses.once(_turn, fixed).theta)
         omega = motions.omega
         rate = cross(omega, beta)
         second = cross(motions.alpha, beta) + cross(omega, rate)
         c_rate, c_second = dot(a, rate)[..., None], dot(a, second)[..., None]
         s = g * cross(a, second) + 2.0 * slope * c_rate * cross(a, rate)
-        s += (slope * c_second + bend * c_rate**2) * np.sin(theta)[..., None] * n
-        return np.concatenate((motions.acceleration, turned(transposed(fixed.across), s)), axis=-1)
+        s += (slope * c_second + bend * c_rate**2) * cross(a, beta)
+        return np.concatenate((motions.acceleration, turned(fixed.plane, s)), axis=-1)
 
     @staticmethod
     def opening(poses: RelativePoses, fixed: Axes) -> tuple[Vector, Vector]:
         """|p| and θ."""
-        return np.hypot.reduce(poses.position, axis=-1), poses.once(_turn, fixed)[1]
+        return np.hypot.reduce(poses.position, axis=-1), poses.once(_turn, fixed).theta[..., 0]
 
 
 KIND = HingeClosure
 
 
 def _turn(poses: RelativePoses, axes: Axes) -> _Turn:
-    beta = turned(poses.rotation, axes.b)
-    seen = turned(axes.onto, beta)  # Eᵀ (a × β), and a · β
-    normal, sine = seen[..., :2], np.hypot(seen[..., 0], seen[..., 1])
-    n = np.zeros_like(normal)
-    n[..., 0] = 1.0
-    np.divide(normal, sine[..., None], out=n, where=sine[..., None] > 0.0)
-    return _Turn(beta, np.arctan2(sine, seen[..., 2]), n)
-
-
-def _stretch(theta: Vector) -> Vector:
-    """g = θ / sin θ."""
-    theta = np.maximum(theta, _TINY)
-    return np.asarray(np.minimum(theta / np.sin(theta), np.pi / _LEAST_SINE))
+    R = poses.rotation
+    seen = (R.reshape(*R.shape[:-2], 1, 9) @ axes.onto_by_rotation)[..., 0, :]  # Eᵀ (a × β), and a · β
+    seen[..., 0] += _TINY  # where sin θ is 0, n is the first column of E
+    sine = np.hypot(seen[..., :1], seen[..., 1:2])
+    return _Turn(np.arctan2(sine, seen[..., 2:]) - _TINY, seen[..., :2] / sine)
 
 
 def _profile(theta: Vector) -> tuple[Vector, Vector, Vector]:
@@ -199,7 +196,8 @@ def _profile(theta: Vector) -> tuple[Vector, Vector, Vector]:
 
     They satisfy (1 - c²) g' = c g - 1 and (1 - c²) g'' = 3 c g' + g.
     """
-    g, c = _stretch(theta), np.cos(theta)
+    angle, c = theta + _TINY, np.cos(theta)
+    g = np.minimum(angle / np.sin(angle), _MOST_STRETCH)
     squares = np.maximum(np.sin(theta), _LEAST_SINE) ** 2
     slope = (c * g - 1.0) / squares
     bend = (3.0 * c * slope + g) / squares

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -18,8 +19,8 @@ from eurdf.kinematics.closing import start
 from eurdf.kinematics.frame_jacobian import frames_of
 from eurdf.kinematics.frame_targets import Target
 from eurdf.kinematics.holding import Holding, holding
-from eurdf.kinematics.inverse_newton import InverseNewton
-from eurdf.kinematics.inverse_search import InverseKinematicsReason, InverseTask, search
+from eurdf.kinematics.inverse_newton import InverseNewton, Near
+from eurdf.kinematics.inverse_search import InverseKinematicsReason, InverseTask, SearchResult, search
 from eurdf.kinematics.locking import lock
 from eurdf.kinematics.named import Named
 from eurdf.kinematics.opening import Opening
@@ -133,7 +134,8 @@ def inverse_kinematics(
 
     Near targets are reached sooner, by the Newton steps of least norm that solve the closures and the targets at once;
     they count where each loop is closed to 1e-10, the limits are respected, and the steps after the first, together,
-    are at most a quarter as long as it, so that the branch is that of q0. If not, the search above starts at q0.
+    are at most a quarter as long as it, so that the branch is that of q0. Where they are a little longer, half of the
+    way comes first. If neither is enough, the search above starts at q0.
 
     Args:
         robot: The robot.
@@ -172,36 +174,34 @@ def inverse_kinematics(
     q, restarts = start(robot, q0), checked_count("restarts", restarts, 0)
     poses = tuple(isinstance(target, SE3) for target in checked.values())
     goals = [
-        Target(np.array(target.translation)[None], np.array(target.rotation)[None])
-        if is_pose
-        else Target(np.array(target)[None])
+        Target(target.translation[None], target.rotation[None]) if is_pose else Target(target[None])
         for is_pose, target in zip(poses, checked.values(), strict=True)
     ]
     with (
+        np.errstate(all="ignore"),
         working_memory(robot, Problem) as problem,
-        working_memory(robot, frames_of, *checked) as frames,
         working_memory(robot, InverseNewton, poses, *checked) as newton,
     ):
-        task = InverseTask(problem, frames, newton, poses, chosen, tolerance, restarts)
-        found = search(task, goals, q[None])
-        at_limits = found.at_limits[0]
-        if found.reason[0] == "closures open":  # the joints whose limits keep the loops open
-            clipped = q if chosen is None else chosen.clip(q)
-            at_limits = assembled(problem, clipped, SOLVED, RESTARTS, chosen).at_limits
-        with np.errstate(over="ignore", invalid="ignore"):
-            is_open = openings(problem, found.q) if found.openings is None else opened(problem, *found.openings)
-    return InverseKinematics(
-        q=found.q[0],
-        converged=found.reason[0] is None,
-        errors=tuple(map(FrameError, checked, found.position[0].tolist(), found.angle[0].tolist())),
-        open=is_open,
-        iterations=int(found.iterations[0]),
-        tolerance=tolerance,
-        starts=int(found.starts[0]),
-        same_branch=bool(found.same_branch[0]),
-        reason=found.reason[0],
-        at_limits=at_limits,
-    )
+        found: Near | SearchResult = (near := newton.near(problem, goals, q[None], chosen, tolerance))
+        searched: dict[str, Any] = {}
+        if not near.reached[0]:
+            with working_memory(robot, frames_of, *checked) as frames:
+                task = InverseTask(problem, frames, newton, poses, chosen, tolerance, restarts)
+                found = search(task, goals, q[None], near)
+            searched = {"starts": int(found.starts[0]), "same_branch": bool(found.same_branch[0])}
+            searched |= {"reason": found.reason[0], "at_limits": found.at_limits[0]}
+            if found.reason[0] == "closures open":  # the joints whose limits keep the loops open
+                clipped = q if chosen is None else chosen.clip(q)
+                searched["at_limits"] = assembled(problem, clipped, SOLVED, RESTARTS, chosen).at_limits
+        return InverseKinematics(
+            q=found.q[0],
+            converged=searched.get("reason") is None,
+            errors=tuple(map(FrameError, checked, found.position[0].tolist(), found.angle[0].tolist())),
+            open=openings(problem, found.q) if near.openings is None else opened(problem, *near.openings),
+            iterations=int(found.iterations[0]),
+            tolerance=tolerance,
+            **searched,
+        )
 
 
 def _with_joints_held(held: Holding, targets: Mapping[str, Any], options: Mapping[str, Any]) -> InverseKinematics:
@@ -230,12 +230,12 @@ def checked_target(argument: str, target: Any) -> Any:
             raise ValueError(f"{argument} is not a pose: its last row is not 0 0 0 1")
         target = SE3(matrix[:3, :3], matrix[:3, 3])
     if isinstance(target, SE3):
-        R = target.rotation
-        if all_finite(target.translation) and np.abs(R.T.dot(R) - IDENTITY_ROTATION).max() <= 1e-6:
-            x, y, z = R.tolist()
-            volume = sum(x[i] * (y[i - 2] * z[i - 1] - y[i - 1] * z[i - 2]) for i in range(3))
-            if volume > 0.0:  # no reflection
-                return target
+        (a, b, c), (d, e, f), last = target.rotation.tolist()
+        # Two rows of unit length that are orthogonal, and the third is their cross product: no reflection.
+        off = [a * a + b * b + c * c - 1.0, d * d + e * e + f * f - 1.0, a * d + b * e + c * f]
+        off += map(operator.sub, last, (b * f - c * e, c * d - a * f, a * e - b * d))
+        if all_finite(target.translation) and sum(each * each for each in off) <= 1e-12:
+            return target
         raise ValueError(f"{argument} is not a pose: its rotation is not orthonormal, or a number is not finite")
     try:
         return checked_array(argument, target, (3,))

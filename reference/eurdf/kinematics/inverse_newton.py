@@ -7,15 +7,15 @@ carries the frames move. Where the steps do not end on the branch of the start b
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from eurdf.array import Indices, Mask, Matrix
-from eurdf.closures.frame import FrameClosure
+from eurdf.array import Indices, Mask, Matrix, Vector
+from eurdf.closures.frame import kind_of_target
 from eurdf.closures.kind import PoseArrays
-from eurdf.closures.point import PointClosure
 from eurdf.closures.se3 import IDENTITY_ROTATION, transposed, turned
 from eurdf.kinematics.descend import damped
 from eurdf.kinematics.evaluate import Evaluator, Frames, frames_at
@@ -25,6 +25,7 @@ from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.kinematics.tolerances import LEAST_DAMPING, MOST_CORRECTION, MOST_STEPS, SMALL, SOLVED, WELL_CLOSED
 from eurdf.mechanism.body import Anchor
 from eurdf.pinocchio.memory import working_memory
+from eurdf.pinocchio.tree_few import as_slice
 
 if TYPE_CHECKING:
     from eurdf.kinematics.frame_targets import Target
@@ -35,6 +36,8 @@ if TYPE_CHECKING:
     from eurdf.pinocchio.tree import Tree
     from eurdf.pinocchio.tree_few import Site
 
+# Half of the way has half of the correction, relative to its first step: sure if that of the whole is at most this.
+_MOST_TO_HALVE = 1.6 * MOST_CORRECTION
 # Each step reduces the squared residual to this fraction at least, or the target is left to the search.
 _REDUCED = 0.25
 
@@ -46,7 +49,7 @@ class Near(NamedTuple):
         q: Configurations (B, nq); those of the start where they are in doubt.
         position: Distances (B, F) of the frames from their targets, m.
         angle: Angles (B, F) between their axes and those of the targets, rad; 0 for targets that are positions.
-        steps: Numbers (B,) of steps.
+        iterations: Numbers (B,) of steps.
         reached: Whether (B,) loops are closed, frames at their targets, and the branch is certainly that of the start.
         openings: How far each constraint is open (B, c) each, m and rad, where that is known.
     """
@@ -54,9 +57,27 @@ class Near(NamedTuple):
     q: Matrix
     position: Matrix
     angle: Matrix
-    steps: Indices
+    iterations: Indices
     reached: Mask
     openings: tuple[Matrix, Matrix] | None
+
+
+class _Stepped(NamedTuple):
+    """Where steps lead.
+
+    Attributes:
+        q: The configuration (1, nq).
+        at: The state there.
+        arrived: Whether they end there for certain.
+        steps: Their number.
+        correction: How long all but the first are, together, relative to it.
+    """
+
+    q: Matrix
+    at: Any
+    arrived: bool
+    steps: int
+    correction: float
 
 
 class _Targets:
@@ -68,7 +89,7 @@ class _Targets:
         for goal in goals:
             turn = np.broadcast_to(IDENTITY_ROTATION, (len(goal.position), 3, 3))
             at = PoseArrays((turn if goal.rotation is None else goal.rotation)[:, None], goal.position[:, None])
-            self._each.append((PointClosure if goal.rotation is None else FrameClosure, at, at.twist_in_b()))
+            self._each.append((kind_of_target(goal.rotation is not None), at, at.twist_in_b()))
 
     def among(self, which: Mask) -> _Targets:
         """Those of some elements."""
@@ -153,7 +174,8 @@ class InverseNewton:
             self._frames, self._first = frames_at(tree, sites, own, few=False), 0
         if self._first < len(closures) or self._placed is None:
             self._closures = Evaluator(tree, closures, own, few=few)
-        self._velocities, self._unit, self._m = own, spaces.scale[own], len(loops.rows)
+        self._columns = as_slice(own)
+        self._unit, self._m = spaces.scale[own], len(loops.rows)
         rows = [scale for is_pose in poses for scale in [1.0 / spaces.length] * 3 + [1.0] * 3 * is_pose]
         self._row_scale = np.concatenate((spaces.row_scale[loops.rows], rows))
         self._factors = self._row_scale[:, None] * self._unit
@@ -169,7 +191,10 @@ class InverseNewton:
         The first step keeps the loops closed. The others are together shorter than it by as much as
         `eurdf.kinematics.path.is_short` demands of what closes the loops after a step.
         """
-        B, F, aimed = len(q), len(goals), self._aimed(goals)
+        B, F = len(q), len(goals)
+        if B == 1 and F:
+            return self._near_one(problem, goals, q, limits, tolerance)
+        aimed = self._aimed(goals)
         on, here, end = np.arange(B), q, np.array(q)
         position, angle = np.zeros((2, B, F))
         steps, reached = np.zeros(B, dtype=np.intp), np.zeros(B, dtype=bool)
@@ -208,7 +233,7 @@ class InverseNewton:
                 aimed, on, here, x = aimed.among(going), on[going], here[going], x[going]
                 squared, first, later = squared[going], first[going], later[going]
             v = np.zeros((len(on), problem.tree.nv))
-            v[:, self._velocities] = self._unit * x
+            v[:, self._columns] = self._unit * x
             here, before = problem.tree.integrate(here, v), squared
         if np.count_nonzero(reached):
             reached &= np.logical_and.reduce(np.maximum(position, angle) <= tolerance, axis=1)
@@ -217,6 +242,63 @@ class InverseNewton:
             if not self._has_all:
                 reached &= squares(problem.residual(end)) <= solved
         return Near(end, position, angle, steps, reached, openings)
+
+    def _near_one(
+        self, problem: Problem, goals: Sequence[Target], q: Matrix, limits: PositionLimits | None, tolerance: float
+    ) -> Near:
+        """As `near`, of one element; where the branch is a little in doubt, half of the way first."""
+        F, aimed, here, steps = len(goals), self._aimed(goals), q, 0
+        at = aimed.fresh(q)
+        (r,) = aimed.residual(at)
+        away, left, part = r[self._m :].copy(), 1.0, 1.0  # of the way to the targets what is left, and what goes next
+        on_way = square(r[None, : self._m]) <= self._closed[0] and not largest(away[None]) <= tolerance
+        while on_way and left:
+            found = self._stepped(problem, aimed, here, at, (left - part) * away, tolerance)
+            steps += found.steps
+            on_way = limits is None or not limits.are_exceeded(np.concatenate((q, found.q)))
+            if found.arrived:
+                here, at, left = found.q, found.at, left - part
+            else:
+                part, on_way = 0.5, on_way and part > 0.5 and found.correction <= _MOST_TO_HALVE
+        if on_way:
+            lengths, angles = aimed.openings(at)
+            position, angle = lengths[:, -F:], angles[:, -F:]
+            on_way = max(*position[0].tolist(), *angle[0].tolist()) <= tolerance
+            on_way = on_way and (self._has_all or square(problem.residual(here)) <= self._closed[1])
+        if not on_way:
+            position, angle = np.zeros((2, 1, F))
+            return Near(np.array(q), position, angle, np.array([steps]), np.zeros(1, dtype=bool), None)
+        openings = (lengths[:, :-F], angles[:, :-F]) if self._has_all and self._closures is None else None
+        return Near(here, position, angle, np.array([steps]), np.ones(1, dtype=bool), openings)
+
+    def _stepped(self, problem: Problem, aimed: Any, q: Matrix, at: Any, rest: Vector, tolerance: float) -> _Stepped:
+        """Steps from a closed configuration (1, nq), in a state, to where ``rest`` (k,) of the targets' rows is left.
+
+        The last ones to the targets count with the tolerance; others only close the loops.
+        """
+        before, first, later, is_last = np.inf, 0.0, 0.0, not np.count_nonzero(rest)
+        well_closed, solved = self._closed
+        for step in range(MOST_STEPS):
+            (r,) = aimed.residual(at)
+            is_closed = square(r[None, : self._m]) <= (solved if is_last else well_closed)
+            if step and is_closed and (not is_last or largest(r[None, self._m :]) <= tolerance):
+                return _Stepped(q, at, True, step, later / first)
+            b = self._row_scale * r
+            if not is_last:
+                b[self._m :] -= self._row_scale[self._m :] * rest
+            squared = float(b.dot(b))
+            if not squared < _REDUCED * before:
+                return _Stepped(q, at, False, step, np.inf)
+            ((x,),) = damped([aimed.jacobian(at) * self._factors], [b[None]], LEAST_DAMPING * squared)
+            length = math.sqrt(x.dot(x))
+            first, later = (first, later + length) if step else (length, later)
+            if not (first <= 1.0 and later <= MOST_CORRECTION * first):
+                break
+            v = np.zeros((1, problem.tree.nv))
+            v[0, self._columns] = self._unit * x
+            q, before = problem.tree.integrate(q, v), squared
+            at = aimed.fresh(q)
+        return _Stepped(q, at, False, step, later / first)
 
     def _aimed(self, goals: Sequence[Target]) -> Any:
         """What evaluates the closures and the targets."""
@@ -239,8 +321,8 @@ def _with_targets(
     own: Indices,
 ) -> Evaluator:
     """An evaluator of closures, followed by the targets of frames, for few elements."""
-    nowhere, kinds = Anchor(""), [FrameClosure if is_pose else PointClosure for is_pose in poses]
-    targets = [kind(name, nowhere, nowhere) for kind, name in zip(kinds, names, strict=True)]
+    nowhere = Anchor("")
+    targets = [kind_of_target(is_pose)(name, nowhere, nowhere) for is_pose, name in zip(poses, names, strict=True)]
     pairs = {index: (tree.world, site) for index, site in enumerate(sites, len(closures))}
     return Evaluator(tree, [*closures, *targets], own, few=True, sites=pairs)
 

@@ -17,7 +17,7 @@ from eurdf.kinematics.bounded_step import bounded_step, damped_step_within
 from eurdf.kinematics.closing import Closed, close
 from eurdf.kinematics.descend import next_damping
 from eurdf.kinematics.frame_targets import FrameTargets, Target
-from eurdf.kinematics.inverse_newton import InverseNewton
+from eurdf.kinematics.inverse_newton import InverseNewton, Near
 from eurdf.kinematics.path import Elements, follow, is_short
 from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits
 from eurdf.kinematics.problem import Problem
@@ -105,7 +105,6 @@ class SearchResult(NamedTuple):
         same_branch: Whether (B,) each step to q was short enough to stay on the branch of the start.
         reason: For each element why it did not converge; None if it did.
         at_limits: For each element the joints that are at their limits and would have to exceed them to come nearer.
-        openings: How far each constraint is open (B, c) each, m and rad, if that is known.
     """
 
     q: Matrix
@@ -116,23 +115,22 @@ class SearchResult(NamedTuple):
     same_branch: Mask
     reason: list[InverseKinematicsReason | None]
     at_limits: list[tuple[JointAtLimit, ...]]
-    openings: tuple[Matrix, Matrix] | None = None
 
 
 @np.errstate(all="ignore")
-def search(task: InverseTask, goals: Sequence[Target], q: Matrix) -> SearchResult:
-    """The configurations nearest to the targets, from q (B, nq)."""
-    B, near = len(q), task.newton.near(task.problem, goals, q, task.limits, task.tolerance)
+def search(task: InverseTask, goals: Sequence[Target], q: Matrix, near: Near | None = None) -> SearchResult:
+    """The configurations nearest to the targets, from q (B, nq), and what the task's Newton steps found, if known."""
+    B, near = len(q), near or task.newton.near(task.problem, goals, q, task.limits, task.tolerance)
     reason: list[InverseKinematicsReason | None] = [None] * B
     at_limits: list[tuple[JointAtLimit, ...]] = [()] * B
     starts, same_branch = np.zeros(B, dtype=np.intp), np.ones(B, dtype=bool)
-    arrays = near.q, near.position, near.angle, near.steps, starts, same_branch
+    arrays = near.q, near.position, near.angle, near.iterations, starts, same_branch
     count = np.count_nonzero(near.reached)
     if count == B:
-        return SearchResult(*arrays, reason, at_limits, near.openings)
+        return SearchResult(*arrays, reason, at_limits)
     rest = np.flatnonzero(~near.reached)
     found = _Search(task, [goal.among(rest) for goal in goals] if count else goals, len(rest)).run(q[rest])
-    found.iterations[:] += near.steps[rest]
+    found.iterations[:] += near.iterations[rest]
     for whole, own in zip(arrays, found[:6], strict=True):
         whole[rest] = own
     for index, element in enumerate(rest.tolist()):

@@ -84,7 +84,7 @@ class PositionLimits:
     def are_exceeded(self, q: Matrix) -> bool:
         """Whether a coordinate of q (B, nq) is outside of its limits."""
         coordinates, lower, upper = self._of_bounded
-        at = q[:, coordinates]
+        at = q.take(coordinates, axis=1)  # sooner than by index
         return bool(np.count_nonzero((at < lower) | (at > upper)))
 
     def are_kept(self, q: Matrix) -> Mask:

@@ -7,6 +7,7 @@ have a model of their own, of the joints between the frames alone.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from operator import attrgetter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -30,6 +31,8 @@ class Site(NamedTuple):
 
 
 Pair = tuple[Site, Site]
+
+_ROTATION, _TRANSLATION = attrgetter("rotation"), attrgetter("translation")
 
 #: A model of several clusters has at most this many velocities, ...
 BUNDLED = 40
@@ -56,14 +59,14 @@ class FewPoses(RelativePoses):
     def rotation(self) -> Matrix:  # type: ignore[override]
         """ᴬR_B (B, k, 3, 3)."""
         if self._rotation is None:
-            self._rotation = np.array([aMb.rotation for aMb in self._each()]).reshape(*self._shape, 3, 3)
+            self._rotation = np.array(list(map(_ROTATION, self._each()))).reshape(*self._shape, 3, 3)
         return self._rotation
 
     @property
     def position(self) -> Matrix:  # type: ignore[override]
         """Origin p of B in A (B, k, 3), m."""
         if self._position is None:
-            self._position = np.array([aMb.translation for aMb in self._each()]).reshape(*self._shape, 3)
+            self._position = np.array(list(map(_TRANSLATION, self._each()))).reshape(*self._shape, 3)
         return self._position
 
     def logarithm(self) -> Matrix:
@@ -290,8 +293,8 @@ class _Bundle:
     def place(self, index: int, placement: Any) -> None:
         """Move frame A of one of its pairs to another pose in its joint."""
         a, b = self._pairs[index]
-        self._pairs[index] = a._replace(placement=placement), b
-        self._models[index].joint1_placement = placement
+        self._pairs[index] = Site(a.joint, placement), b
+        self._each[index][0].joint1_placement = placement
 
     def jacobian(self) -> Matrix:
         """The twists (k, 6, own n) of B against A where `placements` last was, by the velocities."""
