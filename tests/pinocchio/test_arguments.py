@@ -27,7 +27,7 @@ CALLS: dict[str, dict[str, Any]] = {
     "achievable_acceleration": {"q": "q", "v": "v", "a": "v", "tau": "v", "external": {"coupler": 6}},
     "actuated_jacobian": {"q": "q", "frame": "coupler", "weights": "v"},
     "analyze": {"q": "q"},
-    "assemble": {"q0": "q"},
+    "assemble": {"q0": "q", "hold": "motor_crank", "hold_at": "q"},
     "closure_openings": {"q": "q"},
     "constraint_acceleration": {"q": "q", "v": "v"},
     "differential_inverse_kinematics": {"q": "q", "frame": "coupler", "twist": 6},
@@ -49,8 +49,9 @@ CALLS: dict[str, dict[str, Any]] = {
         "tau": "v",
         "external": {"coupler": 6},
         "weights": "u",
+        "u0": "u",
     },
-    "inverse_kinematics": {"targets": {"coupler": 3}, "q0": "q"},
+    "inverse_kinematics": {"targets": {"coupler": 3}, "q0": "q", "hold": "motor_crank", "hold_at": "q"},
     "lock": {"joints": (), "q": "q"},
     "mass_matrix": {"q": "q"},
     "merge_configuration": {"q_actuated": "qa", "q_free": "qf"},
@@ -100,7 +101,7 @@ def valid(name: str) -> dict[str, Any]:
     """The arguments of a valid call."""
     arguments = {}
     for parameter, given in CALLS[name].items():
-        if parameter in ("contacts", "frame", "actuator", "joints", "duration", "grid", "port"):
+        if parameter in ("contacts", "frame", "actuator", "joints", "hold", "duration", "grid", "port"):
             arguments[parameter] = given
         elif isinstance(given, Mapping):
             arguments[parameter] = {key: np.ones(size) for key, size in given.items()}
