@@ -21,6 +21,7 @@ import yaml
 import eurdf
 from eurdf.closures import REGISTRY
 from eurdf.closures.kind import ClosureKind, RelativeMotions, RelativePoses, no_angle
+from eurdf.closures.point import PointClosure
 from eurdf.closures.se3 import velocity_of_origin
 from eurdf.commands.output import output_schemas, to_json
 from eurdf.commands.robot_info import robot_info
@@ -59,6 +60,14 @@ class InPlane(ClosureKind):
     @staticmethod
     def drift(motions: RelativeMotions, fixed: Any) -> Any:
         return motions.acceleration[..., 2:]
+
+    @staticmethod
+    def jacobian_derivative(poses: RelativePoses, fixed: Any) -> Any:
+        return PointClosure.jacobian_derivative(poses, None)[..., 2:, :, :]
+
+    @staticmethod
+    def bend_derivative(poses: RelativePoses, fixed: Any, twist: Any) -> Any:
+        return PointClosure.bend_derivative(poses, None, twist)[..., 2:, :]
 
     @staticmethod
     def opening(poses: RelativePoses, fixed: Any) -> Any:

@@ -9,7 +9,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from eurdf.array import Matrix, Vector
-from eurdf.closures.kind import ClosureKind, Contact, RelativeMotions, RelativePoses
+from eurdf.closures.kind import CarriedVector, ClosureKind, Contact, RelativeMotions, RelativePoses
 from eurdf.closures.point import PointClosure
 from eurdf.closures.se3 import cross, dot, norm, outer, plane_across, skew, transposed, turned, velocity_of_origin
 from eurdf.mechanism.constraint import ClosureKey, Form, Unit, key
@@ -24,7 +24,7 @@ _LEAST_SINE = 1e-9
 # Coefficients of the series of θ / sin θ in powers of cos θ - 1, for angles below _SMALL rad, where the quotients of
 # the second derivative are of small numbers: each is -(n + 1) / (2n + 3) of the one before.
 _SERIES = np.poly1d(np.cumprod([1.0, *(-(n + 1.0) / (2.0 * n + 3.0) for n in range(9))])[::-1])
-_SLOPE, _BEND = _SERIES.deriv(), _SERIES.deriv(2)
+_SLOPES = _SERIES.deriv(), _SERIES.deriv(2), _SERIES.deriv(3)
 _SMALL = 0.1
 
 
@@ -137,7 +137,7 @@ class HingeClosure(ClosureKind):
         """p̈ and Eᵀ s̈, with s̈ = g a × β̈ + 2 g' ċ a × β̇ + (g' c̈ + g'' ċ²) a × β."""
         a = fixed.a
         beta, theta, n = motions.poses.once(_turn, fixed)
-        g, slope, bend = (values[..., None] for values in _profile(theta))
+        g, slope, bend, _ = (values[..., None] for values in _profile(theta))
         omega = motions.omega
         rate = cross(omega, beta)
         second = cross(motions.alpha, beta) + cross(omega, rate)
@@ -145,6 +145,18 @@ class HingeClosure(ClosureKind):
         s = g * cross(a, second) + 2.0 * slope * c_rate * cross(a, rate)
         s += (slope * c_second + bend * c_rate**2) * np.sin(theta)[..., None] * n
         return np.concatenate((motions.acceleration, turned(transposed(fixed.across), s)), axis=-1)
+
+    @staticmethod
+    def jacobian_derivative(poses: RelativePoses, fixed: Axes) -> Matrix:
+        """That of p, and of Eᵀ s as a function of β."""
+        of_point = PointClosure.jacobian_derivative(poses, None)
+        return np.concatenate((of_point, _carried(poses, fixed).jacobian_derivative()), axis=-3)
+
+    @staticmethod
+    def bend_derivative(poses: RelativePoses, fixed: Axes, twist: Matrix) -> Matrix:
+        """That of p, and of Eᵀ s as a function of β."""
+        of_point = PointClosure.bend_derivative(poses, None, twist)
+        return np.concatenate((of_point, _carried(poses, fixed).bend_derivative(twist)), axis=-2)
 
     @staticmethod
     def opening(poses: RelativePoses, fixed: Axes) -> tuple[Vector, Vector]:
@@ -166,19 +178,42 @@ def _turn(poses: RelativePoses, axes: Axes) -> tuple[Matrix, Vector, Matrix]:
     return beta, np.arctan2(sine, dot(axes.a, beta)), n
 
 
+def _carried(poses: RelativePoses, axes: Axes) -> CarriedVector:
+    """Eᵀ s = g(c) Eᵀ (a × β), with c = a · β, as a function of β."""
+    beta, theta, n = poses.once(_turn, axes)
+    g, slope, bend, third = (each[..., None, None] for each in _profile(theta))
+    E = transposed(axes.across)
+    across, a = E @ skew(axes.a), axes.a[..., None, :]
+    normal = turned(E, np.sin(theta)[..., None] * n)[..., None]
+    along = outer(axes.a, axes.a)[..., None, :, :]
+    mixed = across[..., :, None] * a[..., None, :]
+    second = slope[..., None] * (mixed + transposed(mixed)) + (bend * normal)[..., None] * along
+
+    def along_rates(rate: Matrix) -> Matrix:
+        c = dot(axes.a, rate)[..., None, None]
+        both = c * c * across + 2.0 * c * (across @ rate[..., None]) * a
+        return np.asarray(bend * both + third * c * c * normal * a)
+
+    by_twist = np.zeros((*beta.shape, 6))
+    by_twist[..., 3:] = -skew(beta)
+    return CarriedVector(by_twist, g * across + slope * normal * a, second, along_rates)
+
+
 def _stretch(theta: Vector) -> Vector:
     """g = θ / sin θ."""
     return np.asarray(1.0 / np.maximum(np.sinc(theta / np.pi), _LEAST_SINE / np.pi))
 
 
-def _profile(theta: Vector) -> tuple[Vector, Vector, Vector]:
-    """g = θ / sin θ, and its first and second derivative by c = cos θ.
+def _profile(theta: Vector) -> tuple[Vector, Vector, Vector, Vector]:
+    """g = θ / sin θ, and its derivatives by c = cos θ up to the third.
 
-    They satisfy (1 - c²) g' = c g - 1 and (1 - c²) g'' = 3 c g' + g.
+    They satisfy (1 - c²) g′ = c g - 1, (1 - c²) g″ = 3 c g′ + g and (1 - c²) g‴ = 5 c g″ + 4 g′.
     """
     g, c = _stretch(theta), np.cos(theta)
     squares = np.maximum(np.sin(theta), _LEAST_SINE) ** 2
     slope = (c * g - 1.0) / squares
     bend = (3.0 * c * slope + g) / squares
+    third = (5.0 * c * bend + 4.0 * slope) / squares
     small, away = theta < _SMALL, -2.0 * np.sin(0.5 * theta) ** 2  # cos θ - 1
-    return g, np.where(small, _SLOPE(away), slope), np.where(small, _BEND(away), bend)
+    found = zip(_SLOPES, (slope, bend, third), strict=True)
+    return g, *(np.where(small, series(away), quotient) for series, quotient in found)  # type: ignore[return-value]
