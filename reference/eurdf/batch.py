@@ -17,6 +17,7 @@ from eurdf.kinematics.batch import Solutions as Solutions
 from eurdf.loading import of_any_robot as _of_any_robot
 
 actuated_jacobian = _of_any_robot(batch.actuated_jacobian)
+dynamics_derivatives = _of_any_robot(batch.dynamics_derivatives)
 forward_kinematics = _of_any_robot(batch.forward_kinematics)
 inverse_kinematics = _of_any_robot(batch.inverse_kinematics)
 project_configuration = _of_any_robot(batch.project_configuration)

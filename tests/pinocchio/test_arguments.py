@@ -30,6 +30,8 @@ CALLS: dict[str, dict[str, Any]] = {
     "closure_openings": {"q": "q"},
     "differential_inverse_kinematics": {"q": "q", "frame": "coupler", "twist": 6},
     "dq_dq_actuated": {"q": "q", "weights": "v"},
+    "dq_dq_actuated_derivative": {"q": "q"},
+    "dynamics_derivatives": {"q": "q", "v": "v", "u": "u", "tau": "v", "gains": 2},
     "forward_dynamics": {
         "q": "q",
         "v": "v",
@@ -48,6 +50,7 @@ CALLS: dict[str, dict[str, Any]] = {
         "external": {"coupler": 6},
         "weights": "u",
     },
+    "inverse_dynamics_derivatives": {"q": "q", "v": "v", "a": "v", "tau": "v", "weights": "u"},
     "inverse_kinematics": {"targets": {"coupler": 3}, "q0": "q"},
     "lock": {"joints": (), "q": "q"},
     "mass_matrix": {"q": "q"},
@@ -74,6 +77,7 @@ CALLS: dict[str, dict[str, Any]] = {
     "sweep": {"actuator": "motor_crank", "q0": "q"},
     "view": {"q": "q", "port": 0},
     "batch.actuated_jacobian": {"q": "q", "frame": "coupler", "weights": "v"},
+    "batch.dynamics_derivatives": {"q": "q", "v": "v", "u": "u", "tau": "v", "gains": 2},
     "batch.forward_kinematics": {"values": "qa", "q0": "q"},
     "batch.inverse_kinematics": {"targets": {"coupler": 3}, "q0": "q"},
     "batch.project_configuration": {"q": "q", "weights": "v"},
@@ -104,7 +108,7 @@ def valid(name: str) -> dict[str, Any]:
         else:
             arguments[parameter] = array(parameter, given)
     if name.startswith("batch."):  # of two elements
-        for parameter in arguments.keys() & {"q", "q0", "values"}:
+        for parameter in arguments.keys() & {"q", "q0", "values", "v", "u", "tau"}:
             arguments[parameter] = np.tile(arguments[parameter], (2, 1))
         if "targets" in arguments:
             arguments["targets"] = {"coupler": np.zeros((2, 3))}
@@ -256,7 +260,7 @@ for target in (np.ones(3), pin.SE3.Random()):
     assert not found.converged
 for function, *arguments in [
     (eurdf.kinematics.achievable_acceleration, none, none, none), (eurdf.actuated_jacobian, {link!r}, none),
-    (eurdf.analyze, none),
+    (eurdf.analyze, none), (eurdf.dynamics_derivatives, none, none),
     (eurdf.assemble, none), (eurdf.kinematics.closure_openings, none),
     (eurdf.differential_inverse_kinematics, {link!r}, none, np.ones(6)), (eurdf.kinematics.dq_dq_actuated, none),
     (eurdf.forward_dynamics, none, none, none), (eurdf.forward_kinematics, none), (eurdf.forward_kinematics, {{}}),

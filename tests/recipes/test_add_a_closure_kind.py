@@ -34,6 +34,7 @@ from eurdf.mechanism.constraint import Unit, key
 from eurdf.mechanism.same_model import differences
 from eurdf.pinocchio.robot import Robot, build_robot
 from eurdf.writing.description import NotWritable, describe_mechanism
+from support.differences import slope
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,6 +97,10 @@ def test_residual_has_its_derivatives(robot: Robot) -> None:
     ahead, here, behind = (eurdf.residual(robot, tree.integrate(q, t * v)) for t in (h, 0.0, -h))
     np.testing.assert_allclose(K @ v, (ahead - behind) / (2.0 * h), atol=1e-7)
     np.testing.assert_allclose(acceleration_drift(robot, q, v), (ahead - 2.0 * here + behind) / h**2, atol=1e-3)
+    w = random.uniform(-1.0, 1.0, tree.nv)
+    found = eurdf.dynamics_derivatives(robot, q, v, gains=(20.0, 5.0)).a_q @ w
+    by_differences = slope(lambda t: eurdf.forward_dynamics(robot, tree.integrate(q, t * w), v, gains=(20.0, 5.0)).a, h)
+    np.testing.assert_allclose(found, by_differences, rtol=0.0, atol=1e-5 * np.abs(found).max())
 
 
 def test_robot_closes_moves_and_falls(robot: Robot) -> None:
