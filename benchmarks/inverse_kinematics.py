@@ -7,6 +7,13 @@ errors at its end are in the second table, and one that ends above 1e-6 is not c
 limits and checks that it stays on the branch; the columns without limits compare like with like. A dash is where a
 solver cannot do a robot.
 
+`eurdf` takes about as many steps as plain Newton, and evaluates only the loops that carry the frame, so that it takes
+less time for large robots. For a small one, the calls of Pinocchio and LAPACK in these steps take about a third of the
+time of plain Newton, and the checks of arguments and limits, with the result, a sixth. The rest is Python: one code
+evaluates each kind of closure, for one configuration and for many. Where Newton's steps do not stay on the branch
+beyond doubt, as near a singular configuration (`digit_leg`, some targets of `cassie_leg`), the search of `eurdf` takes
+over.
+
 Pink and mink have the loops as equality constraints of their quadratic program, or, where that has no solution
 (redundant rows), as a task of cost 100; they take the whole step that it says. Pink has the rows of plain Newton
 (`benchmarks/plain_newton.py`), mink those of the MJCF. placo runs in an environment of its own, whose Python

@@ -5,6 +5,12 @@ Gravity and springs act, and nothing else; joints move by up to 0.5 rad/s or m/s
 simulated; then the loops are open by what the table states (m, rad). A step of four evaluations and a projection is
 also compared with one `eurdf.forward_dynamics`. Robots of fewer than 20 velocities have no goal to MuJoCo: they take
 what the calls from Python take.
+
+The floor is what the calls of Pinocchio take: four of its solver, three to five Jacobians, an inverse dynamics,
+integrations and energies. In a step of five_bar they take 23 µs, twice what MuJoCo takes for all of it; 60 to 100
+calls of NumPy on small arrays, 0.3 to 1 µs each, and 120 to 170 of Python take the rest. With distances, couplings or
+redundant rows, each of the four evaluations also needs M⁻¹ and a Jacobian: in a step of tello and toddlerbot_2legs, the
+calls of Pinocchio alone take 2.6 and 2.8 times what MuJoCo takes for all of it.
 """
 
 from __future__ import annotations

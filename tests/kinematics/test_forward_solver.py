@@ -97,6 +97,22 @@ def test_every_kind_and_redundant_rows_get_forces_of_elimination(name: str, elim
     np.testing.assert_allclose(K.T @ np.concatenate(found.forces), h, atol=1e-9 * (1.0 + np.abs(h).max()))
 
 
+@pytest.mark.parametrize("name", ["double_wishbone", "robotiq_2f85", "tello"])
+def test_gains_act_on_rows_of_every_kind(name: str, eliminations: Counted) -> None:
+    """Ajar by less than 1e-9, with gains so large that it matters."""
+    robot = eurdf.load(name, geometry=False)
+    (q, _), random = state(robot), np.random.default_rng(1)
+    q = robot.tree.normalized(robot.tree.integrate(q, 1e-10 * random.normal(size=robot.tree.nv)))
+    v = 1e-10 * random.normal(size=robot.tree.nv)
+    found, free = eurdf.forward_dynamics(robot, q, v, gains=(1e10, 1e9)), eurdf.forward_dynamics(robot, q, v)
+    assert eliminations.count == 0
+    exact = EquationOfMotion(robot, q, v, robot.tree.dynamics(robot.data)).eliminate(
+        eurdf.springs.spring_force(robot, q), [(1e10, 1e9)] * len(robot.constraints)
+    )
+    assert np.abs(found.a - free.a).max() > 0.01
+    np.testing.assert_allclose(found.a, exact.a, atol=1e-6 * np.abs(exact.a).max())
+
+
 @pytest.mark.parametrize(("bend", "rank", "eliminated"), [(1e-2, 3, 0), (1e-3, 3, 1), (0.0, 2, 0)])
 def test_elimination_decides_near_singular_pose(bend: float, rank: int, eliminated: int, eliminations: Counted) -> None:
     robot, zero = stretched(bend), np.zeros(4)

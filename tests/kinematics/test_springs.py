@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import eurdf
+from benchmarks.dynamics import in_3d
 from eurdf.kinematics.closing import close
 from eurdf.kinematics.split import split_configuration
 from eurdf.kinematics.springs import spring_equilibrium
@@ -146,6 +147,19 @@ def test_spring_of_a_mimic_joint_that_stands_still_acts_on_nothing() -> None:
     q = eurdf.forward_kinematics(robot, {})
     assert coordinate(robot, q, "leader") == 0.0
     assert eurdf.springs.spring_energy(robot, q) == pytest.approx(0.14)
+
+
+def test_spring_that_no_free_motion_deflects_takes_no_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    # With ball joints in place of its hinge and rod, two links spin freely; the motor alone decides on the spring.
+    robot = in_3d(eurdf.load("double_wishbone", geometry=False))
+    q0 = eurdf.assemble(robot).q
+
+    def refuse(*_: Any) -> None:
+        raise AssertionError("rounding of what the spring stores was minimised")
+
+    monkeypatch.setattr("eurdf.kinematics.springs.close", refuse)
+    q = eurdf.forward_kinematics(robot, split_configuration(robot, q0)[0] + 0.02, q0)
+    assert eurdf.springs.spring_energy(robot, q) > 1.0
 
 
 def test_rod_that_spins_does_not_delay_the_springs(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,7 +12,7 @@ from benchmarks.loops import four_bars
 from eurdf.collection import collection_names
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.residual import residual_and_jacobian
-from eurdf.kinematics.tangent_space import TangentSpaces
+from eurdf.kinematics.tangent_space import LeastSolutions, TangentSpaces
 from support.linkage import n_bar, slider_crank, stewart
 
 
@@ -75,3 +75,20 @@ def test_loops_of_one_shape_are_decomposed_alike() -> None:
     np.testing.assert_allclose(K @ space.basis, 0.0, atol=1e-12)
     expected = spaces.scale[:, None] * np.linalg.pinv(A, rcond=1e-9) * spaces.row_scale
     np.testing.assert_allclose(space.inverse, expected, rtol=0.0, atol=1e-12 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("name", ["cassie_leg", "five_bar", "double_wishbone"])
+@pytest.mark.parametrize("size", [1e-10, 1.0])
+def test_least_solutions_of_moving_robot(name: str, size: float) -> None:
+    """Those of the K before serve nearby, where a redundant row stays one, and not far away."""
+    robot, random = eurdf.load(name, geometry=False), np.random.default_rng(0)
+    spaces, q = TangentSpaces(robot), eurdf.assemble(robot).q
+    least, along = LeastSolutions(spaces), eurdf.project_velocity(robot, q, random.normal(size=robot.tree.nv))
+    for distance in (0.0, 1e-3, 2e-3, 0.2):
+        _, K = residual_and_jacobian(robot, eurdf.assemble(robot, robot.tree.integrate(q, distance * along)).q)
+        b = size * K @ random.normal(size=robot.tree.nv)
+        (v,) = least.of(K, b[None], 1e-6 * size)
+        np.testing.assert_allclose(K @ v, b, rtol=0.0, atol=2e-6 * size)
+        exact = spaces.at(K).inverse @ b
+        accuracy = 1e-9 if size == 1.0 else 0.1
+        np.testing.assert_allclose(v, exact, rtol=0.0, atol=accuracy * np.abs(exact).max())

@@ -13,6 +13,8 @@ from eurdf.closures.kind import CarriedVector, ClosureKind, RelativeMotions, Rel
 from eurdf.closures.se3 import IDENTITY_ROTATION, dot, norm, outer, turned, velocity_of_origin
 from eurdf.mechanism.constraint import Unit, key
 
+_ONES = np.ones(3)
+
 
 @dataclass(frozen=True, slots=True)
 class DistanceClosure(ClosureKind):
@@ -36,6 +38,14 @@ class DistanceClosure(ClosureKind):
     def prepare(cls, closures: Sequence[DistanceClosure]) -> Vector:
         """The lengths (k,)."""
         return np.array([closure.length for closure in closures])
+
+    @staticmethod
+    def of_distance(p: Matrix, velocity: Matrix, fixed: Vector) -> tuple[Vector, Matrix, Vector]:
+        """|p| - length, u, and (|ṗ|² - (u · ṗ)²) / |p|; not finite at p = 0."""
+        distance = np.sqrt((p * p).dot(_ONES))  # for few, sooner than by `dot`
+        u = p / distance[:, None]
+        along = (u * velocity).dot(_ONES)
+        return distance - fixed, u, ((velocity * velocity).dot(_ONES) - along * along) / distance
 
     @staticmethod
     def residual(poses: RelativePoses, fixed: Vector) -> Matrix:

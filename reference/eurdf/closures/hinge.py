@@ -21,6 +21,9 @@ _ON_AXIS = 0.1
 # The sine of θ near half a turn, where the shortest rotation has no derivative, is taken as no less than this.
 _LEAST_SINE = 1e-9
 
+# In place of θ = 0, where θ / sin θ is 1.
+_TINY = 1e-300
+
 # Coefficients of the series of θ / sin θ in powers of cos θ - 1, for angles below _SMALL rad, where the quotients of
 # the second derivative are of small numbers: each is -(n + 1) / (2n + 3) of the one before.
 _SERIES = np.poly1d(np.cumprod([1.0, *(-(n + 1.0) / (2.0 * n + 3.0) for n in range(9))])[::-1])
@@ -35,11 +38,29 @@ class Axes(NamedTuple):
         a: Axis (k, 3) in A.
         b: Axis (k, 3) in B.
         across: E (k, 3, 2), which spans the plane across a.
+        about: Eᵀ [a]ₓ (k, 2, 3).
+        onto: The same, followed by aᵀ (k, 3, 3).
     """
 
     a: Matrix
     b: Matrix
     across: Matrix
+    about: Matrix
+    onto: Matrix
+
+
+class _Turn(NamedTuple):
+    """How k hinges are turned.
+
+    Attributes:
+        beta: β (…, k, 3).
+        theta: The angle θ (…, k) from a to β, in [0, π].
+        n: Eᵀ n (…, k, 2) of the unit vector n about which it turns.
+    """
+
+    beta: Matrix
+    theta: Vector
+    n: Matrix
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,24 +133,25 @@ class HingeClosure(ClosureKind):
         axes = np.array([closure.axes for closure in closures], dtype=np.float64)
         axes /= np.abs(axes).max(axis=2, keepdims=True)  # of any length, also of one whose square is out of range
         axes /= norm(axes)[..., None]
-        return Axes(axes[:, 0], axes[:, 1], np.array([plane_across(a) for a in axes[:, 0]]))
+        a, across = axes[:, 0], np.array([plane_across(a) for a in axes[:, 0]])
+        about = transposed(across) @ skew(a)
+        return Axes(a, axes[:, 1], across, about, np.concatenate((about, a[:, None]), axis=1))
 
     @staticmethod
     def residual(poses: RelativePoses, fixed: Axes) -> Matrix:
         """p and Eᵀ s."""
-        _, theta, n = poses.once(_turn, fixed)
-        return np.concatenate((poses.position, turned(transposed(fixed.across), theta[..., None] * n)), axis=-1)
+        turn = poses.once(_turn, fixed)
+        return np.concatenate((poses.position, turn.theta[..., None] * turn.n), axis=-1)
 
     @staticmethod
     def jacobian(poses: RelativePoses, fixed: Axes) -> Matrix:
         """[1, -skew(p); 0, Eᵀ S], where ṡ = S ω = g a × (ω × β) + (1 - g c) (n · ω) n."""
         beta, theta, n = poses.once(_turn, fixed)
         g = _stretch(theta)
-        S = (1.0 - g * np.cos(theta))[..., None, None] * outer(n, n)
-        S -= g[..., None, None] * (skew(fixed.a) @ skew(beta))
         rows = np.zeros((*theta.shape, 5, 6))
         rows[..., :3, :] = velocity_of_origin(poses.position)
-        rows[..., 3:, 3:] = transposed(fixed.across) @ S
+        rows[..., 3:, 3:] = outer((1.0 - g * np.cos(theta))[..., None] * n, turned(fixed.across, n))
+        rows[..., 3:, 3:] -= g[..., None, None] * (fixed.about @ skew(beta))
         return rows
 
     @staticmethod
@@ -137,6 +159,7 @@ class HingeClosure(ClosureKind):
         """p̈ and Eᵀ s̈, with s̈ = g a × β̈ + 2 g' ċ a × β̇ + (g' c̈ + g'' ċ²) a × β."""
         a = fixed.a
         beta, theta, n = motions.poses.once(_turn, fixed)
+        n = turned(fixed.across, n)
         g, slope, bend, _ = (values[..., None] for values in _profile(theta))
         omega = motions.omega
         rate = cross(omega, beta)
@@ -167,24 +190,21 @@ class HingeClosure(ClosureKind):
 KIND = HingeClosure
 
 
-def _turn(poses: RelativePoses, axes: Axes) -> tuple[Matrix, Vector, Matrix]:
-    """β (…, k, 3), the angle θ (…, k) from a to β, in [0, π], and the unit vector n (…, k, 3) about which it turns."""
+def _turn(poses: RelativePoses, axes: Axes) -> _Turn:
     beta = turned(poses.rotation, axes.b)
-    normal = cross(axes.a, beta)
-    sine = norm(normal)
-    n = np.empty_like(normal)
-    n[...] = axes.across[..., 0]
+    seen = turned(axes.onto, beta)  # Eᵀ (a × β), and a · β
+    normal, sine = seen[..., :2], np.hypot(seen[..., 0], seen[..., 1])
+    n = np.zeros_like(normal)
+    n[..., 0] = 1.0
     np.divide(normal, sine[..., None], out=n, where=sine[..., None] > 0.0)
-    return beta, np.arctan2(sine, dot(axes.a, beta)), n
+    return _Turn(beta, np.arctan2(sine, seen[..., 2]), n)
 
 
 def _carried(poses: RelativePoses, axes: Axes) -> CarriedVector:
     """Eᵀ s = g(c) Eᵀ (a × β), with c = a · β, as a function of β."""
     beta, theta, n = poses.once(_turn, axes)
     g, slope, bend, third = (each[..., None, None] for each in _profile(theta))
-    E = transposed(axes.across)
-    across, a = E @ skew(axes.a), axes.a[..., None, :]
-    normal = turned(E, np.sin(theta)[..., None] * n)[..., None]
+    across, a, normal = axes.about, axes.a[..., None, :], (np.sin(theta)[..., None] * n)[..., None]
     along = outer(axes.a, axes.a)[..., None, :, :]
     mixed = across[..., :, None] * a[..., None, :]
     second = slope[..., None] * (mixed + transposed(mixed)) + (bend * normal)[..., None] * along
@@ -201,7 +221,8 @@ def _carried(poses: RelativePoses, axes: Axes) -> CarriedVector:
 
 def _stretch(theta: Vector) -> Vector:
     """g = θ / sin θ."""
-    return np.asarray(1.0 / np.maximum(np.sinc(theta / np.pi), _LEAST_SINE / np.pi))
+    theta = np.maximum(theta, _TINY)
+    return np.asarray(np.minimum(theta / np.sin(theta), np.pi / _LEAST_SINE))
 
 
 def _profile(theta: Vector) -> tuple[Vector, Vector, Vector, Vector]:

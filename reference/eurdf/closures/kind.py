@@ -208,6 +208,15 @@ class ClosureKind(Closure, ABC):
         """λ (r,) over the λ of the contacts: (r, rows of the contacts); None if their rows are those of the closure."""
         return None
 
+    @staticmethod
+    def of_distance(p: Matrix, velocity: Matrix, fixed: Any) -> tuple[Vector, Matrix, Vector] | None:
+        """r (k,) of a kind of one row that depends only on |p|, its gradient, and what r̈ has besides this · p̈.
+
+        None for another kind. p (k, 3), m, and its ``velocity`` (k, 3), m/s, are those of B against A in the axes of A,
+        or in others that do not turn: these rows are combinations of those that hold the origins together.
+        """
+        return None
+
     @classmethod
     def prepare(cls, closures: Sequence[Self]) -> Any:
         """What the functions below need of k closures, as arrays."""

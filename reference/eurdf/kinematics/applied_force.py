@@ -40,6 +40,11 @@ class AppliedForce:
             ]
             self._external = frames(robot, list(external), few=True), np.array(forces)
 
+    @property
+    def is_constant_zero(self) -> bool:
+        """Whether nothing acts but springs, unless motors or additional forces do."""
+        return self._external is None and not self._dissipation
+
     def at(self, q: Vector, v: Vector, u: Named | None = None, tau: Named | None = None) -> Vector:
         """Generalized force (nv,) of all but the springs at q (nq,) and v (nv,).
 

@@ -161,7 +161,11 @@ def closed_start(problem: Problem, q: Vector, tolerance: float, where: str = "th
 
 def openings(problem: Problem, q: Matrix) -> tuple[Opening, ...]:
     """How far each constraint is open at a configuration (1, nq)."""
-    lengths, angles = problem.openings(q)
+    return opened(problem, *problem.openings(q))
+
+
+def opened(problem: Problem, lengths: Matrix, angles: Matrix) -> tuple[Opening, ...]:
+    """How far each constraint is open, by the lengths (1, c), m, and the angles (1, c), rad."""
     return tuple(map(Opening, problem.names, lengths[0].tolist(), angles[0].tolist()))
 
 

@@ -25,8 +25,10 @@ from eurdf.kinematics.derivatives import DerivativesTask, DynamicsDerivatives, d
 from eurdf.kinematics.evaluate import Evaluator, evaluator, frames
 from eurdf.kinematics.forward import driving_many, given_many, goals, in_equilibrium, moved_many
 from eurdf.kinematics.frame_jacobian import checked_reference
+from eurdf.kinematics.frame_targets import Target
 from eurdf.kinematics.inverse import checked_targets
-from eurdf.kinematics.inverse_search import InverseKinematicsReason, InverseTask, Target, search
+from eurdf.kinematics.inverse_newton import newton_for_many
+from eurdf.kinematics.inverse_search import InverseKinematicsReason, InverseTask, search
 from eurdf.kinematics.metric import metric
 from eurdf.kinematics.named import Named, NamedRows, configurations_of
 from eurdf.kinematics.position_limit import chosen_limits
@@ -471,7 +473,9 @@ def inverse_kinematics(
     q, _ = starts(robot, q0, count)
     poses = tuple(goal.rotation is not None for goal in goals)
     chosen, restarts = chosen_limits(robot, limits), checked_count("restarts", restarts, 0)
-    task = InverseTask(model, places, poses, chosen, checked_tolerance(tolerance), restarts)
+    task = InverseTask(
+        model, places, newton_for_many(robot, poses, names), poses, chosen, checked_tolerance(tolerance), restarts
+    )
     arrays = [part for goal in goals for part in (goal.position, goal.rotation) if part is not None]
     numbers = 2 * model.numbers + 40 * len(goals) * model.tree.nv
     found = blocks(numbers, block, threads, executor, progress).map(_searched, task, (q, *arrays))

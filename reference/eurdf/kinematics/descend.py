@@ -45,6 +45,9 @@ from eurdf.kinematics.tolerances import (
     POOR_SHARE,
 )
 
+# With a λ of this fraction of the trace, and this much, A Aᵀ is invertible even with redundant rows.
+_LEAST_OF_TRACE, _LEAST = 1e-13, 1e-300
+
 
 class Descended(NamedTuple):
     """Where descents end; B elements.
@@ -213,7 +216,7 @@ def _steps(
 
     And the configurations (B, nq) that they lead to.
     """
-    free = _damped(A, b, damping)
+    free = damped(A, b, damping)
     steps = _shortened(free)
     there = problem.moved(q, groups, steps)
     if limits is None or not problem.exceeds(there, groups, limits):
@@ -234,8 +237,16 @@ def _shortened(steps: list[Matrix]) -> list[Matrix]:
     return [step / column(longest) for step in steps] if some(longest > 1.0) else steps
 
 
-def _damped(A: Sequence[Matrix], b: Sequence[Matrix], damping: Numbers) -> list[Matrix]:
+def damped(A: Sequence[Matrix], b: Sequence[Matrix], damping: Numbers) -> list[Matrix]:
     """The δ (B, n) that minimise Σ |A δ + b|² + λ |δ|², from the smaller of A Aᵀ and Aᵀ A of each group."""
+    if len(A) == len(b[0]) == 1:  # the same in fewer steps
+        ((one,),), ((rows,),) = A, b
+        back, is_wide = one.T, len(one) < one.shape[1]
+        gram = one.dot(back) if is_wide else back.dot(one)
+        diagonal = gram.ravel()[:: len(gram) + 1]
+        diagonal += max(damping, _LEAST_OF_TRACE * sum(diagonal.tolist()) + _LEAST)
+        step: Vector = back.dot(solutions(gram, -rows)) if is_wide else solutions(gram, -back.dot(rows))
+        return [step[None]]
     grams = []
     trace: Numbers = 0.0
     for own in A:
@@ -244,8 +255,7 @@ def _damped(A: Sequence[Matrix], b: Sequence[Matrix], damping: Numbers) -> list[
         diagonal = diagonals(gram)
         grams.append((back, is_wide, gram, diagonal))
         trace = trace + total(diagonal)
-    # Invertible even with redundant rows.
-    damping = column(at_least(damping, 1e-13 * trace + 1e-300))
+    damping = column(at_least(damping, _LEAST_OF_TRACE * trace + _LEAST))
     steps: list[Matrix] = []
     for (back, is_wide, gram, diagonal), rows in zip(grams, b, strict=True):
         diagonal += damping
@@ -272,6 +282,6 @@ def _stay_within(
         if not len(which):
             return
         moving = [np.where(own[which][:, None], 0.0, each[which]) for each, own in zip(A, held, strict=True)]
-        changed = _damped(moving, [each[which] for each in b], damping[which])
+        changed = damped(moving, [each[which] for each in b], damping[which])
         for step, new, own in zip(steps, changed, held, strict=True):
             step[which] = np.where(own[which], 0.0, new)

@@ -84,8 +84,8 @@ def forward_dynamics(
 
     Pinocchio's proximal solver is used (Carpentier, Budhiraja, Mansard, *Proximal and sparse resolution of constrained
     dynamic equations*, 2021) if no joint mimics another, the closures are closed to 1e-9 and K v = 0, the dimensionless
-    K Kᵀ has a condition number of at most 1e6, and the solution satisfies both equations to 1e-9; its decomposition
-    also gives the forces of the constraints that it has no model for. Otherwise the equations are solved by
+    K Kᵀ has a condition number of at most 1e6, and the solution satisfies both equations to 1e-9; with distances and
+    couplings, which it has no model for, it gives the terms of the equations. Otherwise the equations are solved by
     elimination, which is slower: redundant rows that differ by rounding would lock the mechanism, and Pinocchio needs
     inertia at every joint, even at one that the closures do not let move.
 

@@ -87,7 +87,7 @@ class EquationOfMotion:
             own = motor[velocities]
             basis, values, right = np.linalg.svd((free * (own >= 0)[:, :, None]).swapaxes(1, 2), full_matrices=False)
             found.append(_Driven(velocities, own, free @ basis, values, right.swapaxes(1, 2)))
-        every = np.concatenate([each.values.ravel() for each in found])
+        every = np.concatenate([np.zeros(0), *(each.values.ravel() for each in found)])
         every[::-1].sort()
         rank = numerical_rank(every)
         if rank < len(every):
@@ -104,7 +104,7 @@ class EquationOfMotion:
             for group, column in zip(*np.nonzero(values == 0.0), strict=True):
                 columns.append(np.zeros(len(self.unit)))
                 columns[-1][velocities[group]] = motions[group, :, column]
-        return np.array(columns).reshape(-1, len(self.unit)).T
+        return np.array(columns).reshape(len(columns), len(self.unit)).T
 
     def torques(self, required: Vector, norm: Vector) -> Vector:
         """The u (nu,) with the required force (nv,) on the free motions that motors move, and the least |u / norm|."""

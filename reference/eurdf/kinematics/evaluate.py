@@ -7,13 +7,13 @@ give the same numbers. What overflows is inf or NaN.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from eurdf.array import Indices, Matrix
+from eurdf.array import Indices, Matrix, Vector
 from eurdf.closures.coupling import Couplings
 from eurdf.closures.kind import ClosureKind, RelativePoses
 from eurdf.closures.se3 import IDENTITY_ROTATION, velocity_of_origin
@@ -71,6 +71,10 @@ class _ByConfiguration(ABC):
     _key: bytes | None = None  # of the configuration of the last state of one element
     _last: Any = None
 
+    def fresh(self, q: Matrix) -> Any:
+        """The state at q (B, nq), which the caller leaves as it is; it is not kept."""
+        return self._state(q)
+
     def at(self, q: Matrix) -> Any:
         """The state at q (B, nq)."""
         if not self._few or len(q) != 1:
@@ -100,8 +104,18 @@ class Evaluator(_ByConfiguration):
         couplings: The couplings, their indices among the constraints, and their rows; None if there are none.
     """
 
-    def __init__(self, tree: Tree, constraints: Sequence[Constraint], velocities: Indices, *, few: bool) -> None:
+    def __init__(
+        self,
+        tree: Tree,
+        constraints: Sequence[Constraint],
+        velocities: Indices,
+        *,
+        few: bool,
+        sites: Mapping[int, Pair] | None = None,
+    ) -> None:
         """Take constraints, in the order of their rows, and indices in v; for few configurations at once, or many.
+
+        ``sites`` are the frames of constraints, by index, that are not between bodies.
 
         Raises:
             NotImplementedError: A constraint is of a kind that has no mathematics.
@@ -109,6 +123,7 @@ class Evaluator(_ByConfiguration):
         self.closures: tuple[int, ...] = tuple(range(len(constraints)))
         self.velocities, self.n = velocities, len(velocities)
         self._count, self.m = len(constraints), 0
+        sites = {} if sites is None else sites
         members: dict[type[Constraint], list[int]] = {}
         first: list[int] = []  # of each constraint its first row
         for index, constraint in enumerate(constraints):
@@ -116,6 +131,7 @@ class Evaluator(_ByConfiguration):
             first.append(self.m)
             self.m += constraint.rows
         self.sites: list[Pair] = []
+        self._pair_of: dict[int, int] = {}  # of each constraint with a pair
         self.groups: list[SameKind] = []
         self.couplings: tuple[Couplings, slice | Indices, slice | Indices] | None = None
         for kind, found in members.items():
@@ -128,7 +144,9 @@ class Evaluator(_ByConfiguration):
             if not issubclass(kind, ClosureKind):
                 raise NotImplementedError(f"constraint '{own[0].name}' has the type '{kind.type}', which has no kind")
             pairs = slice(len(self.sites), len(self.sites) + len(own))
-            self.sites += [(tree.site(each.a), tree.site(each.b)) for each in own]
+            for index, each in zip(found, own, strict=True):
+                self._pair_of[index] = len(self.sites)
+                self.sites.append(sites[index] if index in sites else (tree.site(each.a), tree.site(each.b)))
             self.groups.append(SameKind(kind, kind.prepare(own), indices, pairs, chosen, len(rows)))
         # The rows of the residual are those of one kind, in order.
         self._is_plain = self.couplings is None and len(self.groups) == 1
@@ -144,6 +162,11 @@ class Evaluator(_ByConfiguration):
         return _few_pairs(self._tree, self.sites, self.velocities)
 
     @property
+    def is_by_pinocchio(self) -> bool:
+        """Whether Pinocchio evaluates the constraints, and frames can be moved."""
+        return isinstance(self._pairs, FewPairs)
+
+    @property
     def numbers(self) -> int:
         """Numbers that the residual and K of one element take, roughly."""
         return self.numbers_of_residual + 3 * self.m * self.n + 2 * self.m * self.m
@@ -157,6 +180,11 @@ class Evaluator(_ByConfiguration):
         """The constraints at q (1, nq), by Pinocchio, sooner than memory to evaluate them in is made."""
         assert self._tree is not None
         return self._state(q, poses_once(self._tree.model, self._tree.parents, self.sites, q[0]))
+
+    def place(self, index: int, rotation: Matrix, position: Vector) -> None:
+        """Move frame A of a constraint to another pose in its joint, for the configurations that follow."""
+        self._pairs.place(self._pair_of[index], rotation, position)
+        self._key = None
 
     def residual(self, at: State) -> Matrix:
         """The residual (B, m), m and rad, to read: it may be kept with the poses."""
@@ -265,9 +293,12 @@ class Frames(_ByConfiguration):
         rows[..., :3, :], rows[..., 3:, 3:] = velocity_of_origin(p), IDENTITY_ROTATION
         return self.rows(at, rows).reshape(*p.shape[:2], 6, self._pairs.n)
 
-    def rows(self, at: Any, rows: Matrix) -> Matrix:
-        """The derivative (B, F r, nv) of rows (B, F, r, 6) over the twists of the point at the world's origin."""
-        K: Matrix = self._pairs.jacobian(at, slice(0, rows.shape[1]), rows)
+    def rows(self, at: Any, rows: Matrix, which: slice | None = None) -> Matrix:
+        """The derivative (B, F r, n) of rows (B, F, r, 6) over the twists of the point at the world's origin.
+
+        They are those of all frames, or of some.
+        """
+        K: Matrix = self._pairs.jacobian(at, slice(0, rows.shape[1]) if which is None else which, rows)
         return K
 
 
@@ -280,9 +311,9 @@ def frames(robot: Robot, names: Sequence[str], *, few: bool) -> Frames:
     return frames_at(robot.tree, robot.tree.frame_sites(names), few=few)
 
 
-def frames_at(tree: Tree, sites: Sequence[Any], *, few: bool) -> Frames:
-    """Frames at some sites of the tree, as `eurdf.pinocchio.tree_few.Site`."""
-    pairs, velocities = [(tree.world, site) for site in sites], np.arange(tree.nv)
+def frames_at(tree: Tree, sites: Sequence[Any], velocities: Indices | None = None, *, few: bool) -> Frames:
+    """Frames at some sites of the tree, with derivatives by some velocities, or all."""
+    pairs, velocities = [(tree.world, site) for site in sites], np.arange(tree.nv) if velocities is None else velocities
     if few:
         return Frames(_few_pairs(tree, pairs, velocities), few=True)
     return Frames(ManyPairs(tree.cached(TreeMany), pairs, velocities), few=False)

@@ -18,6 +18,7 @@ from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.pinocchio.constrained_dynamics import Gains, StatedGains
 from eurdf.pinocchio.limbs import Limb, LimbsDynamics
 from eurdf.pinocchio.tree_dynamics import MOST_VELOCITIES_WITH_DATA, TreeDynamics
+from eurdf.pinocchio.tree_few import as_slice
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -39,7 +40,7 @@ class ForwardSolver:
         self.rows = tuple(loop.rows for loop in find_loops(robot))
         self._whole: LimbSolver | None = None
         self._limbs: list[LimbSolver] = []
-        self._combinations: Matrix | None = None  # of redundant rows, as many as are independent
+        self._is_judged = False  # whether the last solution of `acceleration` that was judged is beyond doubt
         self._own: TreeDynamics | None = None
         if not robot.constraints or len(robot.model.mimicking_joints):
             return
@@ -54,7 +55,7 @@ class ForwardSolver:
             self._joints = []
             for limb in divided.limbs:
                 own, at = np.nonzero(limb.velocities[:, None] == divided.trunk)
-                self._joints.append((own, at, np.eye(len(limb.velocities))[:, own]))
+                self._joints.append((as_slice(own), as_slice(at), np.ix_(at, at), np.eye(len(limb.velocities))[:, own]))
         if robot.tree.nv <= MOST_VELOCITIES_WITH_DATA:
             self._whole = LimbSolver(robot, Limb(robot.tree), range(len(robot.constraints)))
 
@@ -76,16 +77,7 @@ class ForwardSolver:
         return self.own if data is None else self._tree.dynamics(data)
 
     def solve(
-        self,
-        robot: Robot,
-        q: Vector,
-        v: Vector,
-        force: Vector,
-        gains: list[Gains],
-        dynamics: TreeDynamics,
-        *,
-        nearly_closed: bool = False,
-        within_step: bool = False,
+        self, robot: Robot, q: Vector, v: Vector, force: Vector, gains: list[Gains], dynamics: TreeDynamics
     ) -> Acceleration:
         """Solve M a + h = τ + Kᵀ λ and K a + K̇ v = -kd K v - kp r.
 
@@ -96,18 +88,46 @@ class ForwardSolver:
             force: τ (nv,).
             gains: Baumgarte gains of each constraint: kp, 1/s², and kd, 1/s.
             dynamics: Those of the tree.
-            nearly_closed: Whether a drift will do that equals K̇ v only where the constraints hold and K v = 0, as
-                between the steps of an integration, which start and end there.
-            within_step: Whether the state is one between these steps, and the step began at the last one that was not.
 
         Raises:
             UndeterminedMotion: A joint without inertia can move.
             NumericalOverflow: The result is not finite.
         """
-        solution = self.beyond_doubt(q, v, force, gains, dynamics, nearly_closed=nearly_closed, within_step=within_step)
-        if solution is None:
-            solution = _eliminated(robot, q, v, force, gains, dynamics)
-        return solution
+        solution = self.beyond_doubt(q, v, force, gains, dynamics)
+        return _eliminated(robot, q, v, force, gains, dynamics) if solution is None else solution
+
+    def acceleration(
+        self, robot: Robot, q: Vector, v: Vector, force: Vector, gains: list[Gains], *, within_step: bool
+    ) -> Vector:
+        """The a (nv,) of `solve` in an integration, with the dynamics that are its own.
+
+        Any drift will do that equals K̇ v where the constraints hold and K v = 0: its steps start and end there. The
+        rank of K and the solution are judged at the start of a step, but not ``within_step``.
+        """
+        dynamics = self._own or self.own
+        if within_step and self._is_judged:
+            a = self._within_step(q, v, force, gains, dynamics.data)
+            if a is not None:
+                return a
+        solution = self.beyond_doubt(q, v, force, gains, dynamics, nearly_closed=True)
+        self._is_judged = solution is not None
+        return (_eliminated(robot, q, v, force, gains, dynamics) if solution is None else solution).a
+
+    def _within_step(self, q: Vector, v: Vector, force: Vector, gains: list[Gains], data: Any) -> Vector | None:
+        """As `acceleration`, near a state that was judged; None if a solver is not sure."""
+        if not self._limbs:
+            return None if self._whole is None else self._whole.acceleration(q, v, force, gains, data, True)
+        shared, alone = force / self._shares, []
+        for solver in self._limbs:
+            limb = solver.limb
+            own_a = solver.acceleration(q, v, limb.part_of_v(shared), gains, limb.dynamics.data, True)
+            if own_a is None:
+                return None
+            alone.append(own_a)
+        a = np.zeros(len(v))
+        for solver, (own_a, _) in zip(self._limbs, self._joined(alone), strict=True):
+            a[solver.limb.velocities] = own_a
+        return a
 
     def beyond_doubt(
         self,
@@ -118,11 +138,11 @@ class ForwardSolver:
         dynamics: TreeDynamics,
         *,
         nearly_closed: bool = False,
-        within_step: bool = False,
     ) -> Acceleration | None:
         """The solution by Pinocchio's solver, as `solve`; None if it has none, or if the solution is in doubt.
 
-        It is, unless the constraints hold, the rank of K is certain, and the solution satisfies both equations.
+        It is, unless the constraints hold, the rank of K is certain, and the solution satisfies both equations. With
+        ``nearly_closed``, the constraints need not quite hold.
         """
         is_own, solver = dynamics is self._own, self._whole
         if is_own and self._limbs:
@@ -130,10 +150,8 @@ class ForwardSolver:
         if solver is None or dynamics.data is None:
             return None
         found = solver.solve(q, v, force, gains, dynamics.data, is_own)
-        if not within_step:
-            self._combinations = None
-        elif self._combinations is not None:
-            return solver.by_combinations(found, force, dynamics.data, self._combinations)
+        if found is None:
+            return None
         a, on_a, J, target = found
         if not nearly_closed and not solver.is_closed(J, v):
             return None
@@ -142,41 +160,22 @@ class ForwardSolver:
         least = solver.least_forces(J, on_a)
         if least is None:
             return None
-        self._combinations = solver.combinations()
         return Acceleration(a, solver.in_order(-least))
 
     def _by_limbs(
         self, q: Vector, v: Vector, force: Vector, gains: list[Gains], dynamics: TreeDynamics, nearly_closed: bool
     ) -> Acceleration | None:
-        """With each limb alone, and then with the forces w between the limbs that give all the same trunk.
-
-        Of a limb the velocities of the trunk have the acceleration b alone, and b + A w with w. With the same for all,
-        and the sum of all w zero, it is (Σ A⁻¹)⁻¹ Σ A⁻¹ b.
-        """
-        shared = force / self._shares
-        alone, joined = [], []
-        inertia, needed = np.zeros((self._trunk, self._trunk)), np.zeros(self._trunk)
-        for solver, (own, at, unit) in zip(self._limbs, self._joints, strict=True):
+        shared, alone = force / self._shares, []
+        for solver in self._limbs:
             limb = solver.limb
             found = solver.solve(q, v, limb.part_of_v(shared), gains, limb.dynamics.data, True)
-            if not nearly_closed and not solver.is_closed(found.J, v):
+            if found is None or (not nearly_closed and not solver.is_closed(found.J, v)):
                 return None
             alone.append(found)
-            if len(own):
-                response, change = solver.respond(unit)
-                inverse = inverses(response[own])
-                joined.append((response, change, inverse))
-                inertia[at[:, None], at] += inverse
-                needed[at] += inverse.dot(found.a[own])
-        trunk = solutions(inertia, needed)
         a, lambdas, carried = np.zeros(len(v)), np.zeros(self._size[0]), np.zeros(len(v))
-        responses = iter(joined)
-        for solver, (own, at, _), (own_a, on_a, J, target) in zip(self._limbs, self._joints, alone, strict=True):
-            velocities = solver.limb.velocities
-            if len(own):
-                response, change, inverse = next(responses)
-                w = inverse.dot(trunk[at] - own_a[own])
-                own_a, on_a = own_a + response.dot(w), on_a + change.dot(w)
+        joined = self._joined([found.a for found in alone])
+        for solver, (own_a, change), (_, on_a, J, target) in zip(self._limbs, joined, alone, strict=True):
+            velocities, on_a = solver.limb.velocities, on_a + change
             if not keeps(own_a, J, target):
                 return None
             a[velocities] = own_a
@@ -187,9 +186,33 @@ class ForwardSolver:
             lambdas[solver.rows] = -least
         return Acceleration(a, lambdas) if _balances(dynamics, q, v, a, force, carried) else None
 
+    def _joined(self, alone: list[Vector]) -> list[tuple[Vector, Any]]:
+        """Of each limb the a, and the change of f, with the forces w between the limbs that give all the same trunk.
+
+        Of a limb the velocities of the trunk have the acceleration b ``alone``, and b + A w with w. With the same for
+        all, and the sum of all w zero, it is (Σ A⁻¹)⁻¹ Σ A⁻¹ b.
+        """
+        responses: list[tuple[Any, Any, Any]] = []
+        inertia, needed = np.zeros((self._trunk, self._trunk)), np.zeros(self._trunk)
+        for solver, (own, at, block, unit), a in zip(self._limbs, self._joints, alone, strict=True):
+            if not unit.size:
+                responses.append((0.0, 0.0, 0.0))
+                continue
+            response, change = solver.respond(unit)
+            inverse = inverses(response[own])
+            responses.append((response, change, inverse))
+            inertia[block] += inverse
+            needed[at] += inverse.dot(a[own])
+        trunk = solutions(inertia, needed)
+        found: list[tuple[Vector, Any]] = []
+        for (own, at, _, _), a, (response, change, inverse) in zip(self._joints, alone, responses, strict=True):
+            w = np.dot(inverse, trunk[at] - a[own])
+            found.append((a + np.dot(response, w), np.dot(change, w)) if len(w) else (a, 0.0))
+        return found
+
     def closures(self, robot: Robot, q: Vector) -> tuple[Vector, Matrix]:
         """The residual (nc,) at q (nq,), and K (nc, nv), which is its derivative where the closures are closed."""
-        return self.closures_of_tree(q, self.own) or residual_and_jacobian(robot, q)
+        return self.closures_of_tree(q, self._own or self.own) or residual_and_jacobian(robot, q)
 
     def closures_of_tree(self, q: Vector, dynamics: TreeDynamics) -> tuple[Vector, Matrix] | None:
         """The same by Pinocchio's solver; None if it has none."""
@@ -202,7 +225,7 @@ class ForwardSolver:
         r, K = np.empty(self._size[0]), np.zeros(self._size)
         for solver in self._limbs:
             limb = solver.limb
-            r[solver.rows], K[np.ix_(solver.rows, limb.velocities)] = solver.closures(q, limb.dynamics.data)
+            r[solver.rows], K[solver.rows[:, None], limb.velocities] = solver.closures(q, limb.dynamics.data)
         return r, K
 
 

@@ -26,7 +26,7 @@ class _Kept(NamedTuple):
         size: Frobenius' norm of the dimensionless A.
         bound: Its smallest singular value that is not zero, or a bound of it from below.
         null: Orthonormal basis (nc, k) of its left null space: the combinations of rows that are redundant.
-        chosen: Orthonormal rows (rank, nc), which span the other combinations.
+        chosen: Orthonormal rows (rank, nc), which span the other combinations, times the factors of the rows.
     """
 
     K: Matrix
@@ -65,7 +65,7 @@ class Independence:
         if not norm(square.ravel()) * inverse <= INDEPENDENT:
             return False
         self._kept = _Kept(
-            np.array(K), norm(A.ravel()), 1.0 / math.sqrt(inverse), np.empty((len(K), 0)), np.eye(len(K))
+            np.array(K), norm(A.ravel()), 1.0 / math.sqrt(inverse), np.empty((len(K), 0)), np.empty((0, 0))
         )
         return True
 
@@ -74,30 +74,38 @@ class Independence:
 
         They are None if the rank of K (nc, nv) is in doubt.
         """
+        if not self.has_certain_rank(K):
+            return None
+        kept = self._kept
+        return self._without(kept.null, lambdas) if kept is not None and kept.null.shape[1] else lambdas
+
+    def has_certain_rank(self, K: Matrix) -> bool:
+        """Whether the rank of K (nc, nv) is beyond doubt, so that `combinations` are those of K."""
         kept = self._kept
         if kept is None or not kept.null.shape[1]:
             if len(K) <= K.shape[1] and self.is_shown(K):
-                return lambdas
-        elif self._is_near(kept, K) and self._annihilates(kept, K):
-            return self._without(kept.null, lambdas)
-        A = K * self._scale
+                return True
+            A = K * self._scale
+        else:
+            A = K * self._scale
+            if _annihilates(kept, A) and self._is_near(kept, K):
+                return True
         try:
             left, values, _ = np.linalg.svd(A)
         except np.linalg.LinAlgError:
-            return None
+            return False
         largest = float(values.max(initial=0.0))
         rank = int(np.count_nonzero(values > ZERO * largest))
         if not 0.0 < largest < math.inf or values[rank - 1] ** 2 * INDEPENDENT < largest**2:
-            return None
-        kept = self._kept = _Kept(
-            np.array(K), norm(A.ravel()), float(values[rank - 1]), left[:, rank:], left[:, :rank].T
-        )
-        return self._without(kept.null, lambdas)
+            return False
+        chosen = left[:, :rank].T * self._row_scale
+        self._kept = _Kept(np.array(K), norm(A.ravel()), float(values[rank - 1]), left[:, rank:], chosen)
+        return True
 
     def combinations(self) -> Matrix | None:
-        """Combinations (rank, nc) of the rows that are independent in the K decomposed last; None if all rows are."""
+        """Combinations (rank, nc) of the rows that are independent in the K judged last; None if all rows are."""
         kept = self._kept
-        return kept.chosen * self._row_scale if kept is not None and kept.null.shape[1] else None
+        return kept.chosen if kept is not None and kept.null.shape[1] else None
 
     def _is_near(self, kept: _Kept, K: Matrix) -> bool:
         """Whether K has at least the rank of the kept one beyond doubt."""
@@ -107,12 +115,6 @@ class Independence:
             return True
         change *= self._scale
         return _is_small(norm(change.ravel()), kept)
-
-    def _annihilates(self, kept: _Kept, K: Matrix) -> bool:
-        """Whether the combinations of rows that are redundant in the kept K are so in K, beyond doubt."""
-        A = K * self._scale
-        # The largest singular value of A is at least its norm over √nc.
-        return norm(kept.null.T.dot(A).ravel()) * math.sqrt(len(K)) <= ZERO * norm(A.ravel())
 
     def _without(self, null: Matrix, lambdas: Vector) -> Vector:
         """The λ without its part in the left null space."""
@@ -124,6 +126,12 @@ def _is_small(change: float, kept: _Kept) -> bool:
     """Whether a change of so much of the kept A, in Frobenius' norm, leaves its rank at least as it is."""
     least, most = kept.bound - change, kept.size + change
     return least > 0.0 and math.sqrt(len(kept.K)) * most * most <= INDEPENDENT * least * least
+
+
+def _annihilates(kept: _Kept, A: Matrix) -> bool:
+    """Whether the combinations of rows that are redundant in the kept A are so in this one, beyond doubt."""
+    # The largest singular value of A is at least its norm over √nc.
+    return norm(kept.null.T.dot(A).ravel()) * math.sqrt(len(A)) <= ZERO * norm(A.ravel())
 
 
 def norm(values: Any) -> float:

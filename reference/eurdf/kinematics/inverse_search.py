@@ -13,10 +13,11 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from eurdf.array import Indices, Mask, Matrix, Vector
-from eurdf.closures.se3 import velocity_of_origin
 from eurdf.kinematics.bounded_step import bounded_step, damped_step_within
 from eurdf.kinematics.closing import Closed, close
 from eurdf.kinematics.descend import next_damping
+from eurdf.kinematics.frame_targets import FrameTargets, Target
+from eurdf.kinematics.inverse_newton import InverseNewton
 from eurdf.kinematics.path import Elements, follow, is_short
 from eurdf.kinematics.position_limit import JointAtLimit, PositionLimits
 from eurdf.kinematics.problem import Problem
@@ -40,7 +41,6 @@ from eurdf.kinematics.rank import (
     times,
 )
 from eurdf.kinematics.tolerances import (
-    CLOSED,
     FIRST_DAMPING,
     IDLE,
     LEAST_GAIN,
@@ -71,24 +71,13 @@ _SHORTEST_STEP = 2.0**-5
 _FLAT = 0.02
 
 
-class Target(NamedTuple):
-    """Where frames should be; B elements.
-
-    Attributes:
-        position: (B, 3), m.
-        rotation: (B, 3, 3); None for positions.
-    """
-
-    position: Matrix
-    rotation: Matrix | None = None
-
-
 class InverseTask(NamedTuple):
     """What is the same for all elements.
 
     Attributes:
         problem: The robot.
         frames: Evaluates the F frames that have targets.
+        newton: Finds configurations that are near.
         poses: Of each frame whether its targets are poses.
         limits: The position limits to respect, or None.
         tolerance: Bound of the distance of a frame from its target, m and rad.
@@ -97,6 +86,7 @@ class InverseTask(NamedTuple):
 
     problem: Problem
     frames: Any
+    newton: InverseNewton
     poses: tuple[bool, ...]
     limits: PositionLimits | None
     tolerance: float
@@ -115,6 +105,7 @@ class SearchResult(NamedTuple):
         same_branch: Whether (B,) each step to q was short enough to stay on the branch of the start.
         reason: For each element why it did not converge; None if it did.
         at_limits: For each element the joints that are at their limits and would have to exceed them to come nearer.
+        openings: How far each constraint is open (B, c) each, m and rad, if that is known.
     """
 
     q: Matrix
@@ -125,12 +116,28 @@ class SearchResult(NamedTuple):
     same_branch: Mask
     reason: list[InverseKinematicsReason | None]
     at_limits: list[tuple[JointAtLimit, ...]]
+    openings: tuple[Matrix, Matrix] | None = None
 
 
 @np.errstate(all="ignore")
 def search(task: InverseTask, goals: Sequence[Target], q: Matrix) -> SearchResult:
     """The configurations nearest to the targets, from q (B, nq)."""
-    return _Search(task, goals, len(q)).run(q)
+    B, near = len(q), task.newton.near(task.problem, goals, q, task.limits, task.tolerance)
+    reason: list[InverseKinematicsReason | None] = [None] * B
+    at_limits: list[tuple[JointAtLimit, ...]] = [()] * B
+    starts, same_branch = np.zeros(B, dtype=np.intp), np.ones(B, dtype=bool)
+    arrays = near.q, near.position, near.angle, near.steps, starts, same_branch
+    count = np.count_nonzero(near.reached)
+    if count == B:
+        return SearchResult(*arrays, reason, at_limits, near.openings)
+    rest = np.flatnonzero(~near.reached)
+    found = _Search(task, [goal.among(rest) for goal in goals] if count else goals, len(rest)).run(q[rest])
+    found.iterations[:] += near.steps[rest]
+    for whole, own in zip(arrays, found[:6], strict=True):
+        whole[rest] = own
+    for index, element in enumerate(rest.tolist()):
+        reason[element], at_limits[element] = found.reason[index], found.at_limits[index]
+    return SearchResult(*arrays, reason, at_limits)
 
 
 class _Search:
@@ -138,20 +145,7 @@ class _Search:
 
     def __init__(self, task: InverseTask, goals: Sequence[Target], count: int) -> None:
         self._task, self._problem, self._spaces = task, task.problem, task.problem.spaces
-        self._position, self._rotation = np.empty((count, len(goals), 3)), np.empty((count, len(goals), 3, 3))
-        for index, goal in enumerate(goals):
-            self._position[:, index] = goal.position
-            self._rotation[:, index] = np.eye(3) if goal.rotation is None else goal.rotation
-        # Rows of the errors in the order of the frames: those of its position, then those of its rotation.
-        near = task.tolerance / self._spaces.length, task.tolerance
-        self._near = np.array([bound for is_pose in task.poses for bound in near[: 1 + is_pose]]) ** 2
-        self._nearly = np.maximum(self._near, CLOSED**2)  # no other start would come nearer
-        self._turns, self._rows = any(task.poses), 6 * len(task.poses)
-        # Of the rows of a position and a rotation for each frame those that count.
-        self._used: Indices | slice = slice(None)
-        if not all(task.poses):
-            counts = [each for is_pose in task.poses for each in (True, is_pose) for _ in range(3)]
-            self._used = np.flatnonzero(counts)
+        self._targets = FrameTargets(goals, self._spaces.length, task.tolerance, count)
         self._iterations, self._starts = np.zeros((2, count), dtype=np.intp)
         self._same_branch, self._exhausted = np.ones(count, dtype=bool), np.zeros(count, dtype=bool)
         self._may_be_certain = not task.problem.stacks  # of many groups of loops, each is decomposed by itself
@@ -163,7 +157,7 @@ class _Search:
         at_limits: list[tuple[JointAtLimit, ...]] = [()] * B
         clipped, best = self._clipped(start), np.array(start)
         errors, _ = self._error(start, np.arange(B))
-        done = np.logical_and.reduce(clipped == start, axis=1) & self._reached(errors)
+        done = np.logical_and.reduce(clipped == start, axis=1) & self._targets.reached(errors)
         if np.count_nonzero(done):
             done[done] = self._problem.closes(start[done])
             if np.count_nonzero(done) == B:
@@ -178,7 +172,7 @@ class _Search:
             reason[element] = "closures open"
         place, going = first.q[first.closes], going[first.closes]
         best[going], errors[going], self._same_branch[going] = self._descend(place, going, IDLE)
-        far = going[~self._reached(errors[going], self._nearly)]
+        far = going[~self._targets.reached(errors[going], self._targets.nearly)]
         random = np.random.default_rng(0) if len(far) else None  # making it takes as long as a step
         on_branch = (task.restarts + 3) // 4  # so many restarts stay on it
         for attempt in range(task.restarts):
@@ -199,12 +193,12 @@ class _Search:
             changed = own[better]
             best[changed], errors[changed] = end[better], e[better]
             self._same_branch[changed] = stayed[better] & stays
-            far = far[~self._reached(errors[far], self._nearly)]
-        off = going[~self._reached(errors[going])]
+            far = far[~self._targets.reached(errors[far], self._targets.nearly)]
+        off = going[~self._targets.reached(errors[going])]
         if len(off):
             best[off], errors[off], stayed = self._descend(best[off], off, _IDLE_AT_LAST)
             self._same_branch[off] &= stayed
-            for element in off[~self._reached(errors[off])].tolist():
+            for element in off[~self._targets.reached(errors[off])].tolist():
                 reason[element], at_limits[element] = self._why_off_target(best[[element]], element)
         return self._result(best, errors, reason, at_limits)
 
@@ -215,7 +209,7 @@ class _Search:
         reason: list[InverseKinematicsReason | None],
         at_limits: list[tuple[JointAtLimit, ...]],
     ) -> SearchResult:
-        position, angle = self._distances(errors)
+        position, angle = self._targets.distances(errors)
         return SearchResult(q, position, angle, self._iterations, self._starts, self._same_branch, reason, at_limits)
 
     def _wandered(self, q: Matrix, away: Matrix, spread: float) -> Matrix:
@@ -273,7 +267,7 @@ class _Search:
         damping, idle = numbers(len(q), FIRST_DAMPING), numbers(len(q), 0)
         E: Matrix | None = None
         for step in range(MOST_STEPS + 1):
-            going = as_numbers(~self._reached(e)) & (idle <= MOST_IDLE_STEPS)
+            going = as_numbers(~self._targets.reached(e)) & (idle <= MOST_IDLE_STEPS)
             if step == MOST_STEPS or not (len(on) and every(going)):
                 end[on], errors[on] = q, e
                 self._exhausted[which[on]] = step == MOST_STEPS and going
@@ -392,7 +386,7 @@ class _Search:
     def _why_off_target(self, q: Matrix, element: int) -> tuple[InverseKinematicsReason, tuple[JointAtLimit, ...]]:
         """Why no descent of one element continues from a closed configuration (1, nq) at which frames are off."""
         limits, (errors, at) = self._task.limits, self._error(q, np.array([element]))
-        if self._reached(errors, self._nearly)[0]:
+        if self._targets.reached(errors, self._targets.nearly)[0]:
             return "tolerance", ()
         Z = self._spaces.at(self._problem.jacobian(q)[0]).free
         A, e = self._jacobian(at, errors)[0] @ Z, errors[0]
@@ -414,41 +408,10 @@ class _Search:
         return q if self._task.limits is None else self._task.limits.clip(q)
 
     def _error(self, q: Matrix, which: Indices) -> tuple[Matrix, Any]:
-        """Stacked errors (b, k) of some elements, in characteristic lengths and rad, and the frames there."""
+        """The errors (b, k) of some elements, and the frames there."""
         at = self._task.frames.at(q)
-        position, rotation = self._position, self._rotation
-        if len(which) < len(position):
-            position, rotation = position[which], rotation[which]
-        errors = np.empty((len(q), len(self._task.poses), 6))
-        np.divide(at.position - position, self._spaces.length, out=errors[:, :, :3])
-        if self._turns:
-            errors[:, :, 3:] = at.turn_from(rotation)
-        return errors.reshape(len(q), self._rows)[:, self._used], at
+        return self._targets.errors(at, which), at
 
     def _jacobian(self, at: Any, e: Matrix) -> Matrix:
-        """Derivatives (b, k, nv) of the errors by v, where the frames are, and the errors (b, k) are these."""
-        b, F = at.position.shape[:2]
-        rows = np.zeros((b, F, 6, 6))
-        rows[:, :, :3] = velocity_of_origin(at.position) / self._spaces.length
-        if self._turns:
-            rows[:, :, 3:, 3:] = at.turn_by_omega(self._by_frame(e)[:, :, 1])
-        J: Matrix = self._task.frames.rows(at, rows)
-        return J[:, self._used]
-
-    def _by_frame(self, e: Matrix) -> Matrix:
-        """The errors of each frame (b, F, 2, 3): of its position, and of its rotation, zero if that is free."""
-        errors = e
-        if e.shape[1] < self._rows:
-            errors = np.zeros((len(e), self._rows))
-            errors[:, self._used] = e
-        return errors.reshape(len(e), len(self._task.poses), 2, 3)
-
-    def _distances(self, e: Matrix) -> tuple[Matrix, Matrix]:
-        """How far each frame is from its target (b, F), m and rad, by the errors."""
-        both = np.sqrt(np.add.reduce(np.square(self._by_frame(e)), axis=3))
-        return self._spaces.length * both[:, :, 0], both[:, :, 1]
-
-    def _reached(self, e: Matrix, near: Vector | None = None) -> Mask:
-        """Whether (b,) every frame is at its target within the tolerance, or within other bounds, squared."""
-        squared = np.add.reduce(np.square(e).reshape(len(e), len(self._near), 3), axis=2)
-        return np.asarray(np.logical_and.reduce(squared <= (self._near if near is None else near), axis=1))
+        """Their derivatives (b, k, nv) by v."""
+        return self._targets.jacobian(self._task.frames, at, e)

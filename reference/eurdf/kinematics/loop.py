@@ -139,13 +139,13 @@ def merged(groups: Sequence[LoopGroup]) -> LoopGroup:
     """Groups as one."""
     return LoopGroup(
         closures=tuple(sorted(index for group in groups for index in group.closures)),
-        rows=np.sort(np.concatenate([group.rows for group in groups])),
-        velocities=np.sort(np.concatenate([group.velocities for group in groups])),
-        coordinates=np.sort(np.concatenate([group.coordinates for group in groups])),
+        rows=np.sort(_indices(group.rows for group in groups)),
+        velocities=np.sort(_indices(group.velocities for group in groups)),
+        coordinates=np.sort(_indices(group.coordinates for group in groups)),
     )
 
 
-def _indices(ranges: Iterable[range]) -> Indices:
+def _indices(ranges: Iterable[Iterable[int]]) -> Indices:
     return np.array([index for each in ranges for index in each], dtype=np.intp)
 
 

@@ -87,6 +87,12 @@ class PositionLimits:
         at = q[:, coordinates]
         return bool(np.count_nonzero((at < lower) | (at > upper)))
 
+    def are_kept(self, q: Matrix) -> Mask:
+        """Whether (B,) every coordinate of q (B, nq) is within its limits."""
+        coordinates, lower, upper = self._of_bounded
+        at = q[:, coordinates]
+        return np.asarray(np.logical_and.reduce((at >= lower) & (at <= upper), axis=1))
+
     def excess(self, q: Matrix) -> Matrix:
         """How far q (…, nq) is beyond the lower, then beyond the upper limits (…, 2 nv); negative within them."""
         at = q[..., self.coordinates]

@@ -7,6 +7,7 @@ K v = d/dt r(q ⊕ t v) at t = 0 (EU-CLO-010), at every configuration, closed or
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -88,13 +89,15 @@ def acceleration_drift(robot: Robot, q: Vector, v: Vector) -> Vector:
 
 def drift_of_pairs(robot: Robot, q: Vector, V: Matrix) -> Matrix:
     """The symmetric D (nc, k, k) with K̇ v = Σ D_ij w_i w_j for the velocities v = V w, with V (nv, k)."""
-    count = V.shape[1]
-    own = [acceleration_drift(robot, q, v) for v in V.T]
+    count, pairs = V.shape[1], list(itertools.combinations(range(V.shape[1]), 2))
+    moves = np.array([*V.T, *(V[:, i] + V[:, j] for i, j in pairs)]).reshape(-1, len(V))
+    with working_memory(robot, all_constraints) as constraints:
+        drift = constraints.drift(np.repeat(q[None], len(moves), axis=0), moves)
     D = np.zeros((robot.mechanism.nc, count, count))
     for i in range(count):
-        D[:, i, i] = own[i]
-        for j in range(i):
-            D[:, i, j] = D[:, j, i] = 0.5 * (acceleration_drift(robot, q, V[:, i] + V[:, j]) - own[i] - own[j])
+        D[:, i, i] = drift[i]
+    for (i, j), both in zip(pairs, drift[count:], strict=True):
+        D[:, i, j] = D[:, j, i] = 0.5 * (both - drift[i] - drift[j])
     return D
 
 

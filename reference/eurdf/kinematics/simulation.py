@@ -14,7 +14,6 @@ from eurdf.errors import NotClosable, SimulationDiverged, StepTooLongWarning
 from eurdf.kinematics.applied_force import AppliedForce, External
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.closing import start
-from eurdf.kinematics.finite import overflow_refused
 from eurdf.kinematics.forward_solver import ForwardSolver
 from eurdf.kinematics.independence import norm
 from eurdf.kinematics.named import Named, velocity_of
@@ -32,8 +31,9 @@ Control = Callable[[float, Vector, Vector], Named]
 # Energy error, relative to the energy exchanged, above which the step is too long, and that of the step suggested.
 _TOO_LONG, _SHORT_ENOUGH = 1e-2, 1e-3
 
-# A residual of at most this, m and rad, is rounding.
-_CLOSED = 1e-14
+# Norms of the residual, m and rad, up to which it stays as it is, and up to which one step with the K from before it
+# corrects both q and v.
+_CLOSED, _NEARLY_CLOSED = 1e-13, 1e-12
 
 # Errors below this, relative to the largest energy, are rounding.
 _ROUNDING = 1e-9
@@ -153,20 +153,19 @@ class _Integration:
         """Take what acts on a robot, and how the caller treats floating-point errors of NumPy."""
         self._robot, self._tree, self._solver = robot, robot.tree, solver
         self._control, self._callers, self._applied, self._step = control, callers, applied, step
-        self._gains = solver.gains.now()
+        self._gains, self._dynamics = solver.gains.now(), solver.own
         self._least = LeastSolutions(robot.cached(TangentSpaces))
+        self._nothing = np.zeros(robot.tree.nv)
+        self._is_driven = control is not None or not applied.is_constant_zero
 
     def advanced(self, t: float, q: Vector, v: Vector) -> tuple[Vector, Vector, float]:
         """Configuration and velocity after a step from time t, and the work done meanwhile."""
-        step, tree = self._step, self._tree
+        step, half, integrate = self._step, self._step / 2.0, self._tree.integrate
         x1, a1, p1 = self._rates(t, q, q, v, False)
-        v2 = v + step / 2.0 * a1
-        x2, a2, p2 = self._rates(t + step / 2.0, q, tree.integrate(q, step / 2.0 * x1), v2, True)
-        v3 = v + step / 2.0 * a2
-        x3, a3, p3 = self._rates(t + step / 2.0, q, tree.integrate(q, step / 2.0 * x2), v3, True)
-        v4 = v + step * a3
-        x4, a4, p4 = self._rates(t + step, q, tree.integrate(q, step * x3), v4, True)
-        end = tree.integrate(q, step / 6.0 * (x1 + 2.0 * (x2 + x3) + x4))
+        x2, a2, p2 = self._rates(t + half, q, integrate(q, half * x1), v + half * a1, True)
+        x3, a3, p3 = self._rates(t + half, q, integrate(q, half * x2), v + half * a2, True)
+        x4, a4, p4 = self._rates(t + step, q, integrate(q, step * x3), v + step * a3, True)
+        end = integrate(q, step / 6.0 * (x1 + 2.0 * (x2 + x3) + x4))
         v = v + step / 6.0 * (a1 + 2.0 * (a2 + a3) + a4)
         if not (norm(end) < math.inf and norm(v) < math.inf):
             raise SimulationDiverged(t + step, step)
@@ -174,39 +173,43 @@ class _Integration:
 
     def _rates(self, t: float, begin: Vector, q: Vector, v: Vector, moved: bool) -> tuple[Vector, Vector, float]:
         """Rates of x and v at q = begin ⊕ x, and the power of what is applied; x is 0 unless ``moved``."""
-        if not (norm(v) < DIVERGED and norm(q) < math.inf):
+        if not norm(v) < DIVERGED:
             raise SimulationDiverged(t, self._step)
-        u = None
+        u, applied, power = None, self._nothing, 0.0
         if self._control is not None:
             with np.errstate(**self._callers):
                 u = self._control(t, q, v)
-        applied = self._applied.at(q, v, u)
+        if self._is_driven:
+            applied = self._applied.at(q, v, u)
+            power = float(applied @ v)
         force = self._applied.with_springs(q, applied)
-        # Between the steps, any smooth drift will do that equals K̇ v where the loops are closed.
-        a, _ = self._solver.solve(
-            self._robot, q, v, force, self._gains, self._solver.own, nearly_closed=True, within_step=moved
-        )
-        # The derivative of x = q ⊖ begin is the inverse of that of begin ⊕ x.
-        rate = self._tree.difference_derivative(begin, q) @ v if moved else v
-        return rate, a, float(applied @ v)
+        a = self._solver.acceleration(self._robot, q, v, force, self._gains, within_step=moved)
+        if moved and not self._tree.commutes:
+            # The derivative of x = q ⊖ begin is the inverse of that of begin ⊕ x.
+            return self._tree.difference_derivative(begin, q).dot(v), a, power
+        return v, a, power
 
-    @overflow_refused("the configuration")
     def closed(self, t: float, q: Vector, v: Vector, newton_steps: int) -> tuple[Vector, Vector]:
         """The nearest closed q after at most so many Newton steps, and the nearest v that keeps it closed."""
-        tree = self._tree
+        tree, rounding = self._tree, _CLOSED * (1.0 + norm(v))
         r, K = self._solver.closures(self._robot, q)
         for _ in range(newton_steps):
-            if norm(r) <= _CLOSED:
+            is_open = norm(r)
+            if is_open <= _CLOSED:
                 break
-            q = tree.normalized(tree.integrate(q, -self._least.of(K, r)))
+            change, rate = self._least.of(K, np.array((r, K.dot(v))), rounding)
+            q = tree.normalized(tree.integrate(q, -change))
             if not norm(q) < math.inf:
                 raise SimulationDiverged(t, self._step)
+            if is_open <= _NEARLY_CLOSED:
+                return q, v - rate
             r, K = self._solver.closures(self._robot, q)
-        return q, v - self._least.of(K, K @ v)
+        (rate,) = self._least.of(K, K.dot(v)[None], rounding)
+        return q, v - rate
 
     def energies(self, q: Vector, v: Vector) -> tuple[float, float]:
         """Kinetic and potential energy, J."""
-        dynamics = self._solver.own
+        dynamics = self._dynamics
         return dynamics.kinetic_energy(q, v), dynamics.potential_energy(q)
 
 

@@ -25,7 +25,8 @@ if TYPE_CHECKING:
 _LAST_STEP = 1e-6
 # Energy that a step must save, relative to what its slope promises.
 _SAVED = 1e-4
-# Stiffness along a motion, relative to the largest one, below which no spring acts on it.
+# Stiffness along a motion, relative to the largest one, below which no spring acts on it. If each motion deflects the
+# springs by less than this fraction of it, none acts: what is left is rounding.
 _SLACK = 1e-9
 _SHORTEST_STEP = 2.0**-20
 
@@ -132,6 +133,7 @@ def spring_equilibrium(robot: Robot, q: Vector, coordinates: Indices, problem: P
     """
     tree, spaces, springs, held = robot.tree, problem.spaces, robot.tree.springs, problem.given
     root = np.sqrt(springs.stiffness)
+    least = (_SLACK * (root * np.abs(springs.ratio) * spaces.scale[springs.idx_v]).max(initial=0.0)) ** 2
     while True:
         _, K = residual_and_jacobian(robot, q)
         F = _motions(spaces.at(K).basis, held, spaces.scale)
@@ -139,7 +141,7 @@ def spring_equilibrium(robot: Robot, q: Vector, coordinates: Indices, problem: P
         gradient = A.T @ (root * springs.deflection(q))
         stiffness = A.T @ A
         largest = float(np.diagonal(stiffness).max(initial=0.0))
-        if not largest > 0.0:
+        if not largest > least:
             return q
         values, axes = np.linalg.eigh(stiffness + _curvature(robot, q, K, held, F, spaces.scale))
         acting = np.abs(values) > _SLACK * largest

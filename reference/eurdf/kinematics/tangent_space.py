@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from eurdf.array import Indices, Matrix, Vector
-from eurdf.kinematics.finite import finite
+from eurdf.kinematics.finite import finite, overflow_refused
+from eurdf.kinematics.independence import norm
 from eurdf.kinematics.loop import LoopGroup, independent_groups
 from eurdf.kinematics.rank import inverses, least_by_squares, least_by_values, norms, numerical_ranks, product
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
@@ -20,6 +21,9 @@ if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 _ALONE = np.zeros(1, dtype=np.intp)
+
+# A K⁺ is kept while so many corrections suffice for a b, m and rad, m/s and rad/s, up to this.
+_MOST_CORRECTIONS, _SMALL = 4, 1e-8
 
 
 class _Block(NamedTuple):
@@ -334,34 +338,54 @@ def _decomposed(A: Matrix) -> _Decomposed:
 
 
 class LeastSolutions:
-    """The v = K⁺ b of least norm, dimensionless, for one K after the other; those are near one another."""
+    """The v = K⁺ b of least norm, dimensionless, for one K after the other; those are near one another.
+
+    K⁺ is kept while it serves to solve K v = b.
+    """
 
     def __init__(self, spaces: TangentSpaces) -> None:
         self._by_group = [blocks for _, blocks in spaces.alike]
         # While the rows are independent, those of a small robot are solved all at once.
         self._blocks = [spaces.whole] if len(spaces.scale) <= MOST_VELOCITIES_AT_ONCE else self._by_group
         self._redundant: set[int] = set()  # the blocks some of whose rows depended on each other
+        self._kept: Matrix | None = None  # the transpose of a K⁺
 
-    def of(self, K: Matrix, b: Vector) -> Vector:
-        """K⁺ b (nv,), of K (nc, nv) and b (nc,).
+    def of(self, K: Matrix, b: Matrix, rounding: float) -> Matrix:
+        """K⁺ b (k, nv), of K (nc, nv) and several b (k, nc).
+
+        Of a small b the v is the least one to a tenth; K v - b is at most ``rounding``.
 
         Raises:
             NumericalOverflow: K is not finite.
         """
-        v = np.zeros(K.shape[1])
+        kept, size = self._kept, norm(b.ravel())
+        if kept is not None and size <= _SMALL:
+            v, left = np.zeros((len(b), len(kept.T))), b
+            for _ in range(_MOST_CORRECTIONS):
+                v += left.dot(kept)
+                left = b - v.dot(K.T)
+                if norm(left.ravel()) <= rounding:
+                    return v
+        self._kept = kept = self._inverse(K).T
+        return np.asarray(b.dot(kept))
+
+    @overflow_refused("the constraint Jacobian")
+    def _inverse(self, K: Matrix) -> Matrix:
+        """K⁺ (nv, nc)."""
+        inverse = np.zeros(K.shape[::-1])
         for index, block in enumerate(self._blocks):
-            A, rows = block.of(K) * block.factors, (block.weights * b[block.rows])[:, :, None]
-            norm = norms(A)
-            if not np.isfinite(norm).all():
+            A, rows = block.of(K) * block.factors, block.weights[:, :, None] * np.eye(block.rows.shape[1])
+            size = norms(A)
+            if not np.isfinite(size).all():
                 finite("the constraint Jacobian", A)
             if index not in self._redundant:
-                x, sure = least_by_squares(A, rows, norm)
+                x, sure = least_by_squares(A, rows, size)
                 if np.count_nonzero(sure) < len(A):
                     self._redundant.add(index)
             if index in self._redundant:
                 if self._blocks is not self._by_group:
                     self._blocks, self._redundant = self._by_group, set()
-                    return self.of(K, b)
+                    return self._inverse(K)
                 x = least_by_values(A, rows)
-            v[block.velocities] = block.unit * x[:, :, 0]
-        return v
+            inverse[block.velocities[:, :, None], block.rows[:, None]] = block.unit[:, :, None] * x
+        return inverse

@@ -32,7 +32,7 @@ def build_constraint_models(constraints: Iterable[Constraint], tree: Tree) -> li
     """
     constraint_models = []
     for constraint in constraints:
-        own = models_of(constraint, tree.model, tree.site)
+        own = models_of(constraint, contacts_of(constraint), tree.model, tree.site)
         if not own:
             raise NoConstraintModel(constraint.name, constraint.type)
         constraint_models += own
@@ -40,11 +40,11 @@ def build_constraint_models(constraints: Iterable[Constraint], tree: Tree) -> li
 
 
 def models_of(
-    constraint: Constraint, model: pin.Model, site: Callable[[Anchor], Site]
+    constraint: Constraint, contacts: Iterable[Contact], model: pin.Model, site: Callable[[Anchor], Site]
 ) -> list[pin.RigidConstraintModel]:
-    """Those of one constraint, whose frames are at some sites of a model; none for a kind that Pinocchio lacks."""
+    """Those of contacts of one constraint, whose frames are at some sites of a model."""
     found = []
-    for contact in contacts_of(constraint):
+    for contact in contacts:
         ends = []
         for anchor, point in zip(constraint.anchors, (contact.a, contact.b), strict=True):
             joint, placement = site(anchor)

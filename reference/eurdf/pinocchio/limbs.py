@@ -127,5 +127,9 @@ class LimbsDynamics(TreeDynamics):
             found[limb.velocities] = np.minimum(found[limb.velocities], own)
         return found
 
+    def kinetic_energy(self, q: Vector, v: Vector) -> float:
+        """The sum of those of the limbs, J."""
+        return sum(limb.dynamics.kinetic_energy(limb.part_of_q(q), limb.part_of_v(v)) for limb in self.limbs)
+
     def _energy_of_gravity(self, q: Vector) -> float:
         return sum(limb.dynamics.potential_energy(limb.part_of_q(q)) for limb in self.limbs)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from eurdf.pinocchio.configuration import Slot
 from eurdf.pinocchio.mimic import following
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Springs:
     """The springs of a robot, each on one coordinate: n of them.
 
@@ -44,9 +45,18 @@ class Springs:
 
     def force(self, q: Vector, nv: int) -> Vector:
         """Generalized force (nv,) of the springs at q (nq,), N·m or N."""
+        idx_q, idx_v, slope, at_zero = self._on_coordinates
         force = np.zeros(nv)
-        np.subtract.at(force, self.idx_v, self.ratio * self.stiffness * self.deflection(q))
+        force[idx_v] = slope * q[idx_q] + at_zero
         return force
+
+    @cached_property
+    def _on_coordinates(self) -> tuple[Indices, Indices, Vector, Vector]:
+        """Where coordinates with springs are in q and v, and the slope and the value at zero of the force on each."""
+        idx_v, first, which = np.unique(self.idx_v, return_index=True, return_inverse=True)
+        k = -self.stiffness * self.ratio
+        slope, at_zero = (np.bincount(which, k * of, len(idx_v)).astype(float) for of in (self.ratio, self.shift))
+        return self.idx_q[first], idx_v, slope, at_zero
 
     def energy(self, q: Vector) -> float:
         """Energy that the springs store at q (nq,), J."""

@@ -114,6 +114,11 @@ class Tree(Cached):
         return np.asarray(~self.moving_joints[joint - 1].subspace[3:].any(axis=0))
 
     @cached_property
+    def commutes(self) -> bool:
+        """Whether q ⊕ v ⊕ w is q ⊕ (v + w): no joint has several velocities."""
+        return all(len(own) <= 1 for own in self.own_velocities)
+
+    @cached_property
     def velocity_names(self) -> list[str]:
         """For each velocity (nv) the name of its joint."""
         names = [ROOT_JOINT] * self.nv

@@ -81,15 +81,18 @@ class TreeDynamics:
     def kinetic_energy(self, q: Vector, v: Vector) -> float:
         """The kinetic energy at q (nq,) and v (nv,), J, that of the armature included.
 
-        `pin.computeKineticEnergy` leaves out the armature of some joints, up to Pinocchio 4.1.
+        `pin.computeKineticEnergy` leaves out the armature of some joints, up to Pinocchio 4.1, and has no mimic joints.
         """
+        if self.data is not None and not self.model.armature.any() and not len(self.model.mimicking_joints):
+            return float(pin.computeKineticEnergy(self.model, self.data, q, v))
         still = np.zeros(self.model.nv)
         momentum = self.inverse_dynamics(q, still, v) - self.inverse_dynamics(q, still, still)
         return 0.5 * float(v @ momentum)
 
     def potential_energy(self, q: Vector) -> float:
         """The potential energy of gravity and springs at q (nq,), J."""
-        return self._energy_of_gravity(q) + self._springs.energy(q)
+        gravity = self._energy_of_gravity(q)
+        return gravity + self._springs.energy(q) if len(self._springs) else gravity
 
     def _energy_of_gravity(self, q: Vector) -> float:
         if len(self.model.mimicking_joints):  # not supported by Pinocchio 4.1

@@ -147,6 +147,13 @@ class FewPairs:
             self._at = q, element
         return self._placements
 
+    def place(self, index: int, rotation: Matrix, position: Vector) -> None:
+        """Move frame A of a pair to another pose in its joint; poses that were computed before are not valid."""
+        for bundle in self._bundles:
+            if index in bundle.which:
+                bundle.place(bundle.which.index(index), pin.SE3(rotation, position))
+        self._at = None, 0
+
     def jacobian(self, at: FewPoses, which: slice, rows: Matrix) -> Matrix:
         """The derivative (B, k r, n) by the velocities of rows (B, k, r, 6) over the twists of some pairs."""
         B, k, r = rows.shape[:3]
@@ -281,6 +288,12 @@ class _Bundle:
             constraint.calc(model, data, found)
             placements.append(found.c1Mc2)
         return placements
+
+    def place(self, index: int, placement: Any) -> None:
+        """Move frame A of one of its pairs to another pose in its joint."""
+        a, b = self._pairs[index]
+        self._pairs[index] = a._replace(placement=placement), b
+        self._models[index].joint1_placement = placement
 
     def jacobian(self) -> Matrix:
         """The twists (k, 6, own n) of B against A where `placements` last was, by the velocities."""
