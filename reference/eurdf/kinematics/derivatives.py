@@ -118,8 +118,9 @@ def dynamics_derivatives(
 @overflow_refused("the derivatives")
 def derivatives_at(task: DerivativesTask, q: Matrix, v: Matrix, forces: Matrix) -> tuple[Matrix, ...]:
     """What `DynamicsDerivatives` has, (B, …), at normalized q (B, nq), v and generalized forces (B, nv)."""
-    robot, nv, nu, nc = task.robot, v.shape[1], len(task.robot.actuation.idx_v), task.robot.mechanism.nc
+    robot, nv, motors = task.robot, v.shape[1], task.robot.actuation.idx_v
     if not len(q):
+        nu, nc = len(motors), robot.mechanism.nc
         return np.empty((0, nv)), np.empty((0, nc)), *(np.empty((0, m, n)) for m in (nv, nc) for n in (nv, nv, nu, nv))
     with (
         working_memory(robot, ForwardSolver) as solver,
@@ -143,8 +144,8 @@ def derivatives_at(task: DerivativesTask, q: Matrix, v: Matrix, forces: Matrix) 
     both, by_tau = response @ by_both, -response[:, :, :nv]
     if inverse is not None:
         both[:, nv:, :nv] += _turning_range(robot, state, vary.K, inverse, lambdas)
-    finite("the derivatives", both, by_tau)
-    each = both[:, :, :nv], both[:, :, nv:], by_tau[:, :, robot.actuation.idx_v], by_tau
+    finite("the derivatives", both, response)
+    each = both[:, :, :nv], both[:, :, nv:], by_tau[:, :, motors], by_tau
     return a, lambdas, *(one[:, :nv] for one in each), *(one[:, nv:] for one in each)
 
 

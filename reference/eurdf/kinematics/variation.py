@@ -94,7 +94,8 @@ class Structure:
         ends: The joints (2, k) that carry frames A and B of the closures.
         placements: Poses (k, 4, 4) of frames A in these.
         signs: Of each pair (k, n) 1 for a column on the way to B, -1 for one on the way to A.
-        pair_of_row: The pair (nc,) of each row.
+        row_signs: The same of the pair of each row (nc, n).
+        stiffness: That of the springs (nv, nv), diagonal.
         constraint_of_row: The constraint (nc,) of each row.
     """
 
@@ -116,7 +117,7 @@ class Structure:
         self.inertia = np.array([inertia.inertia for inertia in model.inertias])
         self.gravity, self.armature = np.array(model.gravity.vector), np.array(model.armature)
         self.damping, springs = tree.damping, tree.springs
-        self.stiffness = np.bincount(springs.idx_v, springs.stiffness * springs.ratio**2, model.nv)
+        self.stiffness = np.diag(np.bincount(springs.idx_v, springs.stiffness * springs.ratio**2, model.nv))
 
         constraints = evaluator(robot, few=True)
         pairs = constraints.sites
@@ -124,10 +125,10 @@ class Structure:
         self.placements = np.array([a.placement.homogeneous for a, _ in pairs]).reshape(-1, 4, 4)
         a, b = self.moved_by[self.ends]
         self.signs = b - a
-        self.pair_of_row = np.zeros(constraints.m, np.intp)
+        self.row_signs = np.zeros((constraints.m, len(self.owner)))
         for group in constraints.groups:
-            own = np.arange(group.pairs.start, group.pairs.stop)
-            self.pair_of_row[group.rows] = np.repeat(own, group.m // len(own))
+            own = self.signs[group.pairs]
+            self.row_signs[group.rows] = np.repeat(own, group.m // len(own), axis=0)
         self.constraint_of_row = np.repeat(np.arange(len(robot.constraints)), [each.rows for each in robot.constraints])
 
     def over_v(self, of_columns: Matrix) -> Matrix:
@@ -143,7 +144,6 @@ class MotionState:
     """A robot at configurations q, moving with v and a.
 
     Attributes:
-        poses: Of the joints in the world (B, joints, 4, 4).
         J: The columns of the Jacobian (B, n, 6), here rows.
         J_rate: J̇ (B, n, 6).
         V_change: V′ (B, n, 6).
@@ -168,15 +168,17 @@ class MotionState:
         self.structure = s = structure
         self.constraints = constraints
         self._placed = constraints.at(q).by_kind
-        found = [dynamics.derivatives(*each) for each in zip(q, v, a, strict=True)]
+        carriers = s.ends[0].tolist()
+        found = [dynamics.derivatives(*each, carriers) for each in zip(q, v, a, strict=True)]
         self._by_pinocchio: Matrix | None = None
         if all(found):
-            self.poses, columns, by_pinocchio = map(np.array, zip(*found, strict=True))
+            self._of_a, columns, by_pinocchio = map(np.array, zip(*found, strict=True))
             self.J, self.J_rate, self.V_change, self.A_change = columns.swapaxes(0, 1)
             self.V, self._by_pinocchio = self._twists(v), by_pinocchio.swapaxes(0, 1)
             self.A = self._accelerations(v, a)
             return
-        self.poses, self.J = map(np.array, zip(*map(dynamics.columns, q), strict=True))
+        self._poses, self.J = map(np.array, zip(*map(dynamics.columns, q), strict=True))
+        self._of_a = self._poses[:, carriers]
         self.V = self._twists(v)
         cross = motion_cross(self.V)
         self.J_rate, self.V_change = turned(cross[:, s.owner], self.J), turned(cross[:, s.before], self.J)
@@ -208,7 +210,7 @@ class MotionState:
     def _by_columns(self) -> Matrix:
         """The derivatives (3, B, n, n) of the forces on the columns by q, v and a, without the armature."""
         s, J, V = self.structure, self.J, self.V
-        R, p = self.poses[..., :3, :3], self.poses[..., :3, 3]
+        R, p = self._poses[..., :3, :3], self._poses[..., :3, 3]
         lever = turned(R, s.lever) + p
         moment = skew(s.mass[:, None] * lever)
         inertia = np.zeros((*p.shape[:2], 6, 6))
@@ -240,8 +242,7 @@ class MotionState:
     @cached_property
     def frames(self) -> tuple[Matrix, list[_Kind]]:
         """Φ (B, k, 6, 6) of the pairs, and the closures by kind."""
-        s = self.structure
-        at = self.poses[:, s.ends[0]] @ s.placements
+        at = self._of_a @ self.structure.placements
         kinds = []
         for group, poses in zip(self.constraints.groups, self._placed, strict=True):
             kind, fixed = group.kind, group.fixed
@@ -285,7 +286,7 @@ class MotionState:
             own = (each.P, by_twist + kd * each.P, P_change + bend + kd * P_twist + kp * each.P)
             found = np.concatenate(own, axis=-1) @ shown[:, each.pairs]
             rows[:, each.rows] = found.reshape(count, -1, 18)
-        signs = s.signs[s.pair_of_row]
+        signs = s.row_signs
         K = signs * (rows[..., :6] @ transposed(J))
         C_q = signs * (rows @ transposed(np.concatenate((self.A_change, self.V_change, J), axis=-1)))
         v_change = np.concatenate((self.J_rate + self.V_change, J), axis=-1)
@@ -297,7 +298,7 @@ class MotionState:
             K[:, own_rows], C_q[:, own_rows] = couplings.K, kp[:, None] * couplings.K
             C_v[:, own_rows] = kd[:, None] * couplings.K
         by_q, F_v, M = self.of_tree()
-        F_q = by_q - self.of_forces(lambdas) + np.diag(s.stiffness)
+        F_q = by_q - self.of_forces(lambdas) + s.stiffness
         if dissipation:
             F_v = F_v + np.diag(s.damping)
         return Variation(K, M, F_q, F_v, C_q, C_v)
@@ -341,4 +342,4 @@ class MotionState:
             own = each.P @ phi[:, each.pairs], by_pose - each.P @ phi_b[:, each.pairs]
             rows[:, each.rows] = np.concatenate(own, axis=-1).reshape(len(J), -1, 12)
         columns = transposed(np.concatenate((change, J), axis=-1))
-        return s.over_v(s.signs[s.pair_of_row] * (rows @ columns))
+        return s.over_v(s.row_signs * (rows @ columns))

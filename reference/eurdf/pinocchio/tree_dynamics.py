@@ -6,6 +6,7 @@ the number of joints, and nv² numbers where the mass matrix is asked for.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -51,18 +52,17 @@ class TreeDynamics:
         Columns of the Jacobian, here rows, are linear, of the point at the origin of the world, and angular. A mimic
         joint has one of its own, for a unit velocity of its leader.
         """
-        J = np.array(pin.computeJointJacobians(self.model, self.data, q).T)
-        return self._poses(), J
+        data = self.data
+        J = np.array(pin.computeJointJacobians(self.model, data, q).T)
+        return np.array([placement.homogeneous for placement in data.oMi]), J  # type: ignore[union-attr]
 
-    def _poses(self) -> Matrix:
-        assert self.data is not None
-        return np.array([placement.homogeneous for placement in self.data.oMi])
-
-    def derivatives(self, q: Vector, v: Vector, a: Vector) -> tuple[Matrix, Matrix, Matrix] | None:
+    def derivatives(
+        self, q: Vector, v: Vector, a: Vector, joints: Sequence[int]
+    ) -> tuple[Matrix, Matrix, Matrix] | None:
         """What Pinocchio differentiates at q (nq,), v and a (nv,); None without a `pin.Data`, or with mimic joints.
 
         Returns:
-            The poses as in `columns`; the columns of the Jacobian, J̇, V′ and A′ (4, nv, 6) as in
+            The poses (k, 4, 4) of the joints; the columns of the Jacobian, J̇, V′ and A′ (4, nv, 6) as in
             `eurdf.kinematics.variation`, without gravity; and the derivatives (3, nv, nv) of M a + h by q, v and a.
         """
         data = self.data
@@ -72,7 +72,8 @@ class TreeDynamics:
         columns = np.array((data.J.T, data.dJ.T, data.dAdv.T, data.dAdq.T))
         columns[2] -= columns[1]
         terms = np.array((data.dtau_dq, data.dtau_dv, whole_matrix(data.M)))
-        return self._poses(), columns, terms
+        oMi = data.oMi
+        return np.array([oMi[joint].homogeneous for joint in joints]).reshape(-1, 4, 4), columns, terms
 
     def inverse_mass_diagonal(self, q: Vector) -> Vector:
         """The diagonal (nv,) of the inverse of the mass matrix at q (nq,), of a tree without mimic joints."""
