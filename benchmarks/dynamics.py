@@ -88,6 +88,12 @@ class Peers:
         a = pin.constraintDynamics(model, data, q, v, tau, self._models, self._datas, self._settings)
         return np.array(a), -data.lambda_c
 
+    def derivatives(self, q: Vector, v: Vector, u: Vector, passive: Vector) -> Vector:
+        """The derivative of the acceleration by q (nv, nv); those by v and τ are computed too."""
+        self.forward(q, v, u, passive)
+        pin.computeConstraintDynamicsDerivatives(self._model, self._data, self._models, self._datas, self._settings)
+        return np.array(self._data.ddq_dq)
+
     def inverse(self, q: Vector, v: Vector, a: Vector, passive: Vector) -> tuple[Vector, Vector]:
         """Motor torques (nu,) and λ (nc,)."""
         model, data = self._model, self._data

@@ -24,6 +24,7 @@ from eurdf.robot_functions import actuated_jacobian as actuated_jacobian
 from eurdf.robot_functions import analyze as analyze
 from eurdf.robot_functions import assemble as assemble
 from eurdf.robot_functions import differential_inverse_kinematics as differential_inverse_kinematics
+from eurdf.robot_functions import dynamics_derivatives as dynamics_derivatives
 from eurdf.robot_functions import forward_dynamics as forward_dynamics
 from eurdf.robot_functions import forward_kinematics as forward_kinematics
 from eurdf.robot_functions import inverse_dynamics as inverse_dynamics

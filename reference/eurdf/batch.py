@@ -18,6 +18,7 @@ from eurdf.loading import of_any_robot as _of_any_robot
 
 actuated_jacobian = _of_any_robot(batch.actuated_jacobian)
 constraint_acceleration = _of_any_robot(batch.constraint_acceleration)
+dynamics_derivatives = _of_any_robot(batch.dynamics_derivatives)
 forward_kinematics = _of_any_robot(batch.forward_kinematics)
 inverse_kinematics = _of_any_robot(batch.inverse_kinematics)
 project_configuration = _of_any_robot(batch.project_configuration)

@@ -2,7 +2,18 @@
 
 from __future__ import annotations
 
-from eurdf.kinematics import analysis, assembly, dynamics, forward, inverse, locking, project, sensitivity, simulation
+from eurdf.kinematics import (
+    analysis,
+    assembly,
+    derivatives,
+    dynamics,
+    forward,
+    inverse,
+    locking,
+    project,
+    sensitivity,
+    simulation,
+)
 from eurdf.kinematics import residual as _residual
 from eurdf.kinematics import split as _split
 from eurdf.kinematics import sweep as _sweep
@@ -16,9 +27,12 @@ closure_openings = of_any_robot(_residual.closure_openings)
 constraint_acceleration = of_any_robot(_residual.constraint_acceleration)
 differential_inverse_kinematics = of_any_robot(sensitivity.differential_inverse_kinematics)
 dq_dq_actuated = of_any_robot(sensitivity.dq_dq_actuated)
+dq_dq_actuated_derivative = of_any_robot(derivatives.dq_dq_actuated_derivative)
+dynamics_derivatives = of_any_robot(derivatives.dynamics_derivatives)
 forward_dynamics = of_any_robot(dynamics.forward_dynamics)
 forward_kinematics = of_any_robot(forward.forward_kinematics)
 inverse_dynamics = of_any_robot(dynamics.inverse_dynamics)
+inverse_dynamics_derivatives = of_any_robot(derivatives.inverse_dynamics_derivatives)
 inverse_kinematics = of_any_robot(inverse.inverse_kinematics)
 lock = of_any_robot(locking.lock, geometry=True)
 mass_matrix = of_any_robot(dynamics.mass_matrix)

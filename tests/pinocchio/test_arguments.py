@@ -32,6 +32,8 @@ CALLS: dict[str, dict[str, Any]] = {
     "constraint_acceleration": {"q": "q", "v": "v"},
     "differential_inverse_kinematics": {"q": "q", "frame": "coupler", "twist": 6},
     "dq_dq_actuated": {"q": "q", "weights": "v"},
+    "dq_dq_actuated_derivative": {"q": "q"},
+    "dynamics_derivatives": {"q": "q", "v": "v", "u": "u", "tau": "v", "gains": 2},
     "forward_dynamics": {
         "q": "q",
         "v": "v",
@@ -52,6 +54,7 @@ CALLS: dict[str, dict[str, Any]] = {
         "u0": "u",
     },
     "inverse_kinematics": {"targets": {"coupler": 3}, "q0": "q", "hold": "motor_crank", "hold_at": "q"},
+    "inverse_dynamics_derivatives": {"q": "q", "v": "v", "a": "v", "tau": "v", "weights": "u"},
     "lock": {"joints": (), "q": "q"},
     "mass_matrix": {"q": "q"},
     "merge_configuration": {"q_actuated": "qa", "q_free": "qf"},
@@ -78,6 +81,7 @@ CALLS: dict[str, dict[str, Any]] = {
     "view": {"q": "q", "port": 0},
     "batch.actuated_jacobian": {"q": "q", "frame": "coupler", "weights": "v"},
     "batch.constraint_acceleration": {"q": "q", "v": "v"},
+    "batch.dynamics_derivatives": {"q": "q", "v": "v", "u": "u", "tau": "v", "gains": 2},
     "batch.forward_kinematics": {"values": "qa", "q0": "q"},
     "batch.inverse_kinematics": {"targets": {"coupler": 3}, "q0": "q"},
     "batch.project_configuration": {"q": "q", "weights": "v"},
@@ -108,7 +112,7 @@ def valid(name: str) -> dict[str, Any]:
         else:
             arguments[parameter] = array(parameter, given)
     if name.startswith("batch."):  # of two elements
-        for parameter in arguments.keys() & {"q", "q0", "values"}:
+        for parameter in arguments.keys() & {"q", "q0", "values", "v", "u", "tau"}:
             arguments[parameter] = np.tile(arguments[parameter], (2, 1))
         if "targets" in arguments:
             arguments["targets"] = {"coupler": np.zeros((2, 3))}
@@ -260,7 +264,7 @@ for target in (np.ones(3), pin.SE3.Random()):
     assert not found.converged
 for function, *arguments in [
     (eurdf.kinematics.achievable_acceleration, none, none, none), (eurdf.actuated_jacobian, {link!r}, none),
-    (eurdf.analyze, none),
+    (eurdf.analyze, none), (eurdf.dynamics_derivatives, none, none),
     (eurdf.assemble, none), (eurdf.kinematics.closure_openings, none),
     (eurdf.differential_inverse_kinematics, {link!r}, none, np.ones(6)), (eurdf.kinematics.dq_dq_actuated, none),
     (eurdf.forward_dynamics, none, none, none), (eurdf.forward_kinematics, none), (eurdf.forward_kinematics, {{}}),

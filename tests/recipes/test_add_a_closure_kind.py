@@ -21,6 +21,7 @@ import yaml
 import eurdf
 from eurdf.closures import REGISTRY
 from eurdf.closures.kind import ClosureKind, RelativeMotions, RelativePoses, no_angle
+from eurdf.closures.point import PointClosure
 from eurdf.closures.se3 import velocity_of_origin
 from eurdf.commands.output import output_schemas, to_json
 from eurdf.commands.robot_info import robot_info
@@ -33,6 +34,7 @@ from eurdf.mechanism.constraint import Unit, key
 from eurdf.mechanism.same_model import differences
 from eurdf.pinocchio.robot import Robot, build_robot
 from eurdf.writing.description import NotWritable, describe_mechanism
+from support.differences import slope
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +63,14 @@ class InPlane(ClosureKind):
         return motions.acceleration[..., 2:]
 
     @staticmethod
+    def jacobian_derivative(poses: RelativePoses, fixed: Any) -> Any:
+        return PointClosure.jacobian_derivative(poses, None)[..., 2:, :, :]
+
+    @staticmethod
+    def bend_derivative(poses: RelativePoses, fixed: Any, twist: Any) -> Any:
+        return PointClosure.bend_derivative(poses, None, twist)[..., 2:, :]
+
+    @staticmethod
     def opening(poses: RelativePoses, fixed: Any) -> Any:
         return no_angle(np.abs(poses.position[..., 2] - fixed))
 
@@ -87,6 +97,10 @@ def test_residual_has_its_derivatives(robot: Robot) -> None:
     ahead, here, behind = (eurdf.residual(robot, tree.integrate(q, t * v)) for t in (h, 0.0, -h))
     np.testing.assert_allclose(K @ v, (ahead - behind) / (2.0 * h), atol=1e-7)
     np.testing.assert_allclose(acceleration_drift(robot, q, v), (ahead - 2.0 * here + behind) / h**2, atol=1e-3)
+    w = random.uniform(-1.0, 1.0, tree.nv)
+    found = eurdf.dynamics_derivatives(robot, q, v, gains=(20.0, 5.0)).a_q @ w
+    by_differences = slope(lambda t: eurdf.forward_dynamics(robot, tree.integrate(q, t * w), v, gains=(20.0, 5.0)).a, h)
+    np.testing.assert_allclose(found, by_differences, rtol=0.0, atol=1e-5 * np.abs(found).max())
 
 
 def test_robot_closes_moves_and_falls(robot: Robot) -> None:

@@ -9,8 +9,8 @@ from typing import ClassVar
 import numpy as np
 
 from eurdf.array import Matrix, Vector
-from eurdf.closures.kind import ClosureKind, RelativeMotions, RelativePoses, no_angle
-from eurdf.closures.se3 import dot, norm
+from eurdf.closures.kind import CarriedVector, ClosureKind, RelativeMotions, RelativePoses, no_angle
+from eurdf.closures.se3 import IDENTITY_ROTATION, dot, norm, outer, turned, velocity_of_origin
 from eurdf.mechanism.constraint import Unit, key
 
 _ONES = np.ones(3)
@@ -69,12 +69,37 @@ class DistanceClosure(ClosureKind):
         return np.asarray(dot(u, motions.acceleration) + across / distance)[..., None]
 
     @staticmethod
+    def jacobian_derivative(poses: RelativePoses, fixed: Vector) -> Matrix:
+        """That of |p|, whose second derivative is Π / |p| with Π = 1 - u uᵀ."""
+        return _carried(poses, fixed).jacobian_derivative()
+
+    @staticmethod
+    def bend_derivative(poses: RelativePoses, fixed: Vector, twist: Matrix) -> Matrix:
+        """That of ṗᵀ Π ṗ / |p| + u · (ω × ṗ)."""
+        return _carried(poses, fixed).bend_derivative(twist)
+
+    @staticmethod
     def opening(poses: RelativePoses, fixed: Vector) -> tuple[Vector, Vector]:
         """|r|; the angle is free."""
         return no_angle(np.abs(poses.once(_direction, fixed)[1] - fixed))
 
 
 KIND = DistanceClosure
+
+
+def _carried(poses: RelativePoses, fixed: Vector) -> CarriedVector:
+    """|p| as a function of p; at p = 0 without further derivatives."""
+    u, distance = poses.once(_direction, fixed)
+    inverse = np.divide(1.0, distance, out=np.zeros_like(distance), where=distance > 0.0)[..., None]
+    bend = inverse[..., None] * (IDENTITY_ROTATION - outer(u, u))
+
+    def third(rate: Matrix) -> Matrix:
+        """-(2 (u · ṗ) Π ṗ + (ṗᵀ Π ṗ) u) / |p|²."""
+        across = turned(bend, rate)
+        found = 2.0 * dot(u, rate)[..., None] * across + dot(rate, across)[..., None] * u
+        return np.asarray(-inverse * found)[..., None, :]
+
+    return CarriedVector(velocity_of_origin(poses.position), u[..., None, :], bend[..., None, :, :], third)
 
 
 def _direction(poses: RelativePoses, fixed: Vector) -> tuple[Matrix, Vector]:

@@ -10,7 +10,7 @@ import numpy as np
 from eurdf.array import Matrix, Vector
 from eurdf.closures.kind import ClosureKind, Contact, RelativeMotions, RelativePoses
 from eurdf.closures.point import PointClosure
-from eurdf.closures.se3 import log6_second
+from eurdf.closures.se3 import log6_bend_derivative, log6_derivative_derivative, log6_second
 from eurdf.mechanism.constraint import Unit
 
 
@@ -45,6 +45,16 @@ class FrameClosure(ClosureKind):
     def drift(motions: RelativeMotions, fixed: Any) -> Matrix:
         """The second derivative of log6(ᴬM_B)."""
         return log6_second(motions.poses.logarithm(), motions.twist, motions.change)
+
+    @staticmethod
+    def jacobian_derivative(poses: RelativePoses, fixed: Any) -> Matrix:
+        """That of Jlog6(ᴮM_A)."""
+        return log6_derivative_derivative(poses.logarithm(), poses.logarithm_by_twist())
+
+    @staticmethod
+    def bend_derivative(poses: RelativePoses, fixed: Any, twist: Matrix) -> Matrix:
+        """That of the second derivative of log6(ᴬM_B) at a constant twist."""
+        return log6_bend_derivative(poses.logarithm(), poses.logarithm_by_twist(), twist)
 
     @staticmethod
     def opening(poses: RelativePoses, fixed: Any) -> tuple[Vector, Vector]:

@@ -9,9 +9,9 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from eurdf.array import Matrix, Vector
-from eurdf.closures.kind import ClosureKind, Contact, RelativeMotions, RelativePoses
+from eurdf.closures.kind import CarriedVector, ClosureKind, Contact, RelativeMotions, RelativePoses
 from eurdf.closures.point import PointClosure
-from eurdf.closures.se3 import cross, dot, norm, plane_across, skew, turned, velocity_of_origin
+from eurdf.closures.se3 import cross, dot, norm, outer, plane_across, skew, transposed, turned, velocity_of_origin
 from eurdf.mechanism.constraint import ClosureKey, Form, Unit, key
 from eurdf.mechanism.pose import Vector3, direction
 
@@ -31,7 +31,7 @@ _QUARTER_TURN = np.array((-1.0, 1.0))
 # Coefficients of the series of θ / sin θ in powers of cos θ - 1, for angles below _SMALL rad, where the quotients of
 # the second derivative are of small numbers: each is -(n + 1) / (2n + 3) of the one before.
 _SERIES = np.poly1d(np.cumprod([1.0, *(-(n + 1.0) / (2.0 * n + 3.0) for n in range(9))])[::-1])
-_SLOPE, _BEND = _SERIES.deriv(), _SERIES.deriv(2)
+_SLOPES = _SERIES.deriv(), _SERIES.deriv(2), _SERIES.deriv(3)
 _SMALL = 0.1
 
 
@@ -165,7 +165,7 @@ class HingeClosure(ClosureKind):
         """p̈ and Eᵀ s̈, with s̈ = g a × β̈ + 2 g' ċ a × β̇ + (g' c̈ + g'' ċ²) a × β."""
         a = fixed.a
         beta = turned(motions.poses.rotation, fixed.b)
-        g, slope, bend = _profile(motions.poses.once(_turn, fixed).theta)
+        g, slope, bend, _ = _profile(motions.poses.once(_turn, fixed).theta)
         omega = motions.omega
         rate = cross(omega, beta)
         second = cross(motions.alpha, beta) + cross(omega, rate)
@@ -173,6 +173,18 @@ class HingeClosure(ClosureKind):
         s = g * cross(a, second) + 2.0 * slope * c_rate * cross(a, rate)
         s += (slope * c_second + bend * c_rate**2) * cross(a, beta)
         return np.concatenate((motions.acceleration, turned(fixed.plane, s)), axis=-1)
+
+    @staticmethod
+    def jacobian_derivative(poses: RelativePoses, fixed: Axes) -> Matrix:
+        """That of p, and of Eᵀ s as a function of β."""
+        of_point = PointClosure.jacobian_derivative(poses, None)
+        return np.concatenate((of_point, _carried(poses, fixed).jacobian_derivative()), axis=-3)
+
+    @staticmethod
+    def bend_derivative(poses: RelativePoses, fixed: Axes, twist: Matrix) -> Matrix:
+        """That of p, and of Eᵀ s as a function of β."""
+        of_point = PointClosure.bend_derivative(poses, None, twist)
+        return np.concatenate((of_point, _carried(poses, fixed).bend_derivative(twist)), axis=-2)
 
     @staticmethod
     def opening(poses: RelativePoses, fixed: Axes) -> tuple[Vector, Vector]:
@@ -191,15 +203,37 @@ def _turn(poses: RelativePoses, axes: Axes) -> _Turn:
     return _Turn(np.arctan2(sine, seen[..., 2:]) - _TINY, seen[..., :2] / sine)
 
 
-def _profile(theta: Vector) -> tuple[Vector, Vector, Vector]:
-    """g = θ / sin θ, and its first and second derivative by c = cos θ.
+def _carried(poses: RelativePoses, axes: Axes) -> CarriedVector:
+    """Eᵀ s = g(c) Eᵀ (a × β), with c = a · β, as a function of β."""
+    beta = turned(poses.rotation, axes.b)
+    theta, n = poses.once(_turn, axes)
+    g, slope, bend, third = (each[..., None] for each in _profile(theta))
+    across, a, normal = axes.onto[..., :2, :], axes.a[..., None, :], (np.sin(theta) * n)[..., None]
+    along = outer(axes.a, axes.a)[..., None, :, :]
+    mixed = across[..., :, None] * a[..., None, :]
+    second = slope[..., None] * (mixed + transposed(mixed)) + (bend * normal)[..., None] * along
 
-    They satisfy (1 - c²) g' = c g - 1 and (1 - c²) g'' = 3 c g' + g.
+    def along_rates(rate: Matrix) -> Matrix:
+        c = dot(axes.a, rate)[..., None, None]
+        both = c * c * across + 2.0 * c * (across @ rate[..., None]) * a
+        return np.asarray(bend * both + third * c * c * normal * a)
+
+    by_twist = np.zeros((*beta.shape, 6))
+    by_twist[..., 3:] = -skew(beta)
+    return CarriedVector(by_twist, g * across + slope * normal * a, second, along_rates)
+
+
+def _profile(theta: Vector) -> tuple[Vector, Vector, Vector, Vector]:
+    """g = θ / sin θ, and its derivatives by c = cos θ up to the third.
+
+    They satisfy (1 - c²) g′ = c g - 1, (1 - c²) g″ = 3 c g′ + g and (1 - c²) g‴ = 5 c g″ + 4 g′.
     """
     angle, c = theta + _TINY, np.cos(theta)
     g = np.minimum(angle / np.sin(angle), _MOST_STRETCH)
     squares = np.maximum(np.sin(theta), _LEAST_SINE) ** 2
     slope = (c * g - 1.0) / squares
     bend = (3.0 * c * slope + g) / squares
+    third = (5.0 * c * bend + 4.0 * slope) / squares
     small, away = theta < _SMALL, -2.0 * np.sin(0.5 * theta) ** 2  # cos θ - 1
-    return g, np.where(small, _SLOPE(away), slope), np.where(small, _BEND(away), bend)
+    found = zip(_SLOPES, (slope, bend, third), strict=True)
+    return g, *(np.where(small, series(away), quotient) for series, quotient in found)  # type: ignore[return-value]

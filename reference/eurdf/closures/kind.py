@@ -20,6 +20,7 @@ from eurdf.closures.se3 import (
     log3_derivative,
     log6,
     log6_derivative,
+    skew,
     transposed,
     turned,
     velocity_of_origin,
@@ -47,6 +48,7 @@ class RelativePoses:
     rotation: Matrix
     position: Matrix
     _logarithm: Matrix | None = None
+    _by_twist: Matrix | None = None
     _found: tuple[Callable[..., Any], Any] = isinstance, None
 
     def of(self, which: slice) -> RelativePoses:
@@ -61,7 +63,9 @@ class RelativePoses:
 
     def logarithm_by_twist(self) -> Matrix:
         """Its derivative (B, k, 6, 6) by the twist of B against A, seen from A: Jlog6(ᴬM_B) Ad(ᴮM_A) = Jlog6(ᴮM_A)."""
-        return log6_derivative(-self.logarithm())
+        if self._by_twist is None:
+            self._by_twist = log6_derivative(-self.logarithm())
+        return self._by_twist
 
     def twist_in_b(self) -> Matrix:
         """Ad(ᴮM_A) (B, k, 6, 6), which takes the twist of B against A, seen from A, to the axes of B."""
@@ -235,8 +239,48 @@ class ClosureKind(Closure, ABC):
 
     @staticmethod
     @abstractmethod
+    def jacobian_derivative(poses: RelativePoses, fixed: Any) -> Matrix:
+        """The derivative (B, k, r, 6, 6) of the Jacobian P, last index, by the twist of B against A, seen from A."""
+
+    @staticmethod
+    @abstractmethod
+    def bend_derivative(poses: RelativePoses, fixed: Any, twist: Matrix) -> Matrix:
+        """That (B, k, r, 6) of the bend Ṗ η = r̈ - P η̇ at a constant twist η (B, k, 6) of B against A, seen from A."""
+
+    @staticmethod
+    @abstractmethod
     def opening(poses: RelativePoses, fixed: Any) -> tuple[Vector, Vector]:
         """How far each closure is open, a length, m, and an angle, rad (EU-CLO-005): (B, k) each."""
+
+
+class CarriedVector(NamedTuple):
+    """A residual φ(y) of a vector y that B carries, seen from A, by the derivatives of φ and of y.
+
+    Attributes:
+        by_twist: The derivative L (…, 3, 6) of y by the twist η of B against A, seen from A.
+        first: φ′ (…, r, 3).
+        second: φ″ (…, r, 3, 3).
+        third: φ‴(ẏ, ẏ) (…, r, 3), by ẏ (…, 3).
+    """
+
+    by_twist: Matrix
+    first: Matrix
+    second: Matrix
+    third: Callable[[Matrix], Matrix]
+
+    def jacobian_derivative(self) -> Matrix:
+        """That (…, r, 6, 6) of P = φ′ L: φ″(L η, L δ) + φ′ (ω × L δ)."""
+        L = self.by_twist[..., None, :, :]
+        found = transposed(L) @ self.second @ L
+        found[..., 3:, :] -= skew(self.first) @ L
+        return np.asarray(found)
+
+    def bend_derivative(self, twist: Matrix) -> Matrix:
+        """That (…, r, 6) of the bend φ″(ẏ, ẏ) + φ′ (ω × ẏ), with ẏ = L η, at a constant twist η (…, 6)."""
+        W, rate = skew(twist[..., 3:]), turned(self.by_twist, twist)
+        found = self.third(rate) + (self.first @ W + 2.0 * turned(self.second, rate[..., None, :])) @ W
+        found += turned(self.second, turned(W, rate)[..., None, :])
+        return np.asarray(found @ self.by_twist)
 
 
 def no_angle(lengths: Vector) -> tuple[Vector, Vector]:

@@ -20,9 +20,12 @@ IDENTITY_ROTATION = np.eye(3)
 _SKEW = np.cross(IDENTITY_ROTATION[:, None], IDENTITY_ROTATION).transpose(0, 2, 1).reshape(3, 9)
 _OF_ORIGIN = np.concatenate((np.zeros((3, 3, 3)), -_SKEW.reshape(3, 3, 3)), axis=2).reshape(3, 18)
 _OF_ZERO = np.eye(3, 6).ravel()
+_UNIT = np.eye(6)
 _AD = np.zeros((6, 36))  # of a motion r the matrix of r ×
 for _rows, _columns, _of in ((0, 0, 3), (3, 3, 3), (0, 3, 0)):
     _AD.reshape(6, 6, 6)[_of : _of + 3, _rows : _rows + 3, _columns : _columns + 3] = _SKEW.reshape(3, 3, 3)
+
+_AD_OF_FORCE = -_AD.reshape(6, 6, 6).transpose(1, 2, 0).reshape(6, 36)
 
 
 def cross(a: Matrix, b: Matrix) -> Matrix:
@@ -142,7 +145,7 @@ _NEAR = 0.25  # below this t the series counts; its terms shrink by t / 4π²
 
 
 def _beta(turn: Matrix, order: int = 0) -> list[Vector]:
-    """β(t) = 1/t - cot(θ/2) / 2θ (…, 1), and its derivatives up to an order of at most 2.
+    """β(t) = 1/t - cot(θ/2) / 2θ (…, 1), and its derivatives up to an order of at most 3.
 
     The inverse of the right Jacobian of exp3 is 1 + W/2 + β W².
     """
@@ -159,6 +162,8 @@ def _beta(turn: Matrix, order: int = 0) -> list[Vector]:
     found = [(1.0 - h) / far]
     found.append(-(h_slope + found[0]) / far)
     found.append(-(h_bend + 2.0 * found[1]) / far)
+    h_third = (h_bend * (1.0 - 2.0 * h) - 2.0 * h_slope * h_slope - 4.0 * h_bend) / (2.0 * far)
+    found.append(-(h_third + 3.0 * found[2]) / far)
     near = _series(np.where(small, t, 0.0), _NEAR, order)
     return [np.where(small, one, other) for one, other in zip(near, found, strict=False)]
 
@@ -227,6 +232,102 @@ def log6_second(r: Matrix, twist: Matrix, change: Matrix) -> Matrix:
     second = change + 0.5 * both + _dual(beta, slope * along, turned(ad, both) + turned(ad_rate, once))
     along_second = 2.0 * _along(rate, swapped)
     return second + _dual(slope * along_rate, bend * along_rate * along + slope * along_second, twice)
+
+
+def motion_cross(a: Matrix) -> Matrix:
+    """The matrices (…, 6, 6) that multiply a motion b to a × b."""
+    return np.asarray((a @ _AD).reshape(*a.shape, 6))
+
+
+def force_cross(f: Matrix) -> Matrix:
+    """The matrices (…, 6, 6) that multiply a motion a to a ×* f, where b · (a ×* f) = -(a × b) · f."""
+    return np.asarray((f @ _AD_OF_FORCE).reshape(*f.shape, 6))
+
+
+def log6_derivative_derivative(r: Matrix, J: Matrix) -> Matrix:
+    """The derivative (…, 6, 6, 6), last index, of J = log6_derivative(-r) by a twist seen from the fixed frame.
+
+    J (…, 6, 6) is the derivative of log6, whose value is r (…, 6), by this twist.
+    """
+    if _is_small(r):
+        return np.asarray((r @ _TURNS_NEAR + _TURNS_AT_ZERO).reshape(*J.shape, 6))
+    each = _by_logarithm(r[..., None, :], np.broadcast_to(_UNIT, (*r.shape, 6))) @ J[..., None, :, :]
+    return np.swapaxes(each, -3, -2)
+
+
+def log6_bend_derivative(r: Matrix, J: Matrix, twist: Matrix) -> Matrix:
+    """The derivative (…, 6, 6) of J̇ η by a twist, at a constant twist η (…, 6); for r and J see above.
+
+    With U = ∂(J η)/∂r, J̇ η = U J η, and this is (H + U²) J with H = ∂(U ṙ)/∂r at constant ṙ = J η.
+    """
+    rate = turned(J, twist)
+    R, Y = motion_cross(rate), motion_cross(twist)
+    turning = turned(R, twist)
+    both, U = R @ Y + motion_cross(turning), _by_logarithm(r, twist)
+    if _is_small(r):
+        return np.asarray((U @ U - both / 12.0) @ J)
+    w, swapped = r[..., 3:], r[..., _SWAPPED]
+    beta, slope, bend, third = _beta(w, 3)
+    X = motion_cross(r)
+    once = turned(X, twist)
+    # Dual numbers as (real, dual): β and its derivatives by t, and those of t by r and along ṙ.
+    along = _along(r, swapped)
+    b, b_slope, b_bend = (beta, slope * along), (slope, bend * along), (bend, third * along)
+    by_r, by_both = (_angular(2.0 * w), 2.0 * swapped), (_angular(2.0 * rate[..., 3:]), 2.0 * rate[..., _SWAPPED])
+    by_rate = 2.0 * _along(w, rate[..., 3:]), 2.0 * _along(swapped, rate)
+    bent = _dual_product(_dual_product(b_bend, by_rate), by_r), _dual_product(b_slope, by_both)
+    H = _dual_outer(bent[0], turned(X, once)) + _dual_outer(bent[1], turned(X, once))
+    H -= _dual_times(_dual_product(b_slope, by_rate), motion_cross(once) + X @ Y)
+    H += _dual_outer(_dual_product(b_slope, by_r), turned(R, once) + turned(X, turning))
+    return np.asarray((H - _dual_times(b, both) + U @ U) @ J)
+
+
+def _by_logarithm(r: Matrix, x: Matrix) -> Matrix:
+    """The derivative (…, 6, 6) of (1 - ad/2 + B ad²) x by r, at constant x (…, 6); see `log6_second`."""
+    X, Y = motion_cross(r), motion_cross(x)
+    once = turned(X, x)
+    twice = motion_cross(once) + X @ Y
+    if _is_small(r):
+        return np.asarray(0.5 * Y - twice / 12.0)
+    w, swapped, along = r[..., 3:], r[..., _SWAPPED], _along(r, r[..., _SWAPPED])
+    beta, slope, bend = _beta(w, 2)[:3]
+    by_r = _dual_product((slope, bend * along), (_angular(2.0 * w), 2.0 * swapped))
+    return np.asarray(0.5 * Y - _dual_times((beta, slope * along), twice) + _dual_outer(by_r, turned(X, once)))
+
+
+def _is_small(r: Matrix) -> bool:
+    """Whether series in r of the first order are exact to rounding, since loops are closed (EU-CLO-005)."""
+    return bool(np.vdot(r, r) <= 1e-12)
+
+
+# `log6_derivative_derivative` at r = 0, and what each entry of r adds near it.
+_CROSS = _AD.reshape(6, 6, 6)  # of a unit motion the matrix of its product
+_TURNS_AT_ZERO = 0.5 * _CROSS.transpose(1, 0, 2).ravel()
+_TURNS_NEAR = np.einsum("akl,ilj->akij", _CROSS, _CROSS) + np.einsum("ali,lkj->akij", _CROSS, _CROSS)
+_TURNS_NEAR = (-_TURNS_NEAR / 12.0 - 0.25 * np.einsum("ikl,alj->akij", _CROSS, _CROSS)).reshape(6, 216)
+
+
+def _angular(w: Matrix) -> Matrix:
+    """Rows (…, 6) over the angular part of a motion."""
+    return np.concatenate((np.zeros_like(w), w), axis=-1)
+
+
+def _dual_product(a: tuple[Matrix, Matrix], b: tuple[Matrix, Matrix]) -> tuple[Matrix, Matrix]:
+    return a[0] * b[0], a[0] * b[1] + a[1] * b[0]
+
+
+def _dual_times(a: tuple[Vector, Vector], columns: Matrix) -> Matrix:
+    """A dual number (…, 1) times motions that are columns (…, 6, n)."""
+    found = a[0][..., None] * columns
+    found[..., :3, :] += a[1][..., None] * columns[..., 3:, :]
+    return found
+
+
+def _dual_outer(rows: tuple[Matrix, Matrix], motion: Matrix) -> Matrix:
+    """Dual numbers that depend linearly on a motion, as rows (…, 6), times a motion (…, 6): a matrix (…, 6, 6)."""
+    found = motion[..., :, None] * rows[0][..., None, :]
+    found[..., :3, :] += motion[..., 3:, None] * rows[1][..., None, :]
+    return found
 
 
 def _dual(real: Vector, dual: Vector, motion: Matrix) -> Matrix:

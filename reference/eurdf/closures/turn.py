@@ -50,6 +50,16 @@ class HeldTurn(ClosureKind):
         return (fixed @ FrameClosure.drift(motions, None)[..., None])[..., 0]
 
     @staticmethod
+    def jacobian_derivative(poses: RelativePoses, fixed: Matrix) -> Matrix:
+        """Its rows of those of `FrameClosure`."""
+        return np.einsum("krs,...ksij->...krij", fixed, FrameClosure.jacobian_derivative(poses, None))
+
+    @staticmethod
+    def bend_derivative(poses: RelativePoses, fixed: Matrix, twist: Matrix) -> Matrix:
+        """Its rows of those of `FrameClosure`."""
+        return fixed @ FrameClosure.bend_derivative(poses, None, twist)
+
+    @staticmethod
     def opening(poses: RelativePoses, fixed: Matrix) -> tuple[Vector, Vector]:
         """|r|; lengths are free."""
         turns = np.abs(HeldTurn.residual(poses, fixed)[..., 0])

@@ -18,8 +18,10 @@ from pinocchio import LOCAL
 
 from eurdf.array import Indices, Mask, Matrix, Vector
 from eurdf.errors import NumericalOverflow
+from eurdf.kinematics.applied_force import AppliedForce
 from eurdf.kinematics.blocks import Progress, blocks, checked_configurations, checked_rows, shape_of, starts
 from eurdf.kinematics.closing import close
+from eurdf.kinematics.derivatives import DerivativesTask, DynamicsDerivatives, derivatives_at
 from eurdf.kinematics.evaluate import Evaluator, evaluator, frames
 from eurdf.kinematics.forward import driving_many, given_many, goals, in_equilibrium, moved_many
 from eurdf.kinematics.frame_jacobian import checked_reference
@@ -410,6 +412,61 @@ def actuated_jacobian(
         for depends, exists in zip(dependent.tolist(), finite.tolist(), strict=True)
     ]
     return ActuatedJacobian(jacobian, finite & ~dependent, tuple(reason))
+
+
+def dynamics_derivatives(
+    robot: Robot,
+    q: NamedRows,
+    v: Matrix,
+    u: Matrix | None = None,
+    *,
+    tau: Matrix | None = None,
+    gains: tuple[float, float] | None = None,
+    dissipation: bool = False,
+    block: int | None = None,
+    threads: int = 1,
+    executor: Executor | None = None,
+    progress: Progress | None = None,
+) -> DynamicsDerivatives:
+    """Derivatives of forward dynamics, as `eurdf.dynamics_derivatives` has them; B elements.
+
+    Args:
+        robot: The robot.
+        q: Configurations (B, nq).
+        v: Velocities (B, nv).
+        u: Motor torques (B, nu), N·m and N; zero by default.
+        tau: Additional generalized forces (B, nv), N·m and N.
+        gains: As in `eurdf.forward_dynamics`.
+        dissipation: As in `eurdf.forward_dynamics`.
+        block: See `eurdf.batch.forward_kinematics`, also for the following ones.
+        threads: Number of threads.
+        executor: Who works on blocks instead.
+        progress: Called after each block.
+
+    Returns:
+        The arrays of `eurdf.dynamics_derivatives`, with the elements first.
+
+    Raises:
+        ValueError: An argument has a wrong shape or is not finite; or, in an element, redundant rows of K contradict
+            each other.
+        UndeterminedMotion: In an element a joint without inertia can move.
+        NumericalOverflow: A result is not finite.
+    """
+    rows, nv, nu = checked_configurations(robot, "q", q), robot.tree.nv, len(robot.actuation.idx_v)
+    given = {"v": (v, nv), "u": (u, nu), "tau": (tau, nv)}
+    each = [
+        checked_rows(name, np.zeros((len(rows), width)) if values is None else values, width)
+        for name, (values, width) in given.items()
+    ]
+    for name, values in zip(given, each, strict=True):
+        if len(values) != len(rows):
+            raise ValueError(f"{name} has {len(values)} rows; expected {len(rows)}, one for each row of q")
+    applied = AppliedForce(robot, None, dissipation)
+    forces = np.array([applied.total(*state) for state in zip(rows, *each, strict=True)]).reshape(len(rows), nv)
+    nc, task = robot.mechanism.nc, DerivativesTask(robot, gains, dissipation)
+    numbers = 6 * (nv + nc) ** 2 + 40 * (nv + nc) + 14 * nv * len(robot.constraints)
+    work = blocks(numbers, block, threads, executor, progress)
+    return DynamicsDerivatives(*work.map(derivatives_at, task, (rows, each[0], forces)))
 
 
 def inverse_kinematics(

@@ -28,7 +28,7 @@ from eurdf.kinematics.forward_solver import ForwardSolver
 from eurdf.kinematics.inverse_solver import InverseSolver
 from eurdf.kinematics.named import Named, motor_values_of, velocity_of
 from eurdf.kinematics.tolerances import FORCES_SOLVED, MASSLESS
-from eurdf.pinocchio.arguments import checked_array, checked_tolerance
+from eurdf.pinocchio.arguments import checked_tolerance
 from eurdf.pinocchio.memory import working_memory
 from eurdf.pinocchio.tree_dynamics import TreeDynamics
 
@@ -146,12 +146,7 @@ def forward_dynamics(
         q, v = start(robot, q, "q"), velocity_of(robot, v)
         dynamics = solver.dynamics(data)
         force = AppliedForce(robot, external, dissipation).total(q, v, u, tau)
-        if gains is None:
-            each = solver.gains.now()
-        else:
-            kp, kd = checked_array("gains", gains, (2,)).tolist()
-            each = [(kp, kd)] * len(robot.constraints)
-        a, lambdas = solver.solve(robot, q, v, force, each, dynamics)
+        a, lambdas = solver.solve(robot, q, v, force, solver.gains.given(gains), dynamics)
     return ForwardDynamics(a, Forces.of(solver, lambdas))
 
 
@@ -208,7 +203,7 @@ def inverse_dynamics(
     """
     with working_memory(robot, ForwardSolver) as solver, working_memory(robot, InverseSolver) as inverse_solver:
         q, v, a, dynamics = _state(robot, q, v, a, solver, data)
-        norm, tolerance = _norm(robot, weights), checked_tolerance(tolerance)
+        norm, tolerance = norm_of(robot, weights), checked_tolerance(tolerance)
         near = np.zeros(len(norm)) if u0 is None else motor_values_of(robot, u0, "u0")
         applied = AppliedForce(robot, external, dissipation).total(q, v, None, tau)
         found = inverse_solver.solve(solver, q, v, a, applied, tolerance, dynamics)
@@ -358,7 +353,7 @@ def _refuse_uncontrolled(
         raise UnderactuatedMotion(by_joint(tree, force), float(np.abs(deviation / motion.unit).max()))
 
 
-def _norm(robot: Robot, weights: Named | None) -> Vector:
+def norm_of(robot: Robot, weights: Named | None) -> Vector:
     """1/√w (nu,)."""
     if weights is None:
         return np.ones(len(robot.actuation.idx_v))

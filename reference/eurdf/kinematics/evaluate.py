@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from eurdf.pinocchio.tree import Tree
 
 
-class _SameKind(NamedTuple):
+class SameKind(NamedTuple):
     """The closures of one kind.
 
     Attributes:
@@ -99,6 +99,9 @@ class Evaluator(_ByConfiguration):
         velocities: Indices (n,) in v of the columns of K.
         m: Number of rows.
         n: Number of columns.
+        sites: Frames A and B of each closure, kind by kind; of an evaluator for few configurations.
+        groups: The closures of each kind.
+        couplings: The couplings, their indices among the constraints, and their rows; None if there are none.
     """
 
     def __init__(
@@ -127,36 +130,36 @@ class Evaluator(_ByConfiguration):
             members.setdefault(type(constraint), []).append(index)
             first.append(self.m)
             self.m += constraint.rows
-        self._sites: list[Pair] = []
+        self.sites: list[Pair] = []
         self._pair_of: dict[int, int] = {}  # of each constraint with a pair
-        self._groups: list[_SameKind] = []
-        self._couplings: tuple[Couplings, slice | Indices, slice | Indices] | None = None
+        self.groups: list[SameKind] = []
+        self.couplings: tuple[Couplings, slice | Indices, slice | Indices] | None = None
         for kind, found in members.items():
             own: list[Any] = [constraints[index] for index in found]
             rows = np.array([first[each] + row for each in found for row in range(own[0].rows)], dtype=np.intp)
             indices, chosen = as_slice(np.array(found, dtype=np.intp)), as_slice(rows)
             if kind is Coupling:
-                self._couplings = Couplings(own, tree.coordinate, velocities), indices, chosen
+                self.couplings = Couplings(own, tree.coordinate, velocities), indices, chosen
                 continue
             if not issubclass(kind, ClosureKind):
                 raise NotImplementedError(f"constraint '{own[0].name}' has the type '{kind.type}', which has no kind")
-            pairs = slice(len(self._sites), len(self._sites) + len(own))
+            pairs = slice(len(self.sites), len(self.sites) + len(own))
             for index, each in zip(found, own, strict=True):
-                self._pair_of[index] = len(self._sites)
-                self._sites.append(sites[index] if index in sites else (tree.site(each.a), tree.site(each.b)))
-            self._groups.append(_SameKind(kind, kind.prepare(own), indices, pairs, chosen, len(rows)))
+                self._pair_of[index] = len(self.sites)
+                self.sites.append(sites[index] if index in sites else (tree.site(each.a), tree.site(each.b)))
+            self.groups.append(SameKind(kind, kind.prepare(own), indices, pairs, chosen, len(rows)))
         # The rows of the residual are those of one kind, in order.
-        self._is_plain = self._couplings is None and len(self._groups) == 1
+        self._is_plain = self.couplings is None and len(self.groups) == 1
         self._tree: Tree | None = tree
         self._few = few
         if not few:
-            self._pairs = ManyPairs(tree.cached(TreeMany), self._sites, velocities)
-            self._sites, self._tree = [], None  # what is Pinocchio's cannot be sent to another process
+            self._pairs = ManyPairs(tree.cached(TreeMany), self.sites, velocities)
+            self.sites, self._tree = [], None  # what is Pinocchio's cannot be sent to another process
 
     @cached_property
     def _pairs(self) -> Any:  # memory is made when it is first used
         assert self._tree is not None
-        return _few_pairs(self._tree, self._sites, self.velocities)
+        return _few_pairs(self._tree, self.sites, self.velocities)
 
     @property
     def is_by_pinocchio(self) -> bool:
@@ -176,7 +179,7 @@ class Evaluator(_ByConfiguration):
     def at_once(self, q: Matrix) -> State:
         """The constraints at q (1, nq), by Pinocchio, sooner than memory to evaluate them in is made."""
         assert self._tree is not None
-        return self._state(q, poses_once(self._tree.model, self._tree.parents, self._sites, q[0]))
+        return self._state(q, poses_once(self._tree.model, self._tree.parents, self.sites, q[0]))
 
     def place(self, index: int, rotation: Matrix, position: Vector) -> None:
         """Move frame A of a constraint to another pose in its joint, for the configurations that follow."""
@@ -187,13 +190,13 @@ class Evaluator(_ByConfiguration):
         """The residual (B, m), m and rad, to read: it may be kept with the poses."""
         B = len(at.q)
         if self._is_plain:
-            (group,), (poses,) = self._groups, at.by_kind
+            (group,), (poses,) = self.groups, at.by_kind
             return group.kind.residual(poses, group.fixed).reshape(B, self.m)
         r = np.empty((B, self.m))
-        for group, poses in zip(self._groups, at.by_kind, strict=True):
+        for group, poses in zip(self.groups, at.by_kind, strict=True):
             r[:, group.rows] = group.kind.residual(poses, group.fixed).reshape(B, group.m)
-        if self._couplings is not None:
-            couplings, _, rows = self._couplings
+        if self.couplings is not None:
+            couplings, _, rows = self.couplings
             r[:, rows] = couplings.residual(at.q)
         return r
 
@@ -201,27 +204,27 @@ class Evaluator(_ByConfiguration):
         """K (B, m, n), the derivative of the residual by the velocities."""
         jacobian: Callable[..., Matrix] = self._pairs.jacobian
         if self._is_plain:
-            (group,), (poses,) = self._groups, at.by_kind
+            (group,), (poses,) = self.groups, at.by_kind
             return jacobian(at.poses, group.pairs, group.kind.jacobian(poses, group.fixed))
         K = np.empty((len(at.q), self.m, self.n))
-        for group, poses in zip(self._groups, at.by_kind, strict=True):
+        for group, poses in zip(self.groups, at.by_kind, strict=True):
             K[:, group.rows] = jacobian(at.poses, group.pairs, group.kind.jacobian(poses, group.fixed))
-        if self._couplings is not None:
-            couplings, _, rows = self._couplings
+        if self.couplings is not None:
+            couplings, _, rows = self.couplings
             K[:, rows] = couplings.K
         return K
 
     def drift(self, q: Matrix, v: Matrix) -> Matrix:
         """r̈ = K̇ v (B, m) at q (B, nq) while every joint keeps its velocity v (B, nv)."""
         d = np.zeros((len(q), self.m))  # that of couplings is zero
-        if not self._groups:
+        if not self.groups:
             return d
         if not self._few or len(q) != 1:
             motions = self._pairs.motions(q, v)
         else:  # poses that the residual and K have used
             at = self.at(q)
             motions = self._pairs.motions(at.q, v)._replace(poses=at.poses)
-        for group in self._groups:
+        for group in self.groups:
             own = motions if self._is_plain else motions.of(group.pairs)
             d[:, group.rows] = group.kind.drift(own, group.fixed).reshape(len(q), group.m)
         return d
@@ -229,19 +232,19 @@ class Evaluator(_ByConfiguration):
     def openings(self, at: State) -> tuple[Matrix, Matrix]:
         """How far each constraint is open, m and rad, (B, c) each."""
         if self._is_plain:
-            (group,), (poses,) = self._groups, at.by_kind
+            (group,), (poses,) = self.groups, at.by_kind
             return group.kind.opening(poses, group.fixed)
         lengths, angles = np.empty((2, len(at.q), self._count))
-        for group, poses in zip(self._groups, at.by_kind, strict=True):
+        for group, poses in zip(self.groups, at.by_kind, strict=True):
             lengths[:, group.members], angles[:, group.members] = group.kind.opening(poses, group.fixed)
-        if self._couplings is not None:
-            couplings, members, _ = self._couplings
+        if self.couplings is not None:
+            couplings, members, _ = self.couplings
             lengths[:, members], angles[:, members] = couplings.opening(at.q)
         return lengths, angles
 
     def _state(self, q: Matrix, poses: RelativePoses | None = None) -> State:
         poses = self._pairs.at(q) if poses is None else poses
-        return State(q, poses, [poses] if self._is_plain else [poses.of(group.pairs) for group in self._groups])
+        return State(q, poses, [poses] if self._is_plain else [poses.of(group.pairs) for group in self.groups])
 
 
 def evaluator(

@@ -38,7 +38,7 @@ def residual(robot: Robot, q: Named) -> Vector:
         NumericalOverflow: Coordinates or lengths are so large that the residual is not finite.
     """
     q = configuration_of(robot, q)
-    with working_memory(robot, _constraints) as constraints:
+    with working_memory(robot, all_constraints) as constraints:
         r = np.array(constraints.residual(constraints.at(q[None]))[0])
     finite("the residual", r)
     return r
@@ -59,7 +59,7 @@ def residual_and_jacobian(robot: Robot, q: Named) -> tuple[Vector, Matrix]:
         NumericalOverflow: As in `residual`, also of the derivative.
     """
     q = configuration_of(robot, q)
-    with working_memory(robot, _constraints) as constraints:
+    with working_memory(robot, all_constraints) as constraints:
         at = constraints.at(q[None])
         r, K = np.array(constraints.residual(at)[0]), constraints.jacobian(at)[0]
     finite("the residual and its derivative", r, K)
@@ -106,7 +106,7 @@ def acceleration_drift(robot: Robot, q: Named, v: Named) -> Vector:
         ValueError: As in `residual`, also for ``v``.
     """
     q, v = configuration_of(robot, q), velocity_of(robot, v)
-    with working_memory(robot, _constraints) as constraints:
+    with working_memory(robot, all_constraints) as constraints:
         return np.asarray(constraints.drift(q[None], v[None])[0])
 
 
@@ -114,7 +114,7 @@ def drift_of_pairs(robot: Robot, q: Vector, V: Matrix) -> Matrix:
     """The symmetric D (nc, k, k) with K̇ v = Σ D_ij w_i w_j for the velocities v = V w, with V (nv, k)."""
     count, pairs = V.shape[1], list(itertools.combinations(range(V.shape[1]), 2))
     moves = np.array([*V.T, *(V[:, i] + V[:, j] for i, j in pairs)]).reshape(-1, len(V))
-    with working_memory(robot, _constraints) as constraints:
+    with working_memory(robot, all_constraints) as constraints:
         drift = constraints.drift(np.repeat(q[None], len(moves), axis=0), moves)
     D = np.zeros((robot.mechanism.nc, count, count))
     for i in range(count):
@@ -143,13 +143,13 @@ def closure_openings(robot: Robot, q: Named) -> tuple[Opening, ...]:
 def all_openings(robot: Robot, q: Named) -> tuple[Opening, ...]:
     """As `closure_openings`, also where they are not finite: such a constraint is open."""
     q = configuration_of(robot, q)
-    with working_memory(robot, _constraints) as constraints:
+    with working_memory(robot, all_constraints) as constraints:
         return _named(robot, constraints, constraints.at(q[None]))
 
 
 def openings_once(robot: Robot, q: Vector) -> tuple[Opening, ...]:
     """As `all_openings`, sooner if nothing else is evaluated of the robot."""
-    constraints = _constraints(robot)
+    constraints = all_constraints(robot)
     return _named(robot, constraints, constraints.at_once(q[None]))
 
 
@@ -159,5 +159,6 @@ def _named(robot: Robot, constraints: Evaluator, at: State) -> tuple[Opening, ..
     return tuple(Opening(of.name, length, angle) for of, length, angle in found)
 
 
-def _constraints(robot: Robot) -> Evaluator:
+def all_constraints(robot: Robot) -> Evaluator:
+    """An evaluator of all constraints, for few configurations."""
     return evaluator(robot, few=True)

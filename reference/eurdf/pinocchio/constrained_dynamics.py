@@ -12,11 +12,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import pinocchio as pin
+from numpy.typing import ArrayLike
 
 from eurdf.array import Indices, Matrix, Vector
 from eurdf.closures.kind import ClosureKind, Contact
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import Constraint
+from eurdf.pinocchio.arguments import checked_array
 from eurdf.pinocchio.constraint import contacts_of, models_of
 from eurdf.pinocchio.tree_dynamics import whole_matrix
 from eurdf.pinocchio.tree_few import Site
@@ -325,6 +327,17 @@ class StatedGains:
         return [
             _common(name, first, *others) if others else (first.Kp, first.Kd) for name, first, others in self._stated
         ]
+
+    def given(self, gains: ArrayLike | None) -> list[Gains]:
+        """The given kp and kd for each constraint; those of `now` if they are None.
+
+        Raises:
+            ValueError: They are not two finite numbers.
+        """
+        if gains is None:
+            return self.now()
+        kp, kd = checked_array("gains", gains, (2,)).tolist()
+        return [(kp, kd)] * len(self._none)
 
 
 def _common(constraint: str, *stated: Any) -> Gains:

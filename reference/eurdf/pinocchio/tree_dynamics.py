@@ -6,6 +6,7 @@ the number of joints, and nv² numbers where the mass matrix is asked for.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -44,6 +45,35 @@ class TreeDynamics:
         gravity = self.inverse_dynamics(q, still, still)
         columns = [self.inverse_dynamics(q, still, a) - gravity for a in motions.T]
         return np.array(columns).reshape(motions.T.shape).T
+
+    def columns(self, q: Vector) -> tuple[Matrix, Matrix]:
+        """The poses (joints, 4, 4) of all joints in the world at q (nq,), and the world Jacobian (nvExtended, 6).
+
+        Columns of the Jacobian, here rows, are linear, of the point at the origin of the world, and angular. A mimic
+        joint has one of its own, for a unit velocity of its leader.
+        """
+        data = self.data
+        J = np.array(pin.computeJointJacobians(self.model, data, q).T)
+        return np.array([placement.homogeneous for placement in data.oMi]), J  # type: ignore[union-attr]
+
+    def derivatives(
+        self, q: Vector, v: Vector, a: Vector, joints: Sequence[int]
+    ) -> tuple[Matrix, Matrix, Matrix] | None:
+        """What Pinocchio differentiates at q (nq,), v and a (nv,); None without a `pin.Data`, or with mimic joints.
+
+        Returns:
+            The poses (k, 4, 4) of the joints; the columns of the Jacobian, J̇, V′ and A′ (4, nv, 6) as in
+            `eurdf.kinematics.variation`, without gravity; and the derivatives (3, nv, nv) of M a + h by q, v and a.
+        """
+        data = self.data
+        if data is None or len(self.model.mimicking_joints):
+            return None
+        pin.computeRNEADerivatives(self.model, data, q, v, a)
+        columns = np.array((data.J.T, data.dJ.T, data.dAdv.T, data.dAdq.T))
+        columns[2] -= columns[1]
+        terms = np.array((data.dtau_dq, data.dtau_dv, whole_matrix(data.M)))
+        oMi = data.oMi
+        return np.array([oMi[joint].homogeneous for joint in joints]).reshape(-1, 4, 4), columns, terms
 
     def inverse_mass_diagonal(self, q: Vector) -> Vector:
         """The diagonal (nv,) of the inverse of the mass matrix at q (nq,), of a tree without mimic joints."""
@@ -145,6 +175,15 @@ class TreeRecursion(TreeDynamics):
         if model.nv < model.nvExtended:
             M = self._velocities.T @ M @ self._velocities
         return np.asarray((M + np.diag(model.armature)) @ motions)
+
+    def columns(self, q: Vector) -> tuple[Matrix, Matrix]:
+        """See `TreeDynamics.columns`."""
+        placements, J = self._placements(q), np.zeros((self.model.nvExtended, 6))
+        for joint, moving, data, _, _ in self._joints:
+            first = self.model.idx_vExtendeds[joint]
+            own = placements[joint].toActionMatrix() @ data.S.reshape(6, -1)
+            J[first : first + moving.nvExtended] = own.T
+        return np.array([placement.homogeneous for placement in placements]), J
 
     def _energy_of_gravity(self, q: Vector) -> float:
         gravity = self.model.gravity.linear

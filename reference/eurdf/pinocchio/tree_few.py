@@ -77,7 +77,9 @@ class FewPoses(RelativePoses):
 
     def logarithm_by_twist(self) -> Matrix:
         """Jlog6(ᴮM_A) (B, k, 6, 6)."""
-        return np.array([pin.Jlog6(aMb.inverse()) for aMb in self._each()]).reshape(*self._shape, 6, 6)
+        if self._by_twist is None:
+            self._by_twist = np.array([pin.Jlog6(aMb.inverse()) for aMb in self._each()]).reshape(*self._shape, 6, 6)
+        return self._by_twist
 
     def twist_in_b(self) -> Matrix:
         """Ad(ᴮM_A) (B, k, 6, 6)."""
