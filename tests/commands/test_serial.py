@@ -57,7 +57,8 @@ def test_transmission_is_generated_as_c(tmp_path: Path, capsys: pytest.CaptureFi
     assert f"{name}.h'" in capsys.readouterr().err
     assert main(command) == 2
     assert "--force replaces it" in capsys.readouterr().err
-    assert main([*command, "--force"]) == 0
+    assert main([*command, "--force", "--single"]) == 0
+    assert "double" not in (tmp_path / f"{name}.c").read_text(encoding="utf-8")
 
 
 @pytest.mark.slow

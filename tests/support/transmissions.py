@@ -22,6 +22,21 @@ DRIVEN = {
     "kangaroo_leg": ("free_knee", "free_ankle_y", "free_ankle_x"),
 }
 
+#: Ankles, waists and other transmissions of two joints of the collection.
+OF_TWO_JOINTS = [
+    ("unitree_g1_ankle", DRIVEN["unitree_g1_ankle"]),
+    ("tesla_optimus_ankle", DRIVEN["tesla_optimus_ankle"]),
+    ("talos_leg", DRIVEN["talos_leg"]),
+    ("digit_leg", DRIVEN["digit_leg"]),
+    ("unitree_g1", ("waist_roll_joint", "waist_pitch_joint")),
+    ("battobot", ("left_free_ankle_y", "left_free_ankle_x")),
+    ("tello", ("left_free_hip_x", "left_free_hip_y")),
+    ("tello", ("left_free_knee", "left_free_ankle")),
+    ("toddlerbot_2legs", ("waist_yaw", "waist_roll")),
+    ("kangaroo_leg", ("free_hip_y", "free_hip_x")),
+    ("five_bar", ("free_elbow_1", "free_elbow_2")),
+]
+
 
 def posed(name: str, seed: int = 0) -> tuple[Any, Any]:
     """A robot of the collection, and a closed configuration with its motors moved by up to 15 % of their ranges."""

@@ -14,9 +14,10 @@ import eurdf
 from eurdf.pinocchio.robot import build_robot
 from support.compiled import NOT_CLOSED, NOT_FINITE, OK, SINGULAR, TOO_FAR, Compiled
 from support.mechanisms import one_loop
-from support.transmissions import DRIVEN, with_properties
+from support.transmissions import DRIVEN, OF_TWO_JOINTS, with_properties
 
 ANKLE = ("free_pitch", "free_roll")
+FAST = ("unitree_g1_ankle", "digit_leg")
 
 
 def loop(*types: str, closure: str, seed: int, slow: bool = True, **options: bool) -> Any:
@@ -40,10 +41,11 @@ def loop(*types: str, closure: str, seed: int, slow: bool = True, **options: boo
 def test_every_joint_and_constraint_agrees_with_c(described: Any, tmp_path: Path) -> None:
     types, closure, seed, options = described
     robot = one_loop(types, closure, seed, **options)
-    prepared = eurdf.transmissions.prepare_transmission(robot, ["j0"])
-    compiled = Compiled(prepared, tmp_path)
     slot = robot.slots["j0"]
     start = np.array(robot.mechanism.configurations["assembled"]["j0"])
+    ranges = dict(zip(eurdf.transmission(robot, "j0").joints, np.stack((start - 0.05, start + 0.05), 1), strict=True))
+    prepared = eurdf.transmissions.prepare_transmission(robot, ["j0"], ranges=ranges)
+    compiled = Compiled(prepared, tmp_path)
     along = np.array([0.03, -0.02])[: slot.nv]
     for k in range(40):
         point = start + np.sin(0.1 * k) * along
@@ -139,19 +141,71 @@ def test_statuses_in_c_are_errors_in_python(
     assert statuses <= found
 
 
-@pytest.mark.parametrize(("name", "points"), [("unitree_g1_ankle", 21), ("tesla_optimus_ankle", 9), ("digit_leg", 9)])
-def test_start_reaches_every_pose_of_the_workspace(name: str, points: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("name", "joints"),
+    [
+        pytest.param(*case, marks=[] if case[0] in ("unitree_g1_ankle", "digit_leg") else pytest.mark.slow)
+        for case in OF_TWO_JOINTS
+    ],
+)
+def test_a_call_in_the_workspace_has_no_history(name: str, joints: tuple[str, ...], tmp_path: Path) -> None:
     robot = eurdf.load(name, geometry=False)
+    space = eurdf.transmissions.workspace(robot, joints, grid=9)
+    motors = space.selections[1]
+    poses = np.concatenate((space.q, [point.q for point in space.boundary]))
+    positions = np.concatenate((space.positions, [point.position for point in space.boundary]))
+    prepared = eurdf.transmissions.prepare_transmission(robot, joints)
+    double, single = (Compiled(prepared, tmp_path, real=real, substeps=1) for real in ("double", "float"))
+    for k in np.random.default_rng(0).permutation(len(poses)):
+        by_joints, r = prepared.at_joints(positions[k]), eurdf.residual(robot, prepared.q)
+        by_motors = prepared.at_motors(by_joints.positions)
+        assert np.abs([r, eurdf.residual(robot, prepared.q)]).max() < 1e-9
+        assert by_joints.positions == pytest.approx(motors.read(poses[k]), abs=1e-7)
+        assert by_motors.positions == pytest.approx(positions[k], abs=1e-9)
+        G, B = eurdf.transmission(robot, joints, prepared.q).G, by_motors.B
+        assert pytest.approx(by_joints.G, rel=1e-6, abs=1e-8) == G
+        for compiled, exact, derivative in ((double, 1e-9, 1e-7), (single, 2e-5, 1e-3)):
+            of_joints = positions[k], compiled.all_at_joints, compiled.start_at_joints, by_joints.positions, G, B
+            of_motors = by_joints.positions, compiled.all_at_motors, compiled.start_at_motors, positions[k], B, G
+            for given, at, start_at, expected, D, inverse in (of_joints, of_motors):
+                compiled.pose[:] = np.nan
+                status, found, c_D, c_inverse = at(given)
+                assert (status, found) == (OK, pytest.approx(expected, abs=exact))
+                assert c_D == pytest.approx(D, rel=derivative, abs=derivative)
+                assert c_inverse == pytest.approx(inverse, rel=derivative, abs=derivative)
+                assert start_at(given) == OK
+
+
+@pytest.mark.slow
+def test_three_joints_start_at_the_nearest_stored_pose(tmp_path: Path) -> None:
+    name, robot = "kangaroo_leg", eurdf.load("kangaroo_leg", geometry=False)
+    space = eurdf.transmissions.workspace(robot, DRIVEN[name], grid=5)
     prepared = eurdf.transmissions.prepare_transmission(robot, DRIVEN[name])
     compiled = Compiled(prepared, tmp_path)
-    motors = [robot.slots[motor].idx_q for motor in prepared.motors]
-    space = eurdf.transmissions.workspace(robot, DRIVEN[name], grid=points)
-    assert len(space.q) > 0.8 * points**2
-    for q, positions in zip(space.q, space.positions, strict=True):
-        assert compiled.start_at_joints(positions) == OK
-        assert compiled.at_joints(positions)[1] == pytest.approx(q[motors], abs=1e-6)
-        assert compiled.start_at_motors(q[motors]) == OK
-        assert compiled.at_motors(q[motors])[1] == pytest.approx(positions, abs=1e-6)
+    for k in np.random.default_rng(0).permutation(len(space.q)):
+        motors = space.selections[1].read(space.q[k])
+        assert prepared.at_joints(space.positions[k]).positions == pytest.approx(motors, abs=1e-7)
+        for at, given, expected in (
+            (compiled.at_joints, space.positions[k], motors),
+            (compiled.at_motors, motors, space.positions[k]),
+        ):
+            compiled.pose[:] = np.nan
+            status, found, _ = at(given)
+            assert (status, found) == (OK, pytest.approx(expected, abs=1e-7))
+
+
+def test_a_reset_changes_the_branch() -> None:
+    robot = eurdf.load("four_bar", geometry=False)
+    prepared = eurdf.transmissions.prepare_transmission(
+        robot, "free_rocker", {"free_rocker": -0.4, "motor_crank": -1.0}
+    )
+    here = prepared.at_joints([-0.4])
+    prepared.reset(eurdf.forward_kinematics(robot, {"motor_crank": 2.5}))
+    there = prepared.at_joints([-0.4])
+    assert np.abs(eurdf.residual(robot, prepared.q)).max() < 1e-10
+    assert np.sign(there.G) == -np.sign(here.G)
+    for position in (-0.7, -0.1, -0.4):
+        assert np.sign(prepared.at_joints([position]).G) == np.sign(there.G)
 
 
 def test_redundant_rows_may_contradict_by_rounding(tmp_path: Path) -> None:
@@ -209,15 +263,19 @@ def test_turns_of_a_motor_are_counted(tmp_path: Path) -> None:
 
 
 def test_one_substep_refuses_long_motions(tmp_path: Path) -> None:
-    prepared = eurdf.transmissions.prepare_transmission(eurdf.load("unitree_g1_ankle", geometry=False), ANKLE)
-    goal = np.array([-0.3, 0.05])
+    prepared = eurdf.transmissions.prepare_transmission(eurdf.load("bennett", geometry=False), "free_b")
+    goal = prepared.at_motors([0.0]).positions + 1.0
     assert Compiled(prepared, tmp_path).at_joints(goal)[0] == OK
     compiled = Compiled(prepared, tmp_path, substeps=1)
     assert compiled.at_joints(goal)[0] == TOO_FAR
-    assert compiled.at_joints(0.02 * goal)[0] == OK
+    assert compiled.at_joints(goal - 0.9)[0] == OK
     assert compiled.start_at_joints(goal) == OK
     with pytest.raises(ValueError, match="substeps is 0; it must be a positive integer"):
         prepared.c_source(substeps=0)
+    with pytest.raises(ValueError, match="real is 'half'; it must be 'double' or 'float'"):
+        prepared.c_source(real="half")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="ranges has 'free_c', which is none of the joints"):
+        eurdf.transmissions.prepare_transmission("bennett", "free_b", ranges={"free_c": (-1.0, 1.0)})
 
 
 @pytest.mark.parametrize(

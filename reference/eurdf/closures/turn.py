@@ -52,12 +52,12 @@ class HeldTurn(ClosureKind):
     @staticmethod
     def jacobian_derivative(poses: RelativePoses, fixed: Matrix) -> Matrix:
         """Its rows of those of `FrameClosure`."""
-        return np.einsum("krs,...ksij->...krij", fixed, FrameClosure.jacobian_derivative(poses, None))
+        return np.asarray(np.einsum("krs,...ksij->...krij", fixed, FrameClosure.jacobian_derivative(poses, None)))
 
     @staticmethod
     def bend_derivative(poses: RelativePoses, fixed: Matrix, twist: Matrix) -> Matrix:
         """Its rows of those of `FrameClosure`."""
-        return fixed @ FrameClosure.bend_derivative(poses, None, twist)
+        return np.asarray(fixed @ FrameClosure.bend_derivative(poses, None, twist))
 
     @staticmethod
     def opening(poses: RelativePoses, fixed: Matrix) -> tuple[Vector, Vector]:

@@ -68,6 +68,7 @@ def transmission(
     c: str | None = option(
         "write the map as C99 without dependencies, for controllers; it starts at --at", metavar="FOLDER"
     ),
+    single: bool = flag("let --c compute in single precision, for controllers without double"),
     force: bool = flag("replace files of --csv, --plot and --c"),
 ) -> int:
     """Show the transmission."""
@@ -76,6 +77,8 @@ def transmission(
 
     if force and not (table or plot or c):
         raise CannotRun("--force has no effect without --csv, --plot or --c; add one of them")
+    if single and not c:
+        raise CannotRun("--single has no effect without --c; add it")
     for file in (table, plot):
         if file:
             refuse_to_replace(file, force)
@@ -95,7 +98,8 @@ def transmission(
             if c:
                 from eurdf.transmissions.prepared import prepare_transmission
 
-                source = prepare_transmission(robot, joints, q, motors=motors).c_source()
+                prepared = prepare_transmission(robot, joints, q, motors=motors)
+                source = prepared.c_source(real="float" if single else "double")
                 with writing():
                     written += [os.fspath(each) for each in source.write(c, force=force)]
     except NoTransmission as reason:

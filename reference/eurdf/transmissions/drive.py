@@ -42,6 +42,9 @@ SINGULAR = 1e-6
 #: Newton steps of a substep after the first one.
 STEPS = 4
 
+#: A closed pose (nq,), and the derivative (k, n) there, dimensionless; None where the rank of K_x is in doubt.
+Found = tuple[Vector, Matrix | None]
+
 # Bound of each row of the residual at the first pose, m or rad.
 _AT_FIRST = 1e-13
 
@@ -50,10 +53,14 @@ class Drive:
     """Moves some joints, those given, and follows others, those asked for.
 
     Attributes:
+        robot: The robot.
         given: The given joints.
         asked: The joints asked for.
         closures: Indices of the constraints that relate them.
         own: Indices (k,) in v of the joints that follow.
+        unit: Unit (k,) of their velocities.
+        rows: Scales (m,) of the rows of the residual, which make them dimensionless.
+        factors: Those (m, k + n) of K, whose columns are of these joints and of the given ones.
         rank: Rank of K_x, the columns of these joints, at the first pose.
     """
 
@@ -69,13 +76,14 @@ class Drive:
             NoTransmission: The given joints do not determine the others at that pose, or depend on each other.
         """
         self.given, self.asked, self._by_joints = given, asked, given.names == at.joints
-        robot = self._robot = at.robot
+        robot = self.robot = at.robot
         self._tree = robot.tree
         self._held = tuple(dict.fromkeys(at.held))
         spaces = robot.cached(TangentSpaces)
         self.closures: tuple[int, ...] = ()
         self.own: Indices = np.zeros(0, np.intp)
         self._evaluator: Any = None
+        self.rows, self.factors = np.zeros(0), np.zeros((0, len(given)))
         driven = given.velocities.tolist()
         groups = [
             group
@@ -87,9 +95,9 @@ class Drive:
             self.closures, self.own = group.closures, group.velocities
             columns = np.concatenate((group.velocities, given.velocities))
             self._evaluator = evaluator(robot, group.closures, columns, few=True)
-            self._rows = spaces.row_scale[group.rows]
-            self._factors = self._rows[:, None] * spaces.scale[columns]
-        self._unit, self._given_unit = spaces.scale[self.own], spaces.scale[given.velocities]
+            self.rows = spaces.row_scale[group.rows]
+            self.factors = self.rows[:, None] * spaces.scale[columns]
+        self.unit, self._given_unit = spaces.scale[self.own], spaces.scale[given.velocities]
         every = np.concatenate((self.own, given.velocities)).tolist()
         place = {velocity: index for index, velocity in enumerate(every)}
         if not set(asked.velocities.tolist()) <= set(place):
@@ -116,14 +124,25 @@ class Drive:
             NoTransmission: The given joints do not determine the others there.
             ValueError: ``positions`` does not fit.
         """
-        there, D = self._followed(q, positions)
+        here, found = self.along(q, positions)
+        if found is None:
+            raise self._unreached(here, positions)
+        return self.derived(found)
+
+    def derived(self, found: Found) -> tuple[Vector, Matrix]:
+        """A closed pose (nq,), and the derivative (m, n) there; the error is that of `__init__`."""
+        there, D = found
         if D is None:
             D, _ = self._decomposed(there)
         every = np.concatenate((D, np.eye(len(self.given))))
         return there, self._asked_unit[:, None] * every[self._asked] / self._given_unit
 
-    def _followed(self, q: Vector, positions: Vector) -> tuple[Vector, Matrix | None]:
-        """As `_newton`, along the straight path from q (nq,).
+    def derivative(self, q: Vector) -> Matrix:
+        """The derivative (m, n) at a closed pose (nq,); the error is that of `__init__`."""
+        return self.derived((q, None))[1]
+
+    def along(self, q: Vector, positions: Vector) -> tuple[Vector, Found | None]:
+        """As `near`, along the straight path from q (nq,), and the last pose (nq,) on it.
 
         A substep that fails is halved; after one that does not, the next one is twice as long.
         """
@@ -137,47 +156,61 @@ class Drive:
             if left < 0:
                 return 0.0, False
             to = done + h
-            found = self._newton(here, positions if to >= 1.0 else first + to * path)
+            found = self.near(here, positions if to >= 1.0 else first + to * path)
             here = here if found is None else found[0]
             return h, found is not None
 
-        if follow(advance)[0] < 1.0 or found is None:
-            raise self._unreached(here, positions)
-        return found
+        done = follow(advance)[0]
+        return here, found if done >= 1.0 else None
 
-    def _newton(self, q: Vector, positions: Vector) -> tuple[Vector, Matrix | None] | None:
-        """The closed pose (nq,) at the positions, and the derivative (k, n) there, dimensionless.
+    def near(self, q: Vector, positions: Vector) -> Found | None:
+        """The closed pose at the positions (n,), by one substep from a closed pose (nq,).
 
-        None where the path has to be divided. The derivative is None where the rank of K_x is in doubt.
+        None where the path has to be divided.
         """
-        there, correction = self._moved(q, np.zeros(len(self.own)), positions), np.zeros(len(self.own))
-        if self._evaluator is None:
-            return there, np.zeros((0, len(self.given)))
         before = self.given.read(q)
         step = (self.given.nearest(positions, before) - before) / self._given_unit
-        if np.abs(step).max() > LONGEST_MOTION:
-            return None
-        length = math.inf
+        if self._evaluator is None or np.abs(step).max() <= LONGEST_MOTION:
+            return self._newton(q, np.zeros(len(self.own)), positions, step)
+        return None
+
+    def predicted(self, reference: Vector, motion: Vector, positions: Vector, error: float) -> Found | None:
+        """The closed pose at the positions (n,), next to a motion (k,), rad or m, from a reference pose (nq,).
+
+        None where the motion errs by more than is given, dimensionless, or the pose is singular.
+        """
+        return self._newton(reference, motion / self.unit, positions, error)
+
+    def _newton(self, q: Vector, motion: Vector, positions: Vector, bound: Vector | float) -> Found | None:
+        """The closed pose at the positions, by Newton's method after a motion (k,), dimensionless, from q (nq,).
+
+        The bound is that of the whole correction; or it is the motion (n,) of the given joints, dimensionless, and the
+        corrections after the first one have to be small against both.
+        """
+        there, corrections = self._moved(q, motion, positions), [np.zeros(len(self.own))]
+        if self._evaluator is None:
+            return there, np.zeros((0, len(self.given)))
         for _ in range(1 + STEPS):
             at = self._evaluator.at(there[None])
             r = self._evaluator.residual(at)[0]
-            solution, certain = self._solved(r, self._evaluator.jacobian(at)[0] * self._factors)
+            solution, certain = self._solved(r, self._evaluator.jacobian(at)[0] * self.factors)
             if solution is None:
                 return None
             motion = solution[:, 0]
             there = self._moved(there, motion, positions)
-            if math.isinf(length):
-                if np.abs(motion).max() > LONGEST_MOTION:
-                    return None
-                length = math.hypot(*motion.tolist(), *step.tolist())
-            else:
-                correction += motion
+            corrections.append(motion)
+            if len(corrections) == 2 and np.abs(motion).max() > LONGEST_MOTION:
+                return None
             largest = np.abs(r).max()
             # Rounded numbers in files can make redundant rows contradict each other.
             if largest <= FOLLOWED or (largest <= CLOSED and np.abs(motion).max() <= FOLLOWED):
-                if math.hypot(*correction.tolist()) > max(MOST_CORRECTION * length, LEAST_CORRECTION):
-                    return None
-                return there, solution[:, 1:] if certain else None
+                if isinstance(bound, float):
+                    small = np.abs(np.sum(corrections, axis=0)).max() <= bound
+                else:
+                    length = math.hypot(*corrections[1].tolist(), *bound.tolist())
+                    later = np.sum([corrections[0], *corrections[2:]], axis=0)
+                    small = math.hypot(*later.tolist()) <= max(MOST_CORRECTION * length, LEAST_CORRECTION)
+                return (there, solution[:, 1:] if certain else None) if small else None
         return None
 
     def _solved(self, r: Vector, K: Matrix) -> tuple[Matrix | None, bool]:
@@ -187,7 +220,7 @@ class Drive:
         """
         count = len(self.own)
         b = np.empty((len(r), 1 + len(self.given)))
-        b[:, 0] = -self._rows * r
+        b[:, 0] = -self.rows * r
         b[:, 1:] = -K[:, count:]
         A = K[:, :count]
         (solution,), (certain,) = least_solution(A[None], b[None], norms(K[None]))
@@ -204,7 +237,7 @@ class Drive:
     def _moved(self, q: Vector, motion: Vector, positions: Vector) -> Vector:
         """The pose (nq,) after a motion (k,), dimensionless, with the given joints at their positions."""
         v = np.zeros(self._tree.nv)
-        v[self.own] = self._unit * motion
+        v[self.own] = self.unit * motion
         moved = self._tree.normalized(self._tree.integrate(q, v))
         self.given.write(positions, moved)
         return moved
@@ -213,7 +246,7 @@ class Drive:
         """Why the given joints do not get from q (nq,) to the positions."""
         there = np.array(q)
         self.given.write(positions, there)
-        anywhere = assemble(self._robot, there, hold=(*self.given.joints, *self._held))
+        anywhere = assemble(self.robot, there, hold=(*self.given.joints, *self._held))
         at = shown(zip(self.given.names, positions.tolist(), strict=True))
         if not anywhere.closes:
             return NotClosable(f"the loops cannot be closed at {at}", anywhere.open, anywhere.q)
@@ -221,13 +254,13 @@ class Drive:
             f"the loops can be closed at {at}, but a straight path does not lead there on this branch; "
             "give positions in between"
         )
-        return TooFar(reason, all_openings(self._robot, there), there)
+        return TooFar(reason, all_openings(self.robot, there), there)
 
     def _decomposed(self, q: Vector) -> tuple[Matrix, int]:
         """The derivative (k, n), dimensionless, and the rank of K_x at a pose; the error is that of `__init__`."""
         if self._evaluator is None:
             return np.zeros((0, len(self.given))), 0
-        A, count = self._evaluator.jacobian(self._evaluator.at(q[None]))[0] * self._factors, len(self.own)
+        A, count = self._evaluator.jacobian(self._evaluator.at(q[None]))[0] * self.factors, len(self.own)
         left, values, right = np.linalg.svd(A[:, :count])
         rank = numerical_rank(values, float(np.linalg.norm(A, 2)))
         opening = np.abs(left[:, rank:].T @ A[:, count:]).max(initial=0.0)
@@ -240,9 +273,9 @@ class Drive:
         """Why the given joints do not determine the others at a pose."""
         given, asked = self.given, self.asked
         if self._by_joints:
-            reason = at_one(self._robot, given, q, asked).reason
+            reason = at_one(self.robot, given, q, asked).reason
         else:
-            reason = at_one(self._robot, asked, q, given).inverse_reason
+            reason = at_one(self.robot, asked, q, given).inverse_reason
         reason = reason or f"{listed(given.joints)} cannot move independently"
         return NoTransmission("G" if self._by_joints else "B_J", reason)
 

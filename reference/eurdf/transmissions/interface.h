@@ -2,15 +2,17 @@
  * C99, which needs libm alone.
  *
 ${listed} *
- * Call a function `start` once to set a pose, then a function `at_joints` or `at_motors` at each cycle: it starts from
- * the last pose and stays on its branch of closed loops. Unless a function returns
- * ${NAME}_OK, it changes neither the pose nor its results. Threads may use
+ * Call a function `start` once to set a pose, then a function `at_joints` or `at_motors` at each cycle. Unless a function
+ * returns ${NAME}_OK, it changes neither the pose nor its results. Threads may use
  * poses of their own. Position limits are not checked.
  *
- * Nothing is allocated, and the work is bounded. The positions move on a straight path: a short one in one substep,
- * which solves linear equations ${solutions} times, others in at most ${substeps} substeps. A start at positions takes
- * at most ${most_substeps} substeps; if they do not lead there, at most ${descents} descents of ${descent_steps} steps
- * look for any closed pose at the positions. So call it before the control loop, not in it.
+ * In the workspace, which is inside of these ranges, a call does not depend on the last pose:
+${guesses} *
+ * Elsewhere, a straight path leads from the last pose, on its branch of closed loops: a short one in one substep, others
+ * in at most ${substeps} substeps. Nothing is allocated, and the work is bounded: a call in the workspace, like a
+ * substep, solves linear equations at most ${solutions} times. A start at positions takes at most ${most_substeps}
+ * substeps of a path; if none leads there, at most ${descents} descents of ${descent_steps} steps look for any closed
+ * pose at the positions. So call it before the control loop, not in it.
  */
 #ifndef ${NAME}_H
 #define ${NAME}_H
@@ -34,11 +36,13 @@ typedef struct {
 /* The pose that the files were generated at. */
 void ${name}_start(${name}_pose *pose);
 
-/* A pose at given positions, such as measured ones, on the branch of that pose: it is reached on a straight path. */
+/* A pose at given positions, such as measured ones, on the branch of that pose. */
 int ${name}_start_at_joints(${name}_pose *pose, const double joints[${nj}]);
 ${start_at_motors}
-/* The motors at positions of the joints, and G (row by row): v_m = G v_J, and the torques are tau_J = G' tau_m. */
-int ${name}_at_joints(${name}_pose *pose, const double joints[${nj}], double motors[${nm}], double G[${size}]);
+/* The motors at positions of the joints, and G (row by row): v_m = G v_J, and the torques are tau_J = G' tau_m.${inverse}
+ * Matrices may be null. */
+int ${name}_at_joints(${name}_pose *pose, const double joints[${nj}],
+                      double motors[${nm}], double G[${size}]${B});
 ${at_motors}
 #ifdef __cplusplus
 }

@@ -253,11 +253,33 @@ static void move(const drive *by, double y[VELOCITIES][SIDES], double x[]) {
     }
 }
 
+/* Newton's method at the given positions from about closed loops: whether it closes them, with their first correction
+ * and the sum of the later ones. */
+static int newton(const drive *by, double x[], double y[VELOCITIES][SIDES], double first[], double later[]) {
+    double A[ROWS][VELOCITIES], b[ROWS][SIDES];
+    for (int k = 0; k < by->own; ++k) first[k] = later[k] = 0.0;
+    for (int step = 0; step <= STEPS; ++step) {
+        double last = 0.0;
+        const double open = constraints_at(by, x, A, b);
+        if (!solve(by, A, b, y)) return open <= CLOSED ? AT_SINGULARITY : TOO_FAR;
+        move(by, y, x);
+        for (int k = 0; k < by->own; ++k) {
+            if (step > 0) later[k] += y[k][0];
+            else first[k] = y[k][0];
+            if (step == 0 && fabs(y[k][0]) > LONGEST_MOTION) return TOO_FAR;
+            last = fmax(last, fabs(y[k][0]));
+        }
+        /* Rounded numbers can make redundant rows contradict each other. */
+        if (open <= CLOSED || (open <= STILL_CLOSED && last <= CLOSED))
+            return consistent(by, b) ? CLOSED_POSE : AT_SINGULARITY;
+    }
+    return TOO_FAR;
+}
+
 /* What is closed near a closed pose, on its branch, with the given joints at other positions. */
 static int close_near(const drive *by, const double from[], const double given[], double x[],
                       double y[VELOCITIES][SIDES]) {
-    double A[ROWS][VELOCITIES], b[ROWS][SIDES], correction[VELOCITIES] = {0};
-    double square = 0.0, corrected = 0.0, open = 0.0, last = 0.0;
+    double first[VELOCITIES], later[VELOCITIES], square = 0.0, corrected = 0.0;
     for (int k = 0; k < COORDINATES; ++k) x[k] = from[k];
     for (int k = 0; k < by->given; ++k) {
         const int coordinate = coordinates[by->given_velocity[k]];
@@ -266,22 +288,61 @@ static int close_near(const drive *by, const double from[], const double given[]
         x[coordinate] = given[k];
         square += step * step;
     }
-    for (int step = 0; step <= STEPS; ++step) {
-        open = constraints_at(by, x, A, b);
-        if (!solve(by, A, b, y)) return open <= CLOSED ? AT_SINGULARITY : TOO_FAR;
-        for (int k = 0; k < by->own; ++k) {
-            if (step > 0) correction[k] += y[k][0];
-            else square += y[k][0] * y[k][0];
-            if (step == 0 && fabs(y[k][0]) > LONGEST_MOTION) return TOO_FAR;
-        }
-        move(by, y, x);
-    }
-    for (int k = 0; k < by->own; ++k) last = fmax(last, fabs(y[k][0]));
-    /* Rounded numbers can make redundant rows contradict each other. */
-    if (!(open <= CLOSED || (open <= STILL_CLOSED && last <= CLOSED))) return TOO_FAR;
-    if (!consistent(by, b)) return AT_SINGULARITY;
-    for (int k = 0; k < by->own; ++k) corrected += correction[k] * correction[k];
+    const int status = newton(by, x, y, first, later);
+    if (status != CLOSED_POSE) return status;
+    for (int k = 0; k < by->own; ++k) square += first[k] * first[k], corrected += later[k] * later[k];
     return sqrt(corrected) <= fmax(MOST_CORRECTION * sqrt(square), LEAST_CORRECTION) ? CLOSED_POSE : TOO_FAR;
+}
+
+/* The derivative of the joints asked for by the given ones, at a pose that was solved for. */
+static void derive(const drive *by, double y[VELOCITIES][SIDES], double D[]) {
+    for (int i = 0; i < by->asked; ++i)
+        for (int k = 0; k < by->given; ++k) {
+            const int velocity = by->asked_velocity[i], own = by->asked_own[i];
+            D[i * by->given + k] = own < 0 ? (velocity == by->given_velocity[k] ? 1.0 : 0.0)
+                                           : units[velocity] * y[own][1 + k] / units[by->given_velocity[k]];
+        }
+}
+
+/* What is closed next to the pose that the polynomials predict, whatever the last pose is. */
+static int close_predicted(const drive *by, const double given[], double x[], double y[VELOCITIES][SIDES]) {
+    double T[SIDES][DEGREES], first[VELOCITIES], later[VELOCITIES], D[MATRIX < 4 ? 4 : MATRIX];
+    const double *c = by->coefficients;
+    if (by->degrees == 0) return TOO_FAR;
+    for (int k = 0; k < by->given; ++k) {
+        const double t = (2.0 * given[k] - by->lower[k] - by->upper[k]) / (by->upper[k] - by->lower[k]);
+        if (!(fabs(t) <= 1.0)) return TOO_FAR;
+        T[k][0] = 1.0, T[k][1] = t;
+        for (int i = 2; i < DEGREES; ++i) T[k][i] = 2.0 * t * T[k][i - 1] - T[k][i - 2];
+    }
+    for (int k = 0; k < by->own; ++k) {
+        y[k][0] = 0.0;
+        for (int i = 0; i < by->degrees; ++i) {
+            double sum = *c++;
+            for (int j = 1; by->given > 1 && j < by->degrees; ++j) sum += *c++ * T[1][j];
+            y[k][0] += sum * T[0][i];
+        }
+    }
+    for (int k = 0; k < COORDINATES; ++k) x[k] = reference[k];
+    for (int k = 0; k < by->given; ++k) x[coordinates[by->given_velocity[k]]] = given[k];
+    move(by, y, x);
+    if (newton(by, x, y, first, later) != CLOSED_POSE) return TOO_FAR;
+    for (int k = 0; k < by->own; ++k)
+        if (!(fabs(first[k] + later[k]) <= by->error)) return TOO_FAR;
+    derive(by, y, D); /* the sign of its determinant changes at dead points */
+    return by->sign * (by->given > 1 ? D[0] * D[3] - D[1] * D[2] : D[0]) < 0.0 ? TOO_FAR : CLOSED_POSE;
+}
+
+/* How far the given joints are from positions at a pose, squared. */
+static double distance(const drive *by, const double x[], const double given[]) {
+    double square = 0.0;
+    for (int k = 0; k < by->given; ++k) {
+        double apart = given[k] - x[coordinates[by->given_velocity[k]]];
+        if (by->given_circular[k]) apart = remainder(apart, TURN);
+        apart /= units[by->given_velocity[k]];
+        square += apart * apart;
+    }
+    return square;
 }
 
 /* Moves the given joints from a closed pose on a straight path. A substep that fails is halved; after two that do not,
@@ -290,7 +351,6 @@ static int follow(const drive *by, const double given[], int substeps, double x[
     double first[SIDES], motion[SIDES], there[SIDES], next[COORDINATES], done = 0.0, part = 1.0;
     int status = TOO_FAR, again = 0;
     for (int k = 0; k < by->given; ++k) {
-        if (!isfinite(given[k])) return NOT_FINITE;
         first[k] = x[coordinates[by->given_velocity[k]]];
         motion[k] = given[k] - first[k];
         if (by->given_circular[k]) motion[k] = remainder(motion[k], TURN);
@@ -311,17 +371,64 @@ static int follow(const drive *by, const double given[], int substeps, double x[
     return status;
 }
 
-static int at_positions(const drive *by, double kept[], const double given[], double asked[], double derivative[]) {
-    double x[COORDINATES], y[VELOCITIES][SIDES];
-    for (int k = 0; k < COORDINATES; ++k) x[k] = kept[k];
-    const int status = follow(by, given, SUBSTEPS, x, y);
-    if (status != CLOSED_POSE) return status;
-    for (int i = 0; i < by->asked; ++i) {
-        const int velocity = by->asked_velocity[i], own = by->asked_own[i];
+/* The closed pose at positions: the one that is predicted; else one on a path from the nearest of the stored poses; else
+ * one on a path from x, which is where that path ends if it does not lead there. */
+static int reach(const drive *by, const double given[], int substeps, double x[], double y[VELOCITIES][SIDES]) {
+    double other[COORDINATES];
+    int nearest = -1;
+    for (int k = 0; k < by->given; ++k)
+        if (!isfinite(given[k])) return NOT_FINITE;
+    int status = close_predicted(by, given, other, y);
+    if (status != CLOSED_POSE && by->degrees == 0 && POSES > 0) {
+        double least = by->reach;
+        status = close_near(by, x, given, other, y);
+        for (int pose = 0; pose < POSES && status != CLOSED_POSE; ++pose) {
+            const double apart = distance(by, poses[pose], given);
+            if (apart <= least) least = apart, nearest = pose;
+        }
+        for (int k = 0; k < COORDINATES && nearest >= 0; ++k) other[k] = poses[nearest][k];
+        if (nearest >= 0) status = follow(by, given, substeps, other, y);
+    }
+    if (status != CLOSED_POSE) return follow(by, given, substeps, x, y);
+    for (int k = 0; k < COORDINATES; ++k) x[k] = other[k];
+    return CLOSED_POSE;
+}
+
+/* The inverse of a derivative, at a pose at which it was solved for. */
+static int inverted(const drive *by, const double D[], double inverse[]) {
+    double A[ROWS][VELOCITIES], b[ROWS][SIDES], y[VELOCITIES][SIDES];
+    drive square = *by;
+    square.own = square.rows = square.rank = by->given;
+    for (int i = 0; i < by->given; ++i) {
+        b[i][0] = 0.0;
+        for (int k = 0; k < by->given; ++k) {
+            b[i][1 + k] = i == k ? 1.0 : 0.0;
+            A[i][k] = D[i * by->given + k] * units[by->given_velocity[k]] / units[by->asked_velocity[i]];
+        }
+    }
+    if (!solve(&square, A, b, y)) return 0;
+    for (int i = 0; i < by->given; ++i)
         for (int k = 0; k < by->given; ++k)
-            derivative[i * by->given + k] = own < 0 ? (velocity == by->given_velocity[k] ? 1.0 : 0.0)
-                                                    : units[velocity] * y[own][1 + k] / units[by->given_velocity[k]];
-        asked[i] = x[coordinates[velocity]];
+            inverse[i * by->given + k] = y[i][1 + k] * units[by->given_velocity[i]] / units[by->asked_velocity[k]];
+    return 1;
+}
+
+static int at_positions(const drive *by, double kept[], const double given[], double asked[], double derivative[],
+                        double inverse[]) {
+    double x[COORDINATES], y[VELOCITIES][SIDES], D[MATRIX], B[MATRIX] = {0.0};
+    for (int k = 0; k < COORDINATES; ++k) x[k] = kept[k];
+    const int status = reach(by, given, SUBSTEPS, x, y);
+    if (status != CLOSED_POSE) return status;
+    derive(by, y, D);
+    if (inverse && !inverted(by, D, B)) return AT_SINGULARITY;
+    for (int i = 0; i < by->asked; ++i) {
+        const int k = coordinates[by->asked_velocity[i]];
+        if (by->asked_circular[i]) x[k] = kept[k] + remainder(x[k] - kept[k], TURN);
+        asked[i] = x[k];
+    }
+    for (int k = 0; k < by->asked * by->given; ++k) {
+        if (derivative) derivative[k] = D[k];
+        if (inverse) inverse[k] = B[k];
     }
     for (int k = 0; k < COORDINATES; ++k) kept[k] = x[k];
     return CLOSED_POSE;
@@ -357,7 +464,7 @@ static int descend(const drive *by, double x[]) {
             for (int k = 0; k < by->own; ++k) left -= A[i][k] * y[k][0];
             expected -= left * left;
         }
-        if (!(expected > 1e-12 * square)) return 0;
+        if (!(expected > LEAST_GAIN * square)) return 0;
         for (int k = 0; k < COORDINATES; ++k) trial[k] = x[k];
         move(by, y, trial);
         constraints_at(by, trial, M, s);
@@ -395,7 +502,7 @@ static int closable(const drive *by, const double from[], const double given[]) 
 static int start_at(const drive *by, double kept[], const double given[]) {
     double x[COORDINATES], y[VELOCITIES][SIDES];
     for (int k = 0; k < COORDINATES; ++k) x[k] = start[k];
-    const int status = follow(by, given, MOST_SUBSTEPS, x, y);
+    const int status = reach(by, given, MOST_SUBSTEPS, x, y);
     if (status == TOO_FAR && !closable(by, x, given)) return NOT_CLOSED;
     if (status != CLOSED_POSE) return status;
     for (int i = 0; i < by->asked; ++i) { /* turns are counted from here: those given as given, others from the start */

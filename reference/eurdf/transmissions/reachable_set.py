@@ -173,7 +173,7 @@ def workspace(
     """
     chosen, by = sides(robot, joints, motors)
     first = closed_pose(robot, q)
-    axes = _axes(robot, chosen, chosen.read(first), grid, ranges or {})
+    axes = grid_axes(robot, chosen, chosen.read(first), grid, ranges or {})
     require(at_one(robot, chosen, first, by), "G", "B_J")
     reach = Reach(robot, chosen, by, first, axes)
     stop = reach.beyond_limits(first)
@@ -203,10 +203,10 @@ def points_along(joints: int, points: int, most: int) -> int:
     return min(most, along)
 
 
-def _axes(
+def grid_axes(
     robot: Robot, joints: Selection, start: Vector, grid: int | None, ranges: Mapping[str, Sequence[float]]
 ) -> tuple[Vector, ...]:
-    """For each joint the positions on the grid."""
+    """For each joint the positions on the grid; the error is that of `workspace`."""
     grid = points_along(len(joints), _POINTS, _MOST_ALONG) if grid is None else grid
     if grid < 3:
         raise ValueError(f"grid is {grid}; a grid has at least 3 points along each joint")

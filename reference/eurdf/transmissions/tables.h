@@ -18,8 +18,12 @@ typedef struct {
     double R_a[9], p_a[3], R_b[9], p_b[3], length, axis_a[3], axis_b[3], across[2][3], scale[6];
 } constraint;
 
+/* Given joints, those asked for and those that follow; polynomials that predict the motion from `reference`; how far,
+ * squared, positions may be from a stored pose. */
 typedef struct {
-    int given, asked, own, rows, rank, constraints;
+    int given, asked, own, rows, rank, constraints, degrees;
     const int *given_velocity, *given_circular, *asked_velocity, *asked_circular, *asked_own,
         *own_velocity, *constraint;
+    double error, sign, reach;
+    const double *lower, *upper, *coefficients;
 } drive;
