@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 import eurdf
 from eurdf.kinematics.evaluate import evaluator
+from eurdf.kinematics.holding import holding
 from eurdf.kinematics.residual import acceleration_drift
 from eurdf.kinematics.variation import MotionState, Structure, Variation
 from eurdf.pinocchio.tree_dynamics import TreeRecursion
@@ -81,6 +82,16 @@ def test_terms_vary_as_differences_for_every_joint_and_constraint(seed: int, roo
     random = np.random.default_rng(seed)
     robot, q = closed_tree(random, root=root)
     check(robot, robot.tree.integrate(q, reach * random.uniform(-1.0, 1.0, robot.tree.nv)), random)
+
+
+def test_terms_of_contacts_and_held_axes_vary_as_differences() -> None:
+    digit, leg = (eurdf.load(name, geometry=False) for name in ("digit_2legs", "digit_leg"))
+    standing = digit.with_contacts({"left_sole": "6d", "right_sole": {"type": "hinge", "axis": [0, 1, 0]}})
+    held = holding(leg, eurdf.assemble(leg).q, [("ball_rod1_start", "z")], None).robot
+    for robot in (standing, held):
+        random = np.random.default_rng(3)
+        q = robot.tree.integrate(eurdf.assemble(robot).q, 0.05 * random.normal(size=robot.tree.nv))
+        check(robot, q, random)
 
 
 @pytest.mark.parametrize("name", ["delta", "digit_2legs", "double_wishbone"])

@@ -83,12 +83,12 @@ def test_a_module_has_one_subject() -> None:
 
 
 def test_few_names_are_public() -> None:
-    assert len(eurdf.__all__) <= 43
+    assert len(eurdf.__all__) <= 44
 
 
 def test_lines_stay_within_bounds() -> None:
-    assert lines("reference") <= 53_700  # to become 40,000
-    assert lines("tests", "conformance/tests") <= 44_950  # to become 36,000
+    assert lines("reference") <= 55_300  # to become 40,000
+    assert lines("tests", "conformance/tests") <= 45_500  # to become 36,000
 
 
 def test_forward_kinematics_passes_through_few_functions() -> None:
