@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import eurdf
+from eurdf.convert.coordinates import rotation_matrix
 from eurdf.convert.formats import EXPORTS
 from eurdf.convert.verification.read_model import without_armature
 from eurdf.mechanism.joint_types import JointType
@@ -28,11 +29,11 @@ MOVED = [to for to in EXPORTS if to != "usd"]
 MASS = {"sdf": 1e-6}
 
 
-def assert_same_robot(robot: Robot, to: str, q: Any, v: Any) -> None:
+def assert_same_robot(robot: Robot, to: str, q: Any, v: Any, **options: Any) -> None:
     """Names, poses, M, and M a + h for some a; and coordinates and velocities, there and back."""
     if to != "mjcf":
         robot = without_armature(robot)
-    export = eurdf.export(robot, to)
+    export = eurdf.export(robot, to, **options)
     there, map_ = witness(robot, export), export.coordinates
     root = int(robot.mechanism.root == "floating" and to in ("drake", "sdf"))  # which have no such joint
     assert there.names[root:] == list(map_.names)[root:]
@@ -77,6 +78,22 @@ def with_offsets(robot: Robot, random: np.random.Generator, moved: Callable[[Joi
 def test_random_robot_is_the_same(to: str, seed: int, root: Any) -> None:
     robot, q = random_robot(seed, root)
     assert_same_robot(robot, to, *near(robot, q, seed))
+
+
+@given(seed=st.integers(0, 2**32 - 1), root=st.sampled_from(["fixed", "floating"]))
+@settings(max_examples=10)
+def test_random_robot_with_hinges_for_balls_is_the_same(seed: int, root: Any) -> None:
+    robot, q = random_robot(seed, root)
+    joints = [joint for joint in robot.mechanism.joints if joint.type.quaternion is not None]
+    balls = [joint.name for joint in joints]
+    robot = with_offsets(
+        without_armature(robot, balls), np.random.default_rng(seed), lambda kind: kind.quaternion is not None
+    )
+    q, v = near(robot, q, seed)
+    for each in (robot.joint_positions(q), robot.mechanism.configurations["assembled"]):
+        assume(all(abs(rotation_matrix(each[name][-4:])[0, 2]) < 0.95 for name in balls))  # sine of the second angle
+    assert {joint.type for joint in joints} == {JointType.SPHERICAL, JointType.FLOATING}
+    assert_same_robot(robot, "mjcf", q, v, joints="hinge")
 
 
 @pytest.mark.parametrize("to", MOVED)

@@ -13,7 +13,17 @@ from eurdf.commands.conversion_lines import loss_lines, verification_lines
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import writing
 from eurdf.commands.terminal import progress_bar, write_lines, write_notes, write_refusal
-from eurdf.convert.formats import ACTUATORS, CLOSURES, EXPORTS, MESH_FILES, Actuators, ClosureChoice, MeshFileChoice
+from eurdf.convert.formats import (
+    ACTUATORS,
+    CLOSURES,
+    EXPORTS,
+    JOINTS,
+    MESH_FILES,
+    Actuators,
+    ClosureChoice,
+    JointChoice,
+    MeshFileChoice,
+)
 from eurdf.errors import CannotRun
 
 if TYPE_CHECKING:
@@ -66,6 +76,11 @@ def export(
         choices=CLOSURES,
         default="stated",
     ),
+    joints: JointChoice = option(
+        "hinge: ball joints become three hinges, about x, y and z, in MJCF; default: stated",
+        choices=JOINTS,
+        default="stated",
+    ),
     mesh_files: MeshFileChoice = option(
         "copy mesh files to meshes/, or reference them where they are by absolute paths; default: copy",
         choices=MESH_FILES,
@@ -95,7 +110,7 @@ def export(
     losses: tuple[Loss, ...]
     refusal, paths, verification = "", [], None
     try:
-        choices = Choices(to, configuration, actuators, closures, mesh_files, strict)
+        choices = Choices(to, configuration, actuators, closures, joints, mesh_files, strict)
         exported = export_linked(read, choices, options["package_dirs"], allow_outside=options["allow_outside"])
     except CannotExport as reason:
         losses = reason.losses

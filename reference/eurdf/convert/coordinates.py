@@ -133,10 +133,12 @@ class Coordinates:
             _, at = self.own.places[part.joint]
             if part.rotation == "xyz":
                 # ω = E ȧ, so ä = E⁻¹ (ω̇ - Ė ȧ); found has E⁻¹ ω̇.
-                inverse = self._block(part, q)
-                angles = _angles(self._own_coordinates(part, q))
-                rates = np.asarray(inverse @ v[at : at + 3])
-                found[row : row + 3] -= inverse @ (_rate_of_angle_axes(angles, rates.tolist()) @ rates)
+                first = part.nv - 3
+                inverse = self._block(part, q)[first:, first:]
+                angles = _angles(self._own_coordinates(part, q)[-4:])
+                rates = np.asarray(inverse @ v[at + first : at + part.nv])
+                turning = _rate_of_angle_axes(angles, rates.tolist()) @ rates
+                found[row + first : row + part.nv] -= inverse @ turning
             if not (part.type.moving_frame and part.type.slides and self.at_rest):
                 continue  # an angular velocity has the same rate along the axes at rest: ω × ω = 0
             n = 2 if part.type.quaternion is None else 3
@@ -217,8 +219,9 @@ class Coordinates:
                 block[row, index] = multiplier
             return block
         own = self._own_coordinates(part, q)
-        if part.rotation == "xyz":
-            return np.asarray(np.linalg.inv(_angle_axes(_angles(own))))
+        of_angles = np.linalg.inv(_angle_axes(_angles(own[-4:]))) if part.rotation == "xyz" else None
+        if of_angles is not None and not part.type.slides:
+            return np.asarray(of_angles)
         if not self.at_rest:
             return np.eye(part.nv)
         if part.type.quaternion is None:
@@ -231,6 +234,8 @@ class Coordinates:
         block[:3, :3] = rotation_matrix(own[3:])
         along_child = part.rotation == "quaternion" and not part.orientation_first
         block[3:, 3:] = turn if along_child else block[:3, :3]
+        if of_angles is not None:
+            block[3:, 3:] = of_angles
         return np.roll(block, 3, axis=0) if part.orientation_first else block
 
     def __repr__(self) -> str:

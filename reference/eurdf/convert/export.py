@@ -13,7 +13,17 @@ from eurdf.array import Vector
 from eurdf.convert.common_losses import BEYOND_LIMITS, UNKNOWN
 from eurdf.convert.coordinates import Coordinates
 from eurdf.convert.export_format import ExportInput, Triangles, export_format
-from eurdf.convert.formats import ACTUATORS, CLOSURES, EXPORTS, MESH_FILES, Actuators, ClosureChoice, MeshFileChoice
+from eurdf.convert.formats import (
+    ACTUATORS,
+    CLOSURES,
+    EXPORTS,
+    JOINTS,
+    MESH_FILES,
+    Actuators,
+    ClosureChoice,
+    JointChoice,
+    MeshFileChoice,
+)
 from eurdf.convert.hinges import with_hinges
 from eurdf.convert.losses import Effect, Loss, Losses
 from eurdf.convert.parts import OwnVectors
@@ -48,6 +58,7 @@ class Choices:
     configuration: str
     actuators: Actuators
     closures: ClosureChoice
+    joints: JointChoice
     mesh_files: MeshFileChoice
     strict: bool
 
@@ -127,6 +138,7 @@ def export(
     configuration: str = ASSEMBLED,
     actuators: Actuators = "motor",
     closures: ClosureChoice = "stated",
+    joints: JointChoice = "stated",
     mesh_files: MeshFileChoice = "copy",
     strict: bool = False,
     package_dirs: Sequence[str | os.PathLike[str]] = (),
@@ -141,7 +153,7 @@ def export(
     Args:
         robot: What `eurdf.load` takes, or a robot that it returned, with the geometry that it was loaded with.
         to: Name of the format: ``mjcf``, ``usd``, ``drake``, ``loop-joint``, ``sdf`` or ``urdf``.
-        urdf: As for `eurdf.load`; only if `robot` is not loaded yet, as all below but the next five and the last.
+        urdf: As for `eurdf.load`; only if `robot` is not loaded yet, as `root` and all after `strict` but the last.
         root: As for `eurdf.load`.
         configuration: Name of the configuration to start a simulation from. If the description has none of the name
             ``assembled``, one is searched near the neutral configuration, within the limits of the joints; without
@@ -150,6 +162,9 @@ def export(
             ``position`` or ``none``.
         closures: ``stated`` keeps the closures of the description; with ``hinge``, each 3d closure whose bodies turn
             about one axis alone becomes a hinge, for solvers without ball joints in loops.
+        joints: ``stated`` keeps ball joints; with ``hinge``, which is for ``mjcf`` alone, each becomes three hinges of
+            one body, about x, y and z of the joint's frame in this order, for programs without ball joints. They are
+            singular where the second angle is ±π/2 rad.
         mesh_files: ``copy`` writes them to ``meshes/`` beside the file; with ``reference`` the file names them where
             they are, by their absolute paths.
         strict: Whether to refuse losses that are not exact.
@@ -165,12 +180,13 @@ def export(
     Raises:
         InvalidRobot: The robot cannot be built without guessing.
         RobotNotFound: There are no such files.
-        CannotExport: The robot cannot be written in this format, or, if `strict`, not without losses.
+        CannotExport: The robot cannot be written in this format, or, if `strict`, not without losses; or, with hinges
+            for ball joints, the hinges are singular at the configuration to start from.
         MissingExtra: The format is ``usd``, and the extra ``usd`` is not installed.
-        ValueError: There is no such format, configuration or kind of actuator; or `confined` and `allow_outside` are
-            both True.
+        ValueError: There is no such format, configuration or kind of actuator; `joints` is ``hinge`` for another
+            format than ``mjcf``; or `confined` and `allow_outside` are both True.
     """
-    choices = Choices(to, configuration, actuators, closures, mesh_files, strict)
+    choices = Choices(to, configuration, actuators, closures, joints, mesh_files, strict)
     if isinstance(robot, Robot):
         meshes = files_of_meshes(robot)
         return _export(robot, meshes, {}, folders_of_files(meshes.values(), allow_outside=allow_outside), choices)
@@ -211,10 +227,13 @@ def _export(
     for name, value, allowed in (
         ("actuators", choices.actuators, ACTUATORS),
         ("closures", choices.closures, CLOSURES),
+        ("joints", choices.joints, JOINTS),
         ("mesh_files", choices.mesh_files, MESH_FILES),
     ):
         if value not in allowed:
             raise ValueError(f"{name} is {value!r}; it must be one of {', '.join(allowed)}")
+    if choices.joints == "hinge" and to != "mjcf":
+        raise ValueError(f"joints is 'hinge', which is for the format mjcf alone; leave it out for {to}")
     contacts = robot.mechanism.contacts
     if contacts:
         robot = replace(robot, mechanism=replace(robot.mechanism, contacts=()))
@@ -235,6 +254,7 @@ def _export(
         refused,
         MeshReader(folders),
         choices.actuators,
+        choices.joints,
         choices.mesh_files,
         partial(_triangles, folders),
     )

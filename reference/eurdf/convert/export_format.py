@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from eurdf.array import Matrix
 from eurdf.convert.coordinates import Coordinates
-from eurdf.convert.formats import Actuators, MeshFileChoice
+from eurdf.convert.formats import Actuators, JointChoice, MeshFileChoice
 from eurdf.convert.losses import Losses, LossKind
 from eurdf.convert.parts import OwnVectors
 from eurdf.mechanism.joint import Joint, Mimic
@@ -35,6 +35,7 @@ class ExportInput:
         refused: For each mesh that is not read, by URI: the folders that it is outside of.
         reader: Reads the files of `meshes`.
         actuators: What actuators become.
+        joints: What ball joints become.
         mesh_files: What is done with the mesh files.
         read_mesh: Reads a mesh file of any format; None where it cannot.
     """
@@ -46,6 +47,7 @@ class ExportInput:
     refused: Mapping[str, str]
     reader: MeshReader
     actuators: Actuators
+    joints: JointChoice
     mesh_files: MeshFileChoice
     read_mesh: Callable[[Path], Triangles | None]
 

@@ -95,29 +95,34 @@ def suffixes(kind: JointType) -> tuple[str, ...]:
 SCREW_SLIDE = "_slide"
 
 
-def in_series(joint: Joint, whole: Collection[str]) -> tuple[ExportedJoint, ...]:
+def in_series(
+    joint: Joint, whole: Collection[str], *, turns_have_properties: bool = False
+) -> tuple[ExportedJoint, ...]:
     """The joints that a joint becomes.
 
     Args:
         joint: The joint.
         whole: Types, beside those of one turn or slide, that the format has: a joint of one is itself. Universal ones
             are those with perpendicular axes. Without spherical ones, a ball becomes turns about x, y and z.
+        turns_have_properties: Whether each of these turns has the velocity and the properties of its axis; if not, it
+            has none.
     """
     kind = joint.type
     if kind.is_axial or kind.is_fixed or (kind in whole and not (kind == "universal" and is_skew(joint))):
         return (ExportedJoint(joint, tuple(range(kind.nv))),)
-    return tuple(_elementary(joint, "spherical" in whole))
+    return tuple(_elementary(joint, "spherical" in whole, turns_have_properties))
 
 
-def _elementary(joint: Joint, has_balls: bool) -> Iterator[ExportedJoint]:
+def _elementary(joint: Joint, has_balls: bool, turns_have_properties: bool) -> Iterator[ExportedJoint]:
     for index, (motion, end) in enumerate(zip(joint.type.steps, suffixes(joint.type), strict=True)):
         if motion.kind == "ball":
             indices = (index, index + 1, index + 2)
             if has_balls:
                 yield ExportedJoint(_part(joint, end, JointType.SPHERICAL, (), indices), indices)
                 continue
-            for letter, axis in zip("xyz", AXES, strict=True):
-                yield ExportedJoint(_part(joint, f"{end}_{letter}", JointType.CONTINUOUS, (axis,), ()), ())
+            for letter, axis, mine in zip("xyz", AXES, indices, strict=True):
+                own = (mine,) if turns_have_properties else ()
+                yield ExportedJoint(_part(joint, f"{end}_{letter}", JointType.CONTINUOUS, (axis,), own), own)
             continue
         axes = (joint.axes[motion.axis] if isinstance(motion.axis, int) else motion.axis,)
         turn = turn_type(joint, index)

@@ -21,6 +21,7 @@ from eurdf.mechanism.joint_types import JointType
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import Robot, build_robot
 from support.exported import BALL, BODY, LIMIT, InMuJoCo, hanging, near, random_robot
+from support.places import ROBOTS
 from support.plain_urdf import inertial, joint_element, link_element
 from support.plain_urdf import robot as robot_element
 from support.stl import TETRAHEDRON
@@ -28,6 +29,7 @@ from support.stl import TETRAHEDRON
 seeds = st.integers(0, 2**32 - 1)
 roots: Any = st.sampled_from(["fixed", "floating"])
 NAMES = eurdf.collection_names()
+BALLS = [name for name in NAMES if "spherical" in (ROBOTS / name / "robot.yaml").read_text(encoding="utf-8")]
 
 
 def in_our_terms(there: InMuJoCo, constraint: Constraint) -> tuple[Any, Any, int]:
@@ -81,6 +83,65 @@ def test_constraints_and_keyframe_of_the_collection_are_the_same_in_mujoco(name:
     assert_same_constraints(there, near(robot, assembled)[0], closed=False)
     assert_same_constraints(there, assembled, closed=True)
     np.testing.assert_allclose(there.model.key("assembled").qpos, export.coordinates.to_q(assembled), atol=1e-12)
+
+
+def actuated_acceleration(there: InMuJoCo, q: Any, u: Any) -> Any:
+    """Of the robot's actuated joints at rest in MuJoCo, by its M, forces and Jacobian of equalities."""
+    there.data.ctrl[:] = u
+    there.at(q)
+    data, nv = there.data, there.model.nv
+    _, sizes, V = np.linalg.svd(data.efc_J.reshape(-1, nv)[: data.ne])
+    free = V[(sizes > 1e-9 * sizes[0]).sum() :].T
+    force = free.T @ (data.qfrc_actuator + data.qfrc_passive - data.qfrc_bias)
+    a = free @ np.linalg.lstsq(free.T @ there.inertia_matrix @ free, force, rcond=1e-14)[0]
+    return there.coordinates.from_v(data.qpos, a)[there.robot.actuation.idx_v]
+
+
+@pytest.mark.parametrize("name", BALLS)
+def test_balls_of_the_collection_can_be_hinges(name: str) -> None:
+    robot, export = eurdf.load(name, geometry=False), eurdf.export(name, "mjcf", joints="hinge")
+    there, assembled = InMuJoCo(robot, export), robot.configurations["assembled"]
+    assert mujoco.mjtJoint.mjJNT_BALL not in there.model.jnt_type
+    open_loops, _ = near(robot, assembled)
+    assert_same_constraints(there, open_loops, closed=False)
+    assembly = eurdf.assemble(robot, open_loops)
+    assert assembly.closes
+    assert_same_constraints(there, assembly.q, closed=True)
+    there.at(assembly.q)
+    pin.framesForwardKinematics(robot.model, robot.data, assembly.q)
+    for body in robot.mechanism.bodies:
+        expected = robot.data.oMf[robot.model.getFrameId(body.name)].homogeneous
+        np.testing.assert_allclose(there.pose(body.name), expected, atol=1e-9)
+    u = np.linspace(0.05, 0.2, len(robot.actuation.idx_v))
+    expected = eurdf.forward_dynamics(robot, assembly.q, np.zeros(robot.model.nv), u).a[robot.actuation.idx_v]
+    np.testing.assert_allclose(actuated_acceleration(there, assembly.q, u), expected, atol=1e-8 * abs(expected).max())
+
+
+def with_turned_ball(angle: float) -> Robot:
+    """A robot with armature in its ball, which starts turned about y, rad."""
+    mechanism = random_robot(8, kinds=())[0].mechanism
+    (ball,) = (joint.name for joint in mechanism.joints if joint.type is JointType.SPHERICAL)
+    turned = {ball: (0.0, np.sin(angle / 2.0), 0.0, np.cos(angle / 2.0))}
+    mechanism = replace(mechanism, configurations={"assembled": turned}, actuators=(ball,))
+    return build_robot(mechanism, geometry=False)
+
+
+def test_armature_on_the_hinges_of_a_ball_is_verified() -> None:
+    verification = eurdf.export(with_turned_ball(0.7), "mjcf", joints="hinge").verify(seconds=0.0)
+    assert verification.findings == ()
+    assert [each for each in verification.listed if "export-hinge-armature" in each]
+
+
+def test_start_where_the_hinges_of_a_ball_are_singular_is_an_error() -> None:
+    with pytest.raises(eurdf.errors.CannotExport, match=r"the second is at -1\.571 rad"):
+        eurdf.export(with_turned_ball(-np.pi / 2.0), "mjcf", joints="hinge")
+
+
+def test_hinges_for_balls_are_for_mjcf_alone() -> None:
+    with pytest.raises(
+        ValueError, match="joints is 'hinge', which is for the format mjcf alone; leave it out for urdf"
+    ):
+        eurdf.export("delta", "urdf", joints="hinge")
 
 
 @pytest.mark.parametrize("name", ["battobot", "talos_leg", "unitree_g1_ankle"])

@@ -50,10 +50,7 @@ KINDS = {
 CLOSURES = {"3d": "connect", "6d": "weld", "hinge": "connect", "distance": "tendon"}
 
 #: Joints and closures that are as in the description.
-EXACT = tuple(
-    f"{kind} joint"
-    for kind in ("revolute", "continuous", "prismatic", "planar", "floating", "spherical", "universal", "cylindrical")
-)
+EXACT = tuple(f"{kind} joint" for kind in ("revolute", "continuous", "prismatic", "planar", "universal", "cylindrical"))
 
 # What the tests hold robots to that have these elements.
 _OPENING = "less than 1e-3 m or rad in 2 s under gravity, on the robots of the tests"
@@ -64,6 +61,19 @@ _MEASURE = "run `eurdf export --verify`: it shows how far the loops open in 2 s 
 _KEYFRAME = "let the simulation start at a keyframe, which meets the equality"
 
 _DRIVEN = ("motor", "position")
+
+#: Of rows that occur where balls become hinges.
+_HINGES = "--joints hinge"
+
+# EᵀE of the axes E of the hinges has the eigenvalues 1 and 1 ± s: a number times it becomes one times its inverse.
+_OF_IT = "up to s / (1 - s) of it, s the size of the sine of the second angle, if its axes have one value"
+
+#: How far hinges differ from a ball that has the same number on its axes.
+_ON_RATES = {
+    "armature": f"{_OF_IT}, in the mass matrix; about armature · (rates)² in the force",
+    "damping": _OF_IT,
+    "friction": "none at the joint's zero; elsewhere the axes of its bounds are turned by the angles of the hinges",
+}
 
 
 def is_readable(file: str, content: bytes) -> bool:
@@ -88,6 +98,18 @@ ROWS = (
         "fixed joint",
         "its name is left out: its link becomes a body without a joint, or a site if it has no mass",
         "name the link in its place",
+    ),
+    *(
+        approximate(
+            f"{kind} joint",
+            "its ball becomes three hinges about x, y and z of the joint's frame, in this order",
+            "keep the second hinge away from ±π/2, or export with --joints stated",
+            code=f"export-{kind}-hinges",
+            error="none in poses and accelerations; singular where the second angle is ±π/2",
+            only=_HINGES,
+            where=by_writer,
+        )
+        for kind in ("spherical", "floating")
     ),
     approximate("helical joint", "becomes a slide and a hinge that a soft equality couples", _KEYFRAME, error=_OPENING),
     approximate(
@@ -133,6 +155,18 @@ ROWS = (
         only="equal limits that are not 0",
         where=lambda joint: any(lower == upper for lower, upper in joint.ranges),
     ),
+    *(
+        approximate(
+            concept,
+            "acts on the rates of three hinges, not on the angular velocity of the ball",
+            "keep the second hinge near 0, or export with --joints stated",
+            code=f"export-hinge-{concept}",
+            error=error,
+            only=_HINGES,
+            where=by_writer,
+        )
+        for concept, error in _ON_RATES.items()
+    ),
     *unequal(("armature", "damping", "friction"), only="axes with different values"),
     approximate(
         "armature",
@@ -157,6 +191,16 @@ ROWS = (
         code="export-force-axes",
         error="none at the joint's zero; elsewhere the force is turned by the joint's angle",
         types=("planar", "floating"),
+        actuators=_DRIVEN,
+    ),
+    approximate(
+        "actuator",
+        "acts about the axes of three hinges, with its limits, not along the axes of the child",
+        "turn the forces with Export.coordinates.rates",
+        code="export-hinge-actuator",
+        error="none at the joint's zero; elsewhere the axes are turned by the angles of the hinges",
+        only=_HINGES,
+        where=by_writer,
         actuators=_DRIVEN,
     ),
     *driven("'kp' and 'dampratio' of the actuator"),

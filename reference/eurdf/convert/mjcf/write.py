@@ -21,7 +21,7 @@ from eurdf.convert.export_format import ExportInput, ExportOutput, Format
 from eurdf.convert.inertia import accepted_inertia, along_principal_axes, has_inertia
 from eurdf.convert.losses import Losses
 from eurdf.convert.meshes import MeshFiles
-from eurdf.convert.mjcf import facts
+from eurdf.convert.mjcf import ball_hinges, facts
 from eurdf.convert.names import UniqueNames
 from eurdf.convert.parts import Part, part_of
 from eurdf.convert.steps import ExportedJoint, in_series
@@ -39,7 +39,7 @@ def write(given: ExportInput, losses: Losses) -> ExportOutput:
     """Write the MJCF of a robot: ``robot.xml``, and its meshes in ``meshes/``.
 
     Raises:
-        CannotExport: A link has a negative mass.
+        CannotExport: A link has a negative mass, or the hinges of a ball are singular at the start.
     """
     return _MjcfWriter(given, losses).write()
 
@@ -65,6 +65,7 @@ class _MjcfWriter:
         self.meshes = MeshFiles(given, losses, facts.is_readable)
         self.used_meshes: dict[tuple[str, tuple[float, ...]], str] = {}
         self.mimics = given.mechanism.leaders
+        self.whole = facts.WHOLE if given.joints == "stated" else ()
 
     def write(self) -> ExportOutput:
         mechanism = self.mechanism
@@ -86,6 +87,7 @@ class _MjcfWriter:
             self._actuator(named[name])
         coordinates = Coordinates(tuple(self.parts), self.given.own, "wxyz")
         keys = UniqueNames(self.losses)
+        ball_hinges.check_start(coordinates, self.given.start)
         for name, configuration in self.given.configurations.items():
             qpos = numbers(coordinates.from_files(configuration).tolist())
             etree.SubElement(self.keyframe, "key", name=keys.new(name), qpos=qpos)
@@ -132,8 +134,10 @@ class _MjcfWriter:
         element = etree.SubElement(host, "body", {"name": self.bodies.new(body.name), **_placed(pose)})
         back = joint.offset.inverse()
         self.steps[joint.name] = found = {
-            self.joints.new(step.joint.name): step for step in in_series(joint, facts.WHOLE)
+            self.joints.new(step.joint.name): step for step in in_series(joint, self.whole, turns_have_properties=True)
         }
+        if by_hinges := joint.type.quaternion is not None and not self.whole:
+            ball_hinges.report(joint, self.given, self.losses)
         for name, step in found.items():
             attributes = {"name": name, "type": facts.KINDS[step.joint.type]}
             if joint.offset is not IDENTITY and any(back.xyz):
@@ -144,7 +148,8 @@ class _MjcfWriter:
             etree.SubElement(element, "joint", attributes)
         ratios = ((step.velocities[0], step.lead or 1.0, 0.0) for step in found.values())
         mimic = self.mimics.get(joint.name)
-        self.parts.append(part_of(joint, tuple(found), ratios, mimic, turn=joint.offset.quaternion))
+        orientation = {"rotation": "xyz"} if by_hinges else {"turn": joint.offset.quaternion}
+        self.parts.append(part_of(joint, tuple(found), ratios, mimic, **orientation))
         self._content(body, element, LEAST)
 
     def _fixed(self, body: Body, host: etree._Element, pose: Pose) -> None:

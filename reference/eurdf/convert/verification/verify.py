@@ -118,7 +118,7 @@ def _compare(
     mass = model.mass, sum(masses)
     if abs(mass[0] - mass[1]) > model.mass_tolerance * (mass[1] or 1.0):
         findings.append(Finding(f"the mass is {mass[0]:g} kg, not {mass[1]:g} kg"))
-    error, wrong, as_listed = _mass_matrix(model, robot, losses, start)
+    error, wrong, as_listed = _mass_matrix(model, exported, losses)
     findings += wrong
     openings = model.openings(start)
     opened = sorted((each for each in openings if size(each) > model.tolerance), key=size, reverse=True)
@@ -146,16 +146,25 @@ def _compare(
 
 
 def _mass_matrix(
-    model: ReadModel, robot: Robot, losses: Sequence[Loss], q: Vector
+    model: ReadModel, exported: Exported, losses: Sequence[Loss]
 ) -> tuple[float, list[Finding], tuple[str, ...]]:
     """The largest relative difference of M; whether it is too large; and which losses it has, each a sentence."""
     reported: list[str] = []
+    robot, q = exported.robot, exported.start
     dropped = [loss for loss in losses if loss.code == "export-armature" and loss.effect is Effect.DROPPED]
     if dropped:
         robot = without_armature(robot, [loss.name for loss in dropped])
         without = f"the mass matrices are compared without the armature of {_count(dropped, 'joint')}"
         reported.append(f"{without} [{dropped[0].code}]; {dropped[0].hint}")
-    expected = mass_matrix(robot, q)
+    added = np.zeros((robot.model.nv, robot.model.nv))
+    if hinged := [loss for loss in losses if loss.code == "export-hinge-armature"]:
+        names = [loss.name for loss in hinged]
+        added = _of_hinges(exported, names)
+        robot = without_armature(robot, names)
+        reported.append(
+            f"the armature of {_count(hinged, 'joint')} acts on hinges [{hinged[0].code}]; {hinged[0].hint}"
+        )
+    expected = mass_matrix(robot, q) + added
     if not expected.size:
         return 0.0, [], ()
     found = model.mass_matrix(q)
@@ -163,7 +172,7 @@ def _mass_matrix(
     changed = [loss for loss in losses if loss.code == "export-inertia"]
     if error > model.mass_tolerance and changed:
         # What the losses say is no error, and hides no other one.
-        expected = mass_matrix(_with_real_inertias(robot, [loss.name for loss in changed]), q)
+        expected = mass_matrix(_with_real_inertias(robot, [loss.name for loss in changed]), q) + added
         because = f"the mass matrix differs since the inertia of {_count(changed, 'link')} is changed"
         reported.append(f"{because} [{changed[0].code}]; {changed[0].hint}")
     unexpected = _difference(found, expected)
@@ -176,6 +185,19 @@ def _mass_matrix(
     )
     message = f"the mass matrix differs by {unexpected:.1e} of its largest entry"
     return error, [Finding(message, (cause,))], tuple(reported)
+
+
+def _of_hinges(exported: Exported, names: Sequence[str]) -> Matrix:
+    """What the armatures of joints whose balls are hinges in the model add to M (nv, nv) at the start."""
+    armatures = {joint.name: joint.properties.armature for joint in exported.robot.mechanism.joints}
+    T, row = exported.coordinates.rates(exported.start), 0
+    found = np.zeros((T.shape[1], T.shape[1]))
+    for part in exported.coordinates.parts:
+        if part.joint in names:
+            rates = T[row : row + part.nv]
+            found += rates.T @ np.diag(armatures[part.joint]) @ rates
+        row += part.nv
+    return found
 
 
 def _difference(found: Matrix, expected: Matrix) -> float:
