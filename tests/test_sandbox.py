@@ -21,6 +21,8 @@ for module in pkgutil.walk_packages(eurdf.__path__, "eurdf."):
     try:
         if not module.name.endswith("__main__"):
             importlib.import_module(module.name)
+    except eurdf.errors.MissingExtra as missing:
+        print(missing)
     except ModuleNotFoundError as error:
         root = error.name.split(".")[0]
         if root in ("eurdf", *MODULES):
