@@ -14,6 +14,7 @@ from eurdf.kinematics.loop_analysis import LoopAnalysis as LoopAnalysis
 from eurdf.kinematics.loop_analysis import Motion as Motion
 from eurdf.kinematics.opening import Opening as Opening
 from eurdf.kinematics.position_limit import JointAtLimit as JointAtLimit
+from eurdf.kinematics.regressor import InertialRegressor as InertialRegressor
 from eurdf.kinematics.sensitivity import FrameVelocity as FrameVelocity
 from eurdf.kinematics.simulation import Simulation as Simulation
 from eurdf.kinematics.sweep import MotionPath as MotionPath

@@ -11,6 +11,7 @@ from eurdf.kinematics import (
     inverse,
     locking,
     project,
+    regressor,
     sensitivity,
     simulation,
 )
@@ -31,6 +32,7 @@ dq_dq_actuated_derivative = of_any_robot(derivatives.dq_dq_actuated_derivative)
 dynamics_derivatives = of_any_robot(derivatives.dynamics_derivatives)
 forward_dynamics = of_any_robot(dynamics.forward_dynamics)
 forward_kinematics = of_any_robot(forward.forward_kinematics)
+inertial_regressor = of_any_robot(regressor.inertial_regressor)
 inverse_dynamics = of_any_robot(dynamics.inverse_dynamics)
 inverse_dynamics_derivatives = of_any_robot(derivatives.inverse_dynamics_derivatives)
 inverse_kinematics = of_any_robot(inverse.inverse_kinematics)

@@ -54,6 +54,7 @@ CALLS: dict[str, dict[str, Any]] = {
         "u0": "u",
     },
     "inverse_kinematics": {"targets": {"coupler": 3}, "q0": "q", "hold": "motor_crank", "hold_at": "q"},
+    "inertial_regressor": {"q": "q", "v": "v", "a": "v", "tau": "v", "weights": "u"},
     "inverse_dynamics_derivatives": {"q": "q", "v": "v", "a": "v", "tau": "v", "weights": "u"},
     "lock": {"joints": (), "q": "q"},
     "mass_matrix": {"q": "q"},
