@@ -2,6 +2,7 @@
 
 from eurdf.kinematics.analysis import Analysis as Analysis
 from eurdf.kinematics.assembly import Assembly as Assembly
+from eurdf.kinematics.calibration import Calibration as Calibration
 from eurdf.kinematics.derivatives import DynamicsDerivatives as DynamicsDerivatives
 from eurdf.kinematics.derivatives import InverseDynamicsDerivatives as InverseDynamicsDerivatives
 from eurdf.kinematics.dynamics import Forces as Forces

@@ -5,6 +5,7 @@ from __future__ import annotations
 from eurdf.kinematics import (
     analysis,
     assembly,
+    calibration,
     derivatives,
     dynamics,
     forward,
@@ -24,6 +25,7 @@ achievable_acceleration = of_any_robot(dynamics.achievable_acceleration)
 actuated_jacobian = of_any_robot(sensitivity.actuated_jacobian)
 analyze = of_any_robot(analysis.analyze)
 assemble = of_any_robot(assembly.assemble)
+calibrate = of_any_robot(calibration.calibrate)
 closure_openings = of_any_robot(_residual.closure_openings)
 constraint_acceleration = of_any_robot(_residual.constraint_acceleration)
 differential_inverse_kinematics = of_any_robot(sensitivity.differential_inverse_kinematics)

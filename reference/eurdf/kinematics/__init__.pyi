@@ -1,6 +1,7 @@
 """The public names, each with the module that defines it."""
 
 from eurdf.robot_functions import achievable_acceleration as achievable_acceleration
+from eurdf.robot_functions import calibrate as calibrate
 from eurdf.robot_functions import closure_openings as closure_openings
 from eurdf.robot_functions import constraint_acceleration as constraint_acceleration
 from eurdf.robot_functions import dq_dq_actuated as dq_dq_actuated
