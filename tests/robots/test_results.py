@@ -45,6 +45,9 @@ NOT_CALLED |= {"times"}  # of calls, measured
 NOT_OWNED = ("pinocchio", "coal", "lxml")
 NOT_OWNED += ("eurdf.pinocchio.tree", "eurdf.closures", "eurdf.mechanism", "eurdf.diagnostics")
 
+#: Functions of motions that the motors produce.
+OF_MOTIONS = ("inverse_dynamics", "inverse_dynamics_derivatives", "inertial_regressor")
+
 
 class Case:
     """A robot, and an argument for each parameter of the public functions and methods, by its name."""
@@ -71,6 +74,8 @@ class Case:
             "contacts": {actuator: "3d"},
             "targets": {frame: np.zeros(3)},
             "twist": np.zeros(6),
+            "samples": {actuator: coordinates[actuator]},
+            "unknown": actuator,
             "joints": joints,
             "actuator": actuator,
             "stiffness": np.full(len(joints), 10.0),
@@ -90,7 +95,7 @@ class Case:
         eurdf.export(robot, "sdf").write(folder)
         self.of: dict[str, dict[str, Any]] = {
             "lock": {"joints": actuator},
-            "inverse_dynamics": {"weights": np.full(len(u), 2.0)},
+            **{name: {"weights": np.full(len(u), 2.0)} for name in OF_MOTIONS},
             "actuator_values": {"joints": dict.fromkeys(joints, 0.0)},
             "joint_values": {"motors": motors},
             "configuration": {"positions": coordinates},
@@ -251,7 +256,8 @@ def test_vectors_can_be_given_by_name(robot: tuple[str, Any, tuple[str, ...], st
     functions = {name: each for name, each in public_functions().items() if name not in WITHOUT_DATA}
     motors: tuple[str, ...] = ()
     v, u, tau = (case.arguments[name] for name in ("v", "u", "tau"))
-    case.of["inverse_dynamics"] |= {"tau": tau, "a": eurdf.forward_dynamics(whole, q, v, u, tau=tau).a}
+    for name in OF_MOTIONS:
+        case.of[name] |= {"tau": tau, "a": eurdf.forward_dynamics(whole, q, v, u, tau=tau).a}
     if joints:
         at, prepared = eurdf.transmission(whole, joints, q), eurdf.transmissions.prepare_transmission(whole, joints, q)
         motors = at.motors

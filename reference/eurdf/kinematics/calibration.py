@@ -80,6 +80,10 @@ class Calibration(NamedTuple):
     q: Matrix
     remaining: Matrix
 
+    def __repr__(self) -> str:
+        hidden = quoted(self.unidentifiable, 4) or "none"
+        return f"<Calibration: {len(self.parameters)} parameters, rad and m; not identifiable: {hidden}>"
+
 
 class _Encoders(NamedTuple):
     """Encoders of k joints with one velocity.

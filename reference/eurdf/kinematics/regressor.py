@@ -40,6 +40,9 @@ class InertialRegressor(NamedTuple):
     constant: Vector
     joints: tuple[str, ...]
 
+    def __repr__(self) -> str:
+        return f"<InertialRegressor: of {len(self.constant)} torques, N·m and N, by {len(self.parameters)} parameters>"
+
 
 @overflow_refused("the regressor")
 def inertial_regressor(
