@@ -112,7 +112,8 @@ class Case:
                 "moved": {"q": np.tile(q, (3, 1)), "positions": np.tile(at, (3, 1))},
                 "at_motors": {"positions": of_motors},
             }
-        self.batch = {"q": np.tile(q, (3, 1)), "q0": np.tile(q, (3, 1)), "targets": {frame: np.zeros((3, 3))}}
+        self.batch = {name: np.tile(each, (3, 1)) for name, each in (("q", q), ("q0", q), ("v", v))}
+        self.batch["targets"] = {frame: np.zeros((3, 3))}
 
     def call(self, function: Callable[..., Any], name: str, more: Mapping[str, Any] = MappingProxyType({})) -> Any:
         """The result with the arguments that must be given, and the optional arrays."""
