@@ -5,6 +5,11 @@ independent four-bars, side by side on the ground or each on the rocker of the o
 once, 10 to 300 for what is done at each configuration. The exponent p of time ~ loops^p is fitted: 1 is linear; the
 steepest one is that of two neighbouring sizes. The models of Pinocchio are quadratic by themselves, and measured apart.
 Its dynamics of chains in series are quadratic to cubic, and left out. Times are the least of the wall clock.
+
+K is a dense array (nc, nv): at 300 four-bars, half of its time is that of 810,000 numbers. In inverse kinematics in
+series all motors move by 0.05 rad: the few of 10 four-bars reach a target by Newton's method, that of 30 is so far away
+that the search goes there, and above 60 velocities NumPy places the frame, joint by joint, as a `pin.Data` of the chain
+would take 64 nv³ bytes.
 """
 
 from __future__ import annotations

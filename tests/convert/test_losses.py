@@ -167,8 +167,9 @@ def _odd(mechanism: Mechanism, axes: tuple[Vector3, Vector3]) -> Mechanism:
 @pytest.mark.slow
 def test_every_kind_of_loss_occurs() -> None:
     found: dict[str, set[str]] = {name: set() for name in EXPORTS}
-    for mechanism, options in robots():
-        robot = build_robot(mechanism, geometry=False)
+    held = eurdf.load("four_bar", geometry=False).with_contacts({"coupler": "3d"})
+    for robot, options in [*((build_robot(each, geometry=False), options) for each, options in robots()), (held, {})]:
+        mechanism = robot.mechanism
         for name in EXPORTS:
             if name in MISSING or (name == "sdf" and mechanism.closures and not mechanism.configurations):
                 continue

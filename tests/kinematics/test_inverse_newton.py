@@ -9,6 +9,7 @@ import pinocchio as pin
 import pytest
 
 import eurdf
+from benchmarks.robots import robot_called
 from eurdf.kinematics.frame_targets import Target
 from eurdf.kinematics.inverse_newton import InverseNewton
 from eurdf.kinematics.problem import Problem, for_many
@@ -38,11 +39,13 @@ def closed_around(robot: Robot, q: Any, spread: float, count: int) -> Any:
 
 
 @pytest.mark.parametrize("is_pose", [True, False])
-@pytest.mark.parametrize("name", ["digit_2legs", "doggo_leg", "five_bar", "kangaroo_leg", "stewart_platform", "tello"])
+@pytest.mark.parametrize(
+    "name", ["digit_2legs", "doggo_leg", "five_bar", "kangaroo_leg", "stewart_platform", "tello", "30 four-bars"]
+)
 def test_one_and_many_reach_near_targets_alike(name: str, is_pose: bool) -> None:
-    robot = eurdf.load(name, geometry=False)
+    robot = robot_called(name)
     q, frame = eurdf.assemble(robot).q, frame_of(robot)
-    goal = poses(robot, frame, closed_around(robot, q, 0.02, 3))
+    goal = poses(robot, frame, closed_around(robot, q, 1.0 / max(50, 20 * robot.model.nv), 3))
     goal = goal if is_pose else Target(goal.position)
     newton, problem = InverseNewton(robot, (is_pose,), frame, few=False), for_many(robot)
     many = newton.near(problem, [goal], np.tile(q, (3, 1)), None, TOLERANCE)

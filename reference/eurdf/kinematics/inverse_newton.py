@@ -20,9 +20,17 @@ from eurdf.closures.se3 import IDENTITY_ROTATION, transposed, turned
 from eurdf.kinematics.descend import damped
 from eurdf.kinematics.evaluate import Evaluator, Frames, frames_at
 from eurdf.kinematics.loop import independent_groups, merged
-from eurdf.kinematics.rank import choose, every, largest, numbers, some, square, squares
-from eurdf.kinematics.tangent_space import TangentSpaces
-from eurdf.kinematics.tolerances import LEAST_DAMPING, MOST_CORRECTION, MOST_STEPS, SMALL, SOLVED, WELL_CLOSED
+from eurdf.kinematics.rank import Numbers, choose, every, largest, numbers, some, square, squares, times
+from eurdf.kinematics.tangent_space import AlikeBlocks, TangentSpaces, decomposed
+from eurdf.kinematics.tolerances import (
+    LEAST_DAMPING,
+    MOST_CORRECTION,
+    MOST_STEPS,
+    MOST_VELOCITIES_AT_ONCE,
+    SMALL,
+    SOLVED,
+    WELL_CLOSED,
+)
 from eurdf.mechanism.body import Anchor
 from eurdf.pinocchio.memory import working_memory
 from eurdf.pinocchio.tree_few import as_slice
@@ -160,7 +168,8 @@ class InverseNewton:
             while joint:
                 moving.update(tree.moving_velocities[joint])
                 joint = tree.parents[joint]
-        loops = merged([each for each in independent_groups(robot) if moving.intersection(each.velocities.tolist())])
+        groups = [each for each in independent_groups(robot) if moving.intersection(each.velocities.tolist())]
+        loops = merged(groups)
         own: Indices = np.array(sorted(moving.union(loops.velocities.tolist())), dtype=np.intp)
         closures = [robot.constraints[index] for index in loops.closures]
         # What evaluates the targets, together with the closures if that does not take too much memory.
@@ -179,6 +188,16 @@ class InverseNewton:
         rows = [scale for is_pose in poses for scale in [1.0 / spaces.length] * 3 + [1.0] * 3 * is_pose]
         self._row_scale = np.concatenate((spaces.row_scale[loops.rows], rows))
         self._factors = self._row_scale[:, None] * self._unit
+        self._blocks: list[AlikeBlocks] = []
+        if len(own) > MOST_VELOCITIES_AT_ONCE:  # less time than all at once
+            alike: dict[tuple[int, int], list[tuple[Indices, Indices]]] = {}
+            for group in groups:
+                where = np.searchsorted(loops.rows, group.rows), np.searchsorted(own, group.velocities)
+                alike.setdefault((len(where[0]), len(where[1])), []).append(where)
+            for each in alike.values():
+                rows_of, velocities_of = map(np.array, zip(*each, strict=True))
+                self._blocks.append(AlikeBlocks.of_units(rows_of, velocities_of, self._row_scale, self._unit))
+        self._outside = np.flatnonzero(~np.isin(own, loops.velocities))
         small = min(1.0, spaces.length / SMALL)
         self._closed = (WELL_CLOSED * small) ** 2, (SOLVED * small) ** 2
         self._has_all = len(closures) == len(robot.constraints)
@@ -222,7 +241,7 @@ class InverseNewton:
             if not step:  # a solution is left as it is
                 going = choose(there, False, going & (opened <= well_closed))
             if some(going):
-                (x,) = damped([aimed.jacobian(at) * self._factors], [b], LEAST_DAMPING * squared)
+                x = self._least(aimed.jacobian(at), b, LEAST_DAMPING * squared)
                 length = square(x) ** 0.5
                 first, later = (first, later + length) if step else (length, later)
                 going = going & (first <= 1.0) & (later <= MOST_CORRECTION * first)
@@ -289,7 +308,7 @@ class InverseNewton:
             squared = float(b.dot(b))
             if not squared < _REDUCED * before:
                 return _Stepped(q, at, False, step, np.inf)
-            ((x,),) = damped([aimed.jacobian(at) * self._factors], [b[None]], LEAST_DAMPING * squared)
+            (x,) = self._least(aimed.jacobian(at), b[None], LEAST_DAMPING * squared)
             length = math.sqrt(x.dot(x))
             first, later = (first, later + length) if step else (length, later)
             if not (first <= 1.0 and later <= MOST_CORRECTION * first):
@@ -299,6 +318,33 @@ class InverseNewton:
             q, before = problem.tree.integrate(q, v), squared
             at = aimed.fresh(q)
         return _Stepped(q, at, False, step, later / first)
+
+    def _least(self, J: Matrix, b: Matrix, damping: Numbers) -> Matrix:
+        """The x (B, n) of least norm that solve A x = -b, of b (B, m + k), with A the dimensionless J (B, m + k, n).
+
+        Of a large robot, those of the groups of loops close them, and free motions of the groups reach the targets.
+        """
+        if not self._blocks:
+            (x,) = damped([J * self._factors], [b], damping)
+            return np.asarray(x)
+        B, m, to_targets = len(J), self._m, J[:, self._m :] * self._factors[self._m :]
+        x, free, along = np.zeros((B, J.shape[2])), [], [to_targets[:, :, self._outside]]
+        for block in self._blocks:
+            A = block.of(J) * block.factors
+            found = decomposed(A.reshape(-1, *A.shape[2:]))
+            opened = b[:, block.rows].reshape(-1, A.shape[2])
+            x[:, block.velocities] = -times(found.inverse, opened).reshape(B, *block.velocities.shape)
+            Z = found.right * (np.arange(A.shape[3]) >= found.rank[:, None])[:, None]
+            free.append(Z.reshape(B, -1, *Z.shape[1:]))
+            moved = to_targets[:, :, block.velocities].swapaxes(1, 2) @ free[-1]
+            along.append(moved.swapaxes(1, 2).reshape(B, to_targets.shape[1], -1))
+        (y,) = damped([np.concatenate(along, axis=2)], [b[:, m:] + times(to_targets, x)], damping)
+        x[:, self._outside], first = y[:, : len(self._outside)], len(self._outside)
+        for block, Z in zip(self._blocks, free, strict=True):
+            last = first + block.velocities.size
+            x[:, block.velocities] += (Z @ y[:, first:last].reshape(*Z.shape[:3], 1))[..., 0]
+            first = last
+        return x
 
     def _aimed(self, goals: Sequence[Target]) -> Any:
         """What evaluates the closures and the targets."""

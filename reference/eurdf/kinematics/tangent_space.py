@@ -279,21 +279,21 @@ class TangentSpaces:
 
     def _spaces(self, blocks: Sequence[Matrix], count: int, alone: bool) -> Iterator[TangentSpace]:
         """The spaces of so many K, by their ranks, from their dimensionless blocks."""
-        decomposed: list[tuple[LoopGroup, _Decomposed]] = []
+        bases: list[tuple[LoopGroup, _Decomposed]] = []
         for (groups, _), own in zip(self.alike, blocks, strict=True):
             if count == 1 and len(groups) < MANY_ALIKE:
-                each_of = [_decomposed(block[None]) for block in own[0]]
+                each_of = [decomposed(block[None]) for block in own[0]]
             else:
-                parts = _decomposed(own.reshape(-1, *own.shape[2:]))
+                parts = decomposed(own.reshape(-1, *own.shape[2:]))
                 each_of = [parts.of(slice(first, None, len(groups))) for first in range(len(groups))]
-            decomposed += zip(groups, each_of, strict=True)
-        ranks = np.array([each.rank for _, each in decomposed], dtype=np.intp).reshape(len(decomposed), count).T
+            bases += zip(groups, each_of, strict=True)
+        ranks = np.array([each.rank for _, each in bases], dtype=np.intp).reshape(len(bases), count).T
         for of_kind in np.unique(ranks, axis=0) if count > 1 else ranks:
             which = np.flatnonzero((ranks == of_kind).all(axis=1)) if count > 1 else _ALONE
             chosen = which if len(which) < count else slice(None)
             found = [
                 _Block(group, each.right[chosen, :, rank:], each.inverse[chosen])
-                for (group, each), rank in zip(decomposed, of_kind.tolist(), strict=True)
+                for (group, each), rank in zip(bases, of_kind.tolist(), strict=True)
             ]
             yield TangentSpace(which, found, self, alone)
 
@@ -316,7 +316,7 @@ class _Decomposed(NamedTuple):
         return _Decomposed(self.right[which], self.inverse[which], self.rank[which])
 
 
-def _decomposed(A: Matrix) -> _Decomposed:
+def decomposed(A: Matrix) -> _Decomposed:
     """Decompose blocks; the singular values decide on the rank of those that are in doubt."""
     m, n = A.shape[1:]
     if m <= n:
