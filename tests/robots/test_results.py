@@ -223,7 +223,7 @@ OF_SERIAL_JOINTS = ("stiffness", "damping", "torque_ratio", "velocity_ratio")
 def by_name(case: Case, name: str, value: Any, joints: tuple[str, ...], motors: tuple[str, ...]) -> Any:
     """The same argument by the names of joints, as files have their coordinates; None if it is no such vector."""
     robot, rows = case.arguments["robot"], np.ndim(value) == 2
-    if value is None:
+    if value is None or (rows and name == "v"):  # rows of velocities are arrays
         return None
     if name in ("q", "q0", "values", "actuated", "q_actuated", "q_free"):
         whole = np.array(np.broadcast_to(case.arguments["q"], (3, robot.tree.nq)) if rows else case.arguments["q"])
