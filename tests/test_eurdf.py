@@ -39,6 +39,9 @@ TAKE_NAMES = {
     "impedance_map": lambda given: eurdf.transmissions.impedance_map(four_bar(), given, None, [1.0]).motor_stiffness[
         0, 0
     ],
+    "calibrate": lambda given: eurdf.kinematics.calibrate(four_bar(), {"motor_crank": [0.1]}, given).offsets[
+        "motor_crank"
+    ],
     "reflected_inertia": lambda given: eurdf.transmissions.reflected_inertia(four_bar(), given).total[0, 0],
     "serial_limits": lambda given: eurdf.transmissions.serial_limits(four_bar(), given).torque_box[0],
     "transmission": lambda given: eurdf.transmission(four_bar(), given).joints == ("motor_crank",),

@@ -2,6 +2,7 @@
 
 from eurdf.kinematics.analysis import Analysis as Analysis
 from eurdf.kinematics.assembly import Assembly as Assembly
+from eurdf.kinematics.calibration import Calibration as Calibration
 from eurdf.kinematics.derivatives import DynamicsDerivatives as DynamicsDerivatives
 from eurdf.kinematics.derivatives import InverseDynamicsDerivatives as InverseDynamicsDerivatives
 from eurdf.kinematics.dynamics import Forces as Forces
@@ -14,6 +15,7 @@ from eurdf.kinematics.loop_analysis import LoopAnalysis as LoopAnalysis
 from eurdf.kinematics.loop_analysis import Motion as Motion
 from eurdf.kinematics.opening import Opening as Opening
 from eurdf.kinematics.position_limit import JointAtLimit as JointAtLimit
+from eurdf.kinematics.regressor import InertialRegressor as InertialRegressor
 from eurdf.kinematics.sensitivity import FrameVelocity as FrameVelocity
 from eurdf.kinematics.simulation import Simulation as Simulation
 from eurdf.kinematics.sweep import MotionPath as MotionPath

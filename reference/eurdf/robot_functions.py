@@ -5,12 +5,14 @@ from __future__ import annotations
 from eurdf.kinematics import (
     analysis,
     assembly,
+    calibration,
     derivatives,
     dynamics,
     forward,
     inverse,
     locking,
     project,
+    regressor,
     sensitivity,
     simulation,
 )
@@ -23,6 +25,7 @@ achievable_acceleration = of_any_robot(dynamics.achievable_acceleration)
 actuated_jacobian = of_any_robot(sensitivity.actuated_jacobian)
 analyze = of_any_robot(analysis.analyze)
 assemble = of_any_robot(assembly.assemble)
+calibrate = of_any_robot(calibration.calibrate)
 closure_openings = of_any_robot(_residual.closure_openings)
 constraint_acceleration = of_any_robot(_residual.constraint_acceleration)
 differential_inverse_kinematics = of_any_robot(sensitivity.differential_inverse_kinematics)
@@ -31,6 +34,7 @@ dq_dq_actuated_derivative = of_any_robot(derivatives.dq_dq_actuated_derivative)
 dynamics_derivatives = of_any_robot(derivatives.dynamics_derivatives)
 forward_dynamics = of_any_robot(dynamics.forward_dynamics)
 forward_kinematics = of_any_robot(forward.forward_kinematics)
+inertial_regressor = of_any_robot(regressor.inertial_regressor)
 inverse_dynamics = of_any_robot(dynamics.inverse_dynamics)
 inverse_dynamics_derivatives = of_any_robot(derivatives.inverse_dynamics_derivatives)
 inverse_kinematics = of_any_robot(inverse.inverse_kinematics)

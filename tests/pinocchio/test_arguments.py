@@ -27,6 +27,7 @@ CALLS: dict[str, dict[str, Any]] = {
     "achievable_acceleration": {"q": "q", "v": "v", "a": "v", "tau": "v", "external": {"coupler": 6}},
     "actuated_jacobian": {"q": "q", "frame": "coupler", "weights": "v"},
     "analyze": {"q": "q"},
+    "calibrate": {"samples": {"motor_crank": 2}, "unknown": "motor_crank", "q0": "q"},
     "assemble": {"q0": "q", "hold": "motor_crank", "hold_at": "q"},
     "closure_openings": {"q": "q"},
     "constraint_acceleration": {"q": "q", "v": "v"},
@@ -54,6 +55,7 @@ CALLS: dict[str, dict[str, Any]] = {
         "u0": "u",
     },
     "inverse_kinematics": {"targets": {"coupler": 3}, "q0": "q", "hold": "motor_crank", "hold_at": "q"},
+    "inertial_regressor": {"q": "q", "v": "v", "a": "v", "tau": "v", "weights": "u"},
     "inverse_dynamics_derivatives": {"q": "q", "v": "v", "a": "v", "tau": "v", "weights": "u"},
     "lock": {"joints": (), "q": "q"},
     "mass_matrix": {"q": "q"},
@@ -105,7 +107,7 @@ def valid(name: str) -> dict[str, Any]:
     """The arguments of a valid call."""
     arguments = {}
     for parameter, given in CALLS[name].items():
-        if parameter in ("contacts", "frame", "actuator", "joints", "hold", "duration", "grid", "port"):
+        if parameter in ("contacts", "frame", "actuator", "joints", "hold", "duration", "grid", "port", "unknown"):
             arguments[parameter] = given
         elif isinstance(given, Mapping):
             arguments[parameter] = {key: np.ones(size) for key, size in given.items()}

@@ -45,6 +45,9 @@ NOT_CALLED |= {"times"}  # of calls, measured
 NOT_OWNED = ("pinocchio", "coal", "lxml")
 NOT_OWNED += ("eurdf.pinocchio.tree", "eurdf.closures", "eurdf.mechanism", "eurdf.diagnostics")
 
+#: Functions of motions that the motors produce.
+OF_MOTIONS = ("inverse_dynamics", "inverse_dynamics_derivatives", "inertial_regressor")
+
 
 class Case:
     """A robot, and an argument for each parameter of the public functions and methods, by its name."""
@@ -71,6 +74,8 @@ class Case:
             "contacts": {actuator: "3d"},
             "targets": {frame: np.zeros(3)},
             "twist": np.zeros(6),
+            "samples": {actuator: coordinates[actuator]},
+            "unknown": actuator,
             "joints": joints,
             "actuator": actuator,
             "stiffness": np.full(len(joints), 10.0),
@@ -90,7 +95,7 @@ class Case:
         eurdf.export(robot, "sdf").write(folder)
         self.of: dict[str, dict[str, Any]] = {
             "lock": {"joints": actuator},
-            "inverse_dynamics": {"weights": np.full(len(u), 2.0)},
+            **{name: {"weights": np.full(len(u), 2.0)} for name in OF_MOTIONS},
             "actuator_values": {"joints": dict.fromkeys(joints, 0.0)},
             "joint_values": {"motors": motors},
             "configuration": {"positions": coordinates},
@@ -107,7 +112,8 @@ class Case:
                 "moved": {"q": np.tile(q, (3, 1)), "positions": np.tile(at, (3, 1))},
                 "at_motors": {"positions": of_motors},
             }
-        self.batch = {"q": np.tile(q, (3, 1)), "q0": np.tile(q, (3, 1)), "targets": {frame: np.zeros((3, 3))}}
+        self.batch = {name: np.tile(each, (3, 1)) for name, each in (("q", q), ("q0", q), ("v", v))}
+        self.batch["targets"] = {frame: np.zeros((3, 3))}
 
     def call(self, function: Callable[..., Any], name: str, more: Mapping[str, Any] = MappingProxyType({})) -> Any:
         """The result with the arguments that must be given, and the optional arrays."""
@@ -217,7 +223,7 @@ OF_SERIAL_JOINTS = ("stiffness", "damping", "torque_ratio", "velocity_ratio")
 def by_name(case: Case, name: str, value: Any, joints: tuple[str, ...], motors: tuple[str, ...]) -> Any:
     """The same argument by the names of joints, as files have their coordinates; None if it is no such vector."""
     robot, rows = case.arguments["robot"], np.ndim(value) == 2
-    if value is None:
+    if value is None or (rows and name == "v"):  # rows of velocities are arrays
         return None
     if name in ("q", "q0", "values", "actuated", "q_actuated", "q_free"):
         whole = np.array(np.broadcast_to(case.arguments["q"], (3, robot.tree.nq)) if rows else case.arguments["q"])
@@ -251,7 +257,8 @@ def test_vectors_can_be_given_by_name(robot: tuple[str, Any, tuple[str, ...], st
     functions = {name: each for name, each in public_functions().items() if name not in WITHOUT_DATA}
     motors: tuple[str, ...] = ()
     v, u, tau = (case.arguments[name] for name in ("v", "u", "tau"))
-    case.of["inverse_dynamics"] |= {"tau": tau, "a": eurdf.forward_dynamics(whole, q, v, u, tau=tau).a}
+    for name in OF_MOTIONS:
+        case.of[name] |= {"tau": tau, "a": eurdf.forward_dynamics(whole, q, v, u, tau=tau).a}
     if joints:
         at, prepared = eurdf.transmission(whole, joints, q), eurdf.transmissions.prepare_transmission(whole, joints, q)
         motors = at.motors

@@ -54,6 +54,20 @@ def _turned(inertia: Inertia) -> tuple[float, ...]:
     return ixx, ixy, ixz, ixy, iyy, iyz, ixz, iyz, izz
 
 
+def body_regressors(poses: Matrix, twists: Matrix, accelerations: Matrix) -> Matrix:
+    """The derivatives (n, 6, 10) of the forces that move bodies, by their `pin.Inertia.toDynamicParameters`.
+
+    Poses (n, 4, 4) are in the world; forces, twists and accelerations (n, 6), against free fall, are linear, of the
+    point at the origin of the world, and angular.
+    """
+    found = np.empty((len(poses), 6, 10))
+    for index, pose in enumerate(poses):
+        to_body = pin.SE3(pose).toActionMatrixInverse()
+        motion = (pin.Motion(to_body @ each[index]) for each in (twists, accelerations))
+        found[index] = to_body.T @ pin.bodyRegressor(*motion)
+    return found
+
+
 def is_zero(inertia: Inertia) -> bool:
     """Whether mass, centre of mass and moments are all exactly zero, so that Pinocchio counts no body."""
     return inertia.mass == 0.0 and not any(inertia.pose.xyz) and not any(inertia.moments)
