@@ -223,7 +223,7 @@ OF_SERIAL_JOINTS = ("stiffness", "damping", "torque_ratio", "velocity_ratio")
 def by_name(case: Case, name: str, value: Any, joints: tuple[str, ...], motors: tuple[str, ...]) -> Any:
     """The same argument by the names of joints, as files have their coordinates; None if it is no such vector."""
     robot, rows = case.arguments["robot"], np.ndim(value) == 2
-    if value is None or (rows and name == "v"):  # rows of velocities are arrays
+    if value is None:
         return None
     if name in ("q", "q0", "values", "actuated", "q_actuated", "q_free"):
         whole = np.array(np.broadcast_to(case.arguments["q"], (3, robot.tree.nq)) if rows else case.arguments["q"])
@@ -273,6 +273,8 @@ def test_vectors_can_be_given_by_name(robot: tuple[str, Any, tuple[str, ...], st
         name = path.removeprefix("batch.")
         more = {**(case.batch if path != name else {}), **case.of.get(name, {})}
         for each in inspect.signature(function).parameters.values():
+            if path != name and each.name in ("v", "u", "tau"):  # rows of velocities and forces are arrays
+                continue
             vector = (case.arguments | more).get(each.name)
             named = by_name(case, each.name, vector, motors if name == "at_motors" else joints, motors)
             if named is None or ("joints" in inspect.signature(function).parameters and not joints):
