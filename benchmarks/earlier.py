@@ -1,6 +1,6 @@
 """Times of an earlier version, whose Python `EURDF_EARLIER_PYTHON` names; a program for that Python, too.
 
-The program measures `eurdf.batch.forward_kinematics` with what it has on standard input, a NumPy archive: ``name`` of
+The program measures `eurdf.batch.forward_kinematics` with what it has on standard input, a NumPy archive: ``folder`` of
 a robot, ``values`` and ``q0``. It prints a line of JSON: its commit, and the least time of the processor, s.
 """
 
@@ -29,7 +29,8 @@ def earlier_forward_kinematics(name: str, values: np.ndarray, q0: np.ndarray) ->
     if program is None:
         return None
     request = io.BytesIO()
-    np.savez(request, name=name, values=values, q0=q0)
+    folder = str(Path(__file__).parents[1] / "robots" / name)  # it may not have this robot itself
+    np.savez(request, folder=folder, values=values, q0=q0)
     # Started from its file, it finds no module of this project but those of its own environment.
     run = subprocess.run([program, __file__], input=request.getvalue(), capture_output=True, check=True)
     commit, seconds = json.loads(run.stdout.splitlines()[-1])
@@ -39,7 +40,7 @@ def earlier_forward_kinematics(name: str, values: np.ndarray, q0: np.ndarray) ->
 def main() -> None:
     """Answer the request."""
     request = np.load(io.BytesIO(sys.stdin.buffer.read()))
-    robot = eurdf.load(str(request["name"]), geometry=False)
+    robot = eurdf.load(str(request["folder"]), geometry=False)
     times = []
     for _ in range(_TURNS):
         start = time.process_time()
