@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import math
 import sys
 from collections.abc import Iterator, Sequence
@@ -14,6 +13,7 @@ import pinocchio as pin
 import eurdf
 from eurdf.array import Vector
 from eurdf.viewing.picture import Drawn, Image, axes_of, drawn, seen, with_palette
+from robots.drawing import draw
 
 _ROBOT, _DRAGGED = "digit_leg", "foot"
 _VIEWS = ((0.0, -1.0, 0.0), (1.0, -0.8, 0.35))
@@ -80,16 +80,14 @@ def _frame(shown: Drawn, held: Vector) -> Image:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Draws the moving picture; 0 if it is drawn, 2 if it cannot be."""
-    parser = argparse.ArgumentParser("python -m robots.moving_picture", description="Draw a robot that is dragged.")
     default = Path(__file__).parents[1] / "docs/pictures/digit_leg.webp"
-    parser.add_argument("-o", "--output", type=Path, metavar="FILE", default=default, help="default: %(default)s")
-    options = parser.parse_args(arguments)
-    try:
-        save_moving_picture(moving_picture(eurdf.load(_ROBOT)), options.output)
-    except eurdf.errors.MissingExtra as missing:
-        print(missing, file=sys.stderr)
-        return 2
-    return 0
+    return draw(
+        "moving_picture",
+        "Draw a robot that is dragged.",
+        default,
+        lambda file: save_moving_picture(moving_picture(eurdf.load(_ROBOT)), file),
+        arguments,
+    )
 
 
 if __name__ == "__main__":

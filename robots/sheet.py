@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -11,6 +10,7 @@ import numpy as np
 
 import eurdf
 from eurdf.viewing.picture import VIEWS, Image, picture, save_picture
+from robots.drawing import draw
 
 _COLUMNS = 7
 _CELL = 170, 190  # width and height of a robot and its name, pixels
@@ -37,16 +37,14 @@ def sheet(robots: Sequence[str]) -> Image:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Draws the sheet; 0 if it is drawn, 2 if it cannot be."""
-    parser = argparse.ArgumentParser("python -m robots.sheet", description="Draw the collection on one sheet.")
     default = Path(__file__).parent / "collection.png"
-    parser.add_argument("-o", "--output", type=Path, metavar="FILE", default=default, help="default: collection.png")
-    options = parser.parse_args(arguments)
-    try:
-        save_picture(sheet(eurdf.collection_names()), options.output)
-    except eurdf.errors.MissingExtra as missing:
-        print(missing, file=sys.stderr)
-        return 2
-    return 0
+    return draw(
+        "sheet",
+        "Draw the collection on one sheet.",
+        default,
+        lambda file: save_picture(sheet(eurdf.collection_names()), file),
+        arguments,
+    )
 
 
 if __name__ == "__main__":

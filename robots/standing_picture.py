@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import math
 import sys
 from collections.abc import Iterator, Sequence
@@ -16,6 +15,7 @@ import eurdf
 from eurdf.viewing.picture import Color, Drawn, Image, axes_of, drawn, save_picture, seen
 from eurdf.viewing.surface import Surface
 from examples import stand
+from robots.drawing import draw
 
 _VIEW = (1.0, -0.8, 0.3)
 _PIXELS = 225, 440  # width and height of each view
@@ -85,16 +85,10 @@ def _lowest(robot: eurdf.Robot, moment: stand.Moment) -> float:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Draws the picture; 0 if it is drawn, 2 if it cannot be."""
-    parser = argparse.ArgumentParser("python -m robots.standing_picture", description="Draw robots that stand.")
     default = Path(__file__).parents[1] / "docs/pictures/stand.png"
-    parser.add_argument("-o", "--output", type=Path, metavar="FILE", default=default, help="default: %(default)s")
-    options = parser.parse_args(arguments)
-    try:
-        save_picture(picture(), options.output)
-    except eurdf.errors.MissingExtra as missing:
-        print(missing, file=sys.stderr)
-        return 2
-    return 0
+    return draw(
+        "standing_picture", "Draw robots that stand.", default, lambda file: save_picture(picture(), file), arguments
+    )
 
 
 if __name__ == "__main__":
