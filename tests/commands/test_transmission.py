@@ -100,7 +100,7 @@ def test_missing_map_exits_with_one(capsys: pytest.CaptureFixture[str]) -> None:
         (["--joints", "free_pitch", "--at", "nowhere"], "the configurations are: assembled"),
         (["--joints", "free_pitch", "--grid", "1"], "--grid 1 makes 1 poses; give 2 to 1000000"),
         (["--joints", "free_pitch", "--force"], "--force has no effect without --csv"),
-        (["--joints", "free_pitch", "--single"], "--single has no effect without --c; add it"),
+        (["--joints", "free_pitch", "--single"], "--single has no effect without --c or --ros2; add one"),
         (["--joints", "universal_rod_a", "--grid", "3"], "has no limits"),
     ],
 )

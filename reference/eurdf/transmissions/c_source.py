@@ -69,10 +69,10 @@ _SINGLE = (
 
 @dataclass(frozen=True, slots=True)
 class CSource:
-    """The transmission in C.
+    """The transmission in C, alone or in a package.
 
     Attributes:
-        files: The content of the header and of the source, by file name.
+        files: The content of each file, by its path with ``/``: of C alone, the header and the source.
     """
 
     files: Mapping[str, bytes]

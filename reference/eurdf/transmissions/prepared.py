@@ -17,6 +17,7 @@ from eurdf.transmissions.drive import STEPS, Drive, closed_pose
 from eurdf.transmissions.first_guess import Prediction, Ranges, WorkspacePoses, sign_of
 from eurdf.transmissions.motors import sides
 from eurdf.transmissions.reachable_set import grid_axes
+from eurdf.transmissions.ros2_package import ros2_package
 from eurdf.transmissions.selection import Selection
 from eurdf.transmissions.transmission import Transmission, at_one
 
@@ -172,6 +173,27 @@ class PreparedTransmission:
         with suppress(NoTransmission):
             drives.append(self._drive_of_motors)
         return c_source(drives, self._workspace, self._q, prefix, steps, substeps, real)
+
+    def ros2_package(self, prefix: str | None = None, *, real: Literal["double", "float"] = "double") -> CSource:
+        """The C in a package of ROS 2: a ``transmission_interface::Transmission`` that ros2_control's hardware loads.
+
+        The class is header-only and maps positions, velocities and efforts both ways. With it are its loader, a plugin
+        of pluginlib; the files of ament_cmake; and ``transmission.xml``, the element for the URDF.
+
+        Args:
+            prefix: As in `c_source`; the name of the package is this and ``_ros2``.
+            real: As in `c_source`.
+
+        Returns:
+            The files, by their path in the package.
+
+        Raises:
+            NoTransmission: The motors do not determine the joints, or depend on each other.
+            ValueError: As in `c_source`.
+        """
+        _ = self._drive_of_motors  # raises the error
+        source = self.c_source(prefix, real=real)
+        return ros2_package(source, self._at.robot.mechanism.name, self.joints, self.motors, real)
 
     @property
     def _drive_of_motors(self) -> Drive:
