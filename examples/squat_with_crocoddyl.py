@@ -22,7 +22,7 @@ STEP, NODES = 0.025, 40  # s; 1 s
 DEPTH = 0.2  # m
 FEET = ("left_foot", "right_foot")
 
-#: Baumgarte gains kp, 1/s², and kd, 1/s: a step leaves 0.2 of what loops and contacts are open by.
+#: Baumgarte gains kp, 1/s², and kd, 1/s: n steps reduce an opening of loops and contacts as n 0.2ⁿ.
 GAINS = ((1.0 - 0.2) / STEP) ** 2, (1.0 - 0.2**2) / STEP
 
 TORQUE, SPEED = 1e-4, 1e-4  # weights: 1/(N·m)²; 1/(rad/s)² and 1/(m/s)²

@@ -66,8 +66,8 @@ class DifferentialActionModelLoopFwdDynamics(crocoddyl.DifferentialActionModelAb
             costs: A ``crocoddyl.CostModelSum`` on ``crocoddyl.StateMultibody(robot.model)``, for as many controls as
                 the robot has motors. Its residuals are of the state, of controls, of frames, of the centre of mass and
                 of the centroidal momentum; Crocoddyl raises on those of its own contacts and actuations.
-            gains: As in `eurdf.forward_dynamics`. With kp = ((1 - p) / dt)² and kd = (1 - p²) / dt, a step of dt of
-                ``crocoddyl.IntegratedActionModelEuler`` leaves p of an opening, to first order.
+            gains: As in `eurdf.forward_dynamics`. With kp = ((1 - p) / dt)² and kd = (1 - p²) / dt, n steps of
+                ``crocoddyl.IntegratedActionModelEuler`` of dt reduce an opening as n pⁿ, with p in [0, 1).
             dissipation: As in `eurdf.forward_dynamics`. The derivative of dry friction is taken as zero.
 
         Raises:
