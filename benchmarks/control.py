@@ -181,9 +181,7 @@ def hinge_mjcf() -> Row:
     """The leg of Digit in MuJoCo."""
     cells, models = [], []
     for joints in ("hinge", "stated"):
-        export = eurdf.export("digit_leg", "mjcf", joints=joints)
-        files = {path.removeprefix("meshes/"): content for path, content in export.files.items()}
-        model = mujoco.MjModel.from_xml_string(export.main.decode(), files)
+        model = mujoco.MjModel.from_xml_string(eurdf.export("digit_leg", "mjcf", joints=joints).main.decode())
         models.append((model, mujoco.MjData(model)))
         mujoco.mj_resetDataKeyframe(*models[-1], 0)
         balls = int((model.jnt_type == mujoco.mjtJoint.mjJNT_BALL).sum())
@@ -212,11 +210,12 @@ def serial_model() -> Row:
     """The ankle of the G1 as it is trained with; see ``docs/training.md``."""
     found = training_picture.costs(21)
     (pitch, roll), (more_pitch, more_roll) = found.inertia.min(axis=0), found.inertia.max(axis=0)
+    missing = 100.0 - 100.0 * len(found.positions) / 21**2
     return (
         "armature and reach of the G1's ankle in training",
         "exact at each pose",
-        f"`ARMATURE * 2`: the exact one is {pitch:.1f} to {more_pitch:.1f} times it for pitch, {roll:.1f} to {more_roll:.1f} "
-        f"for roll; {100 - 100 * len(found.positions) / 21**2:.0f} % of the box of joint limits is out of reach",
+        f"`ARMATURE * 2`: the exact one is {pitch:.1f} to {more_pitch:.1f} times it for pitch, {roll:.1f} to "
+        f"{more_roll:.1f} for roll; {missing:.0f} % of the box of joint limits is out of reach",
     )
 
 
