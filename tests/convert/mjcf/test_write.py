@@ -123,30 +123,20 @@ def test_balls_of_the_collection_can_be_hinges(name: str) -> None:
     np.testing.assert_allclose(actuated_acceleration(there, assembly.q, u), expected, atol=1e-8 * abs(expected).max())
 
 
-def with_other_frame(mechanism: Mechanism, joint: Joint, pose: Pose) -> Mechanism:
-    """The same mechanism, with the frame of a joint's child at a pose in its old one."""
+def with_other_frame(mechanism: Mechanism, ball: Joint, pose: Pose) -> Mechanism:
+    """The same mechanism, with the frame of a ball's link at a pose in its old one."""
 
-    def moved(element: Any) -> Any:
-        mine = joint.child in (getattr(element, "body", ""), getattr(element, "name", ""))
-        return replace(element, pose=pose.inverse() * element.pose) if mine else element
+    def moved(own: Any, name: str, at: str = "pose") -> Any:
+        return replace(own, **{at: pose.inverse() * getattr(own, at)}) if own and name == ball.child else own
 
-    bodies = tuple(
-        replace(body, inertia=replace(body.inertia, pose=pose.inverse() * body.inertia.pose))
-        if body.name == joint.child and body.inertia
-        else body
-        for body in mechanism.bodies
-    )
-    joints = tuple(
-        replace(each, offset=each.offset * pose)
-        if each.name == joint.name
-        else replace(each, placement=pose.inverse() * each.placement)
-        if each.parent == joint.child
-        else each
-        for each in mechanism.joints
-    )
-    closures = tuple(replace(each, a=moved(each.a), b=moved(each.b)) for each in mechanism.closures)
+    turned = replace(ball, offset=ball.offset * pose)
     return replace(
-        mechanism, bodies=bodies, joints=joints, closures=closures, frames=tuple(map(moved, mechanism.frames))
+        mechanism,
+        bodies=tuple(replace(each, inertia=moved(each.inertia, each.name)) for each in mechanism.bodies),
+        joints=tuple(turned if each is ball else moved(each, each.parent, "placement") for each in mechanism.joints),
+        closures=tuple(
+            replace(each, a=moved(each.a, each.a.body), b=moved(each.b, each.b.body)) for each in mechanism.closures
+        ),
     )
 
 
@@ -159,8 +149,8 @@ def with_other_frame(mechanism: Mechanism, joint: Joint, pose: Pose) -> Mechanis
 def test_rods_without_ball_joints_lose_their_spin_alone(name: str, universal: int, fixed: int, seed: int) -> None:
     random, mechanism = np.random.default_rng(seed), eurdf.load(name, geometry=False).mechanism
     balls = [joint for joint in mechanism.joints if joint.type is JointType.SPHERICAL]
-    for joint in balls:
-        mechanism = with_other_frame(mechanism, joint, by_hand.some_pose(random))
+    for ball in balls:
+        mechanism = with_other_frame(mechanism, ball, by_hand.some_pose(random))
     robot = build_robot(mechanism, geometry=False)
     export = eurdf.export(robot, "mjcf", joints="hinge")
     codes = [loss.code for loss in export.losses if loss.concept == "spherical joint"]
