@@ -30,7 +30,11 @@ pytestmark = pytest.mark.slow
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
 #: The rows of the README.
 LISTED = dict(re.findall(r"^\| `(\w+\.py)`(.*)", (ROOT / "examples" / "README.md").read_text(encoding="utf-8"), re.M))
-NEEDED = {"squat_torques": ("matplotlib",), "reach_with_pink": ("pink", "daqp")}
+NEEDED = {
+    "squat_torques": ("matplotlib",),
+    "reach_with_pink": ("pink", "daqp"),
+    "squat_with_crocoddyl": ("crocoddyl",),
+}
 PAGE = (ROOT / "docs" / "toolbox.md").read_text(encoding="utf-8")
 
 needs_matplotlib = pytest.mark.skipif(
