@@ -1,7 +1,8 @@
 """Run measurements by name: ``python -m benchmarks load growth commands``.
 
 ``python -m benchmarks fuzz`` runs the mutation campaign, ``… simulators`` other simulators on exported robots,
-``… claims`` what the comparison with other formats says was seen by running, and ``… toolbox`` the published toolbox.
+``… claims`` what the comparison with other formats says was seen by running, ``… toolbox`` the published toolbox, and
+``… control`` what control and training get otherwise.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from benchmarks import (
     batch,
     commands,
     conformance,
+    control,
     derivatives,
     dynamics,
     forward_kinematics,
@@ -61,6 +63,7 @@ OTHERS: dict[str, ModuleType] = {
     "simulators": simulators,
     "claims": claims,
     "toolbox": toolbox,
+    "control": control,
 }
 
 
