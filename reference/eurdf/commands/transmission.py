@@ -43,6 +43,7 @@ _MOST_POSES = 1_000_000
         "eurdf transmission unitree_g1_ankle --joints free_pitch free_roll",
         "eurdf transmission unitree_g1_ankle --joints free_pitch free_roll --grid 41 --csv ankle.csv",
         "eurdf transmission unitree_g1_ankle --joints free_pitch free_roll --plot ankle.pdf --c controller",
+        "eurdf transmission unitree_g1_ankle --joints free_pitch free_roll --python training",
     ),
 )
 def transmission(
@@ -68,15 +69,19 @@ def transmission(
     c: str | None = option(
         "write the map as C99 without dependencies, for controllers; it starts at --at", metavar="FOLDER"
     ),
+    python: str | None = option(
+        "write the map for arrays of NumPy, JAX or torch as one Python file without dependencies, for training",
+        metavar="FOLDER",
+    ),
     single: bool = flag("let --c compute in single precision, for controllers without double"),
-    force: bool = flag("replace files of --csv, --plot and --c"),
+    force: bool = flag("replace files of --csv, --plot, --c and --python"),
 ) -> int:
     """Show the transmission."""
     import eurdf
     from eurdf.errors import EurdfError, NoTransmission
 
-    if force and not (table or plot or c):
-        raise CannotRun("--force has no effect without --csv, --plot or --c; add one of them")
+    if force and not (table or plot or c or python):
+        raise CannotRun("--force has no effect without --csv, --plot, --c or --python; add one of them")
     if single and not c:
         raise CannotRun("--single has no effect without --c; add it")
     for file in (table, plot):
@@ -95,13 +100,17 @@ def transmission(
                 found = workspace(robot, joints, q, motors=motors, grid=_FIGURE if grid is None else grid)
                 with writing():
                     written.append(os.fspath(plot_workspace(found, plot)))
-            if c:
+            if c or python:
                 from eurdf.transmissions.prepared import prepare_transmission
 
                 prepared = prepare_transmission(robot, joints, q, motors=motors)
-                source = prepared.c_source(real="float" if single else "double")
+                sources = [(c, prepared.c_source(real="float" if single else "double"))] if c else []
+                sources += [(python, prepared.python_source())] if python else []
+                for file in (os.path.join(folder, name) for folder, source in sources for name in source.files):
+                    refuse_to_replace(file, force)
                 with writing():
-                    written += [os.fspath(each) for each in source.write(c, force=force)]
+                    for folder, source in sources:
+                        written += map(os.fspath, source.write(folder, force=force))
     except NoTransmission as reason:
         write_notes([str(reason)])
         return 1
