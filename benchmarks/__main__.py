@@ -14,6 +14,7 @@ from pathlib import Path
 from types import ModuleType
 
 from benchmarks import (
+    array_map,
     assembly,
     batch,
     commands,
@@ -54,6 +55,7 @@ MEASUREMENTS: dict[str, ModuleType] = {
     "batch": batch,
     "python_cost": python_cost,
     "transmission": transmission,
+    "array_map": array_map,
     "conformance": conformance,
 }
 

@@ -7,6 +7,7 @@ import io
 import json as json_text
 import os
 from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
 from itertools import product
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -43,6 +44,7 @@ _MOST_POSES = 1_000_000
         "eurdf transmission unitree_g1_ankle --joints free_pitch free_roll",
         "eurdf transmission unitree_g1_ankle --joints free_pitch free_roll --grid 41 --csv ankle.csv",
         "eurdf transmission unitree_g1_ankle --joints free_pitch free_roll --plot ankle.pdf --c controller",
+        "eurdf transmission unitree_g1_ankle --joints free_pitch free_roll --python training",
     ),
 )
 def transmission(
@@ -71,15 +73,19 @@ def transmission(
     ros2: str | None = option(
         "write a package of ROS 2 with the map as a plugin of ros2_control; it starts at --at", metavar="FOLDER"
     ),
+    python: str | None = option(
+        "write the map for arrays of NumPy, JAX or torch as one Python file without dependencies, for training",
+        metavar="FOLDER",
+    ),
     single: bool = flag("let --c and --ros2 compute in single precision, for controllers without double"),
-    force: bool = flag("replace files of --csv, --plot, --c and --ros2"),
+    force: bool = flag("replace files of --csv, --plot, --c, --ros2 and --python"),
 ) -> int:
     """Show the transmission."""
     import eurdf
     from eurdf.errors import EurdfError, NoTransmission
 
-    if force and not (table or plot or c or ros2):
-        raise CannotRun("--force has no effect without --csv, --plot, --c or --ros2; add one of them")
+    if force and not (table or plot or c or ros2 or python):
+        raise CannotRun("--force has no effect without --csv, --plot, --c, --ros2 or --python; add one of them")
     if single and not (c or ros2):
         raise CannotRun("--single has no effect without --c or --ros2; add one of them")
     for file in (table, plot):
@@ -98,16 +104,22 @@ def transmission(
                 found = workspace(robot, joints, q, motors=motors, grid=_FIGURE if grid is None else grid)
                 with writing():
                     written.append(os.fspath(plot_workspace(found, plot)))
-            if c or ros2:
+            if c or ros2 or python:
                 from eurdf.transmissions.prepared import prepare_transmission
 
                 prepared = prepare_transmission(robot, joints, q, motors=motors)
                 real: Literal["double", "float"] = "float" if single else "double"
-                sources = [(c, prepared.c_source), (ros2, prepared.ros2_package)]
-                made = [(folder, source(real=real)) for folder, source in sources if folder]
+                makers = (
+                    (c, partial(prepared.c_source, real=real)),
+                    (ros2, partial(prepared.ros2_package, real=real)),
+                    (python, prepared.python_source),
+                )
+                sources = [(folder, make()) for folder, make in makers if folder]
+                for file in (os.path.join(folder, name) for folder, source in sources for name in source.files):
+                    refuse_to_replace(file, force)
                 with writing():
-                    for folder, source in made:
-                        written += [os.fspath(each) for each in source.write(folder, force=force)]
+                    for folder, source in sources:
+                        written += map(os.fspath, source.write(folder, force=force))
     except NoTransmission as reason:
         write_notes([str(reason)])
         return 1

@@ -8,7 +8,7 @@ from importlib.resources import files
 from string import Template
 from xml.sax.saxutils import escape, quoteattr
 
-from eurdf.transmissions.c_source import CSource
+from eurdf.transmissions.generated_source import GeneratedSource
 
 # Of each template, the path of its file in the package.
 _FILES = {
@@ -21,7 +21,9 @@ _FILES = {
 }
 
 
-def ros2_package(source: CSource, robot: str, joints: Sequence[str], motors: Sequence[str], real: str) -> CSource:
+def ros2_package(
+    source: GeneratedSource, robot: str, joints: Sequence[str], motors: Sequence[str], real: str
+) -> GeneratedSource:
     """The package; see `eurdf.transmissions.prepared.PreparedTransmission.ros2_package`.
 
     Args:
@@ -56,7 +58,7 @@ def ros2_package(source: CSource, robot: str, joints: Sequence[str], motors: Seq
     for template, path in _FILES.items():
         text = (templates / template).read_text(encoding="utf-8")
         made[path.format(package=package)] = Template(text).substitute(values).encode()
-    return CSource(made)
+    return GeneratedSource(made)
 
 
 def _literal(name: str) -> str:
