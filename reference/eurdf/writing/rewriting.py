@@ -188,7 +188,7 @@ def poses_of(mechanism: Mechanism, positions: Positions) -> dict[str, Pose]:
     return poses
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class RobotSize:
     """The size of a robot.
 
@@ -199,6 +199,9 @@ class RobotSize:
 
     nv: int
     nc: int
+
+    def __repr__(self) -> str:
+        return f"<RobotSize: nv {self.nv}, nc {self.nc}>"
 
 
 def size_of(mechanism: Mechanism) -> RobotSize:
