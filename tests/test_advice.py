@@ -140,7 +140,7 @@ def test_locking_hinge_gets_the_hint_of_a_6d_closure() -> None:
     across = HingeClosure(pin_.name, pin_.a, pin_.b, ((0.0, 0.0, 1.0), _axis_of_b_along_z_of_a(robot, pin_)))
     locked = build_robot(replace(robot.mechanism, closures=(across,)), geometry=False)
     diagnostics = Diagnostics()
-    advise_on_actuation(description, locked, eurdf.assemble(robot).q, diagnostics)
+    advise_on_actuation(description, locked, eurdf.analyze(locked, eurdf.assemble(robot).q), diagnostics)
     (found,) = diagnostics
     assert (found.code, found.pointer) == ("x-dependent-actuators", "/closures/0")
     assert f"type 3d for closure '{pin_.name}'" in (found.hint or "")
