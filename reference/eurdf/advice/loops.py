@@ -5,19 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from eurdf.advice.quaternions import closes_w_first
-from eurdf.diagnostics import Diagnostics
+from eurdf.diagnostics import Diagnostics, Fix
 from eurdf.kinematics.opening import Opening, widest
 from eurdf.linking.robot_files import ReadRobot
-from eurdf.mechanism.mechanism import Mechanism
 
 if TYPE_CHECKING:
+    from eurdf.advice.stated_pose import StatedPose
+    from eurdf.array import Vector
     from eurdf.kinematics.assembly import Assembly
     from eurdf.pinocchio.robot import Robot
 
 #: Loops that are open by no more than this, in rad and of the length of the longest loop, may be so because numbers in
 #: the files were rounded to four or five digits.
 ROUNDED = 1e-4
+
+_ASSEMBLED = "assembled"
 
 
 def closure_diagnostics(read: ReadRobot, robot: Robot, assembly: Assembly | None = None) -> Diagnostics:
@@ -29,59 +31,117 @@ def closure_diagnostics(read: ReadRobot, robot: Robot, assembly: Assembly | None
     mechanism = read.mechanism
     if read.yaml is None or not mechanism.constraints:
         return diagnostics
-    if "assembled" in mechanism.configurations:
-        from eurdf.kinematics.residual import openings_once
+    from eurdf.kinematics.residual import openings_once
 
-        openings = openings_once(robot, robot.configurations["assembled"])
+    stated = robot.configurations.get(_ASSEMBLED)
+    if stated is not None:
+        openings = openings_once(robot, stated)
         if any(opening.is_open for opening in openings):
-            diagnostics.report(
-                "assembled-open",
-                f"the loops are open at the assembled configuration: {widest(openings)}",
-                read.place_of_configuration("assembled"),
-                _hint_for_assembled(robot, openings),
-            )
+            _report_assembled(read, robot, stated, openings, diagnostics)
         return diagnostics
     from eurdf.kinematics.assembly import assemble
 
     assembly = assemble(robot) if assembly is None else assembly
-    if not assembly.closes:
-        worst = max(assembly.open, key=lambda each: each.width)
-        if assembly.reason == "not decided":
-            diagnostics.report(
-                "x-loops-not-checked",
-                "could not determine whether the loops close: the search reached its limit of 1e10 multiplications",
-                read.place_of_constraint(worst.name),
-                "state a configuration 'assembled' (version 2): then the loops are checked there",
-            )
-            return diagnostics
+    if assembly.closes:
+        return diagnostics
+    worst = max(assembly.open, key=lambda each: each.width)
+    if assembly.reason == "not decided":
         diagnostics.report(
-            "closure-cannot-close",
-            f"no configuration was found that closes the loops; least open: {widest(assembly.open)}",
+            "x-loops-not-checked",
+            "could not determine whether the loops close: the search reached its limit of 1e10 multiplications",
             read.place_of_constraint(worst.name),
-            f"{_closed_to(assembly.open)}: write the numbers of the files with more digits"
-            if _is_rounding(robot, assembly.open)
-            else _hint_for_open(mechanism, worst.name),
+            "state a configuration 'assembled' (version 2): then the loops are checked there",
         )
+        return diagnostics
+    pose = _pose(robot, robot.configuration({}))
+    rounding = _is_rounding(robot, assembly.open)
+    causes = [] if rounding else _causes(read, pose, None)
+    hint = f"{_closed_to(assembly.open)}: write the numbers of the files with more digits" if rounding else None
+    diagnostics.report(
+        "closure-cannot-close",
+        f"no configuration was found that closes the loops; least open: {widest(assembly.open)}{_unmoved(pose)}",
+        read.place_of_constraint(worst.name),
+        hint or (None if causes else _question(read, worst.name)),
+        causes,
+    )
     return diagnostics
 
 
-def _hint_for_open(mechanism: Mechanism, name: str) -> str:
-    if any(coupling.name == name for coupling in mechanism.couplings):
-        return "check the coefficients and offsets of the couplings, and that enough joints can move"
-    return "check where the frames of the closure are, and that enough joints can move"
+def _report_assembled(
+    read: ReadRobot, robot: Robot, q: Vector, openings: Sequence[Opening], diagnostics: Diagnostics
+) -> None:
+    """Report that loops are open at the assembled configuration, and why."""
+    from eurdf.advice.stated_configuration import closed_as_stated
+
+    pose = _pose(robot, q)
+    hint, unmoved = None, ""
+    if _is_rounding(robot, openings):
+        fixes = closed_as_stated(read, robot, pose, q, f"{_closed_to(openings)}: write more digits, as {{}} does")
+        if not fixes:
+            from eurdf.kinematics.assembly import assemble
+
+            best = assemble(robot).open
+            hint = f"{_closed_to(best)} at best: write the numbers of the URDF with more digits"
+    else:
+        unmoved = _unmoved(pose)
+        fixes = _causes(read, pose, _ASSEMBLED)
+        if not any(fix.edits for fix in fixes) and not unmoved:
+            fixes = [*closed_as_stated(read, robot, pose, q), *fixes]
+    worst = max(openings, key=lambda each: each.width)
+    diagnostics.report(
+        "assembled-open",
+        f"the loops are open at the assembled configuration: {widest(openings)}{unmoved}",
+        read.place_of_configuration(_ASSEMBLED),
+        hint or (None if fixes else _question(read, worst.name)),
+        fixes,
+    )
 
 
-def _hint_for_assembled(robot: Robot, openings: Sequence[Opening]) -> str:
-    if closes_w_first(robot, "assembled"):
-        return "the loops close if its quaternions are read as w, x, y, z: the order is x, y, z, w"
-    if not _is_rounding(robot, openings):
-        return "`eurdf assemble --write --force` writes a configuration that closes them, if it finds one"
-    from eurdf.kinematics.assembly import assemble
+def advise_on_neutral(read: ReadRobot, robot: Robot, diagnostics: Diagnostics) -> None:
+    """Report loops that close far from neutral, and exactly there after one slip, where no 'assembled' is stated."""
+    pose = _pose(robot, robot.configuration({}))
+    found = [fix for fix in _causes(read, pose, None) if fix.edits]
+    if found:
+        worst = max(range(len(robot.constraints)), key=pose.opening)
+        diagnostics.report(
+            "x-open-at-neutral",
+            "the loops are open where all joints are at 0, and close exactly there with one change",
+            read.place_of_constraint(robot.constraints[worst].name),
+            found[0].question,
+        )
 
-    least = assemble(robot)
-    if least.closes:
-        return f"{_closed_to(openings)}: write more digits, as `eurdf assemble --write --force` does"
-    return f"{_closed_to(least.open)} at best: write the numbers of the URDF with more digits"
+
+def _pose(robot: Robot, q: Vector) -> StatedPose:
+    from eurdf.advice.stated_pose import StatedPose
+
+    return StatedPose(robot.mechanism, robot.joint_positions(q, mimic=True))
+
+
+def _causes(read: ReadRobot, pose: StatedPose, configuration: str | None) -> list[Fix]:
+    from eurdf.advice.open_loops import proposed
+
+    return proposed(read, pose, configuration)
+
+
+def _unmoved(pose: StatedPose) -> str:
+    """For a message: a gap that no joint changes."""
+    for index, constraint in enumerate(pose.constraints):
+        gap = pose.unmoved(index)
+        length = 0.0 if gap is None else float(gap @ gap) ** 0.5
+        if gap is not None and length > ROUNDED:
+            along = (gap / length).round(6)
+            along *= 1.0 if along[along.nonzero()][0] > 0.0 else -1.0
+            axis = " ".join(f"{value + 0.0:.3g}" for value in along)
+            is_open = Opening(constraint.name, length, 0.0)
+            return f"; no configuration closes {is_open}, as no joint moves it along [{axis}] of the root link"
+    return ""
+
+
+def _question(read: ReadRobot, name: str) -> str:
+    if any(coupling.name == name for coupling in read.mechanism.couplings):
+        return "are the coefficients and offsets of the couplings right, and can enough joints move?"
+    stated = f", and does '{_ASSEMBLED}' state all joints" if _ASSEMBLED in read.mechanism.configurations else ""
+    return f"are the frames of closure '{name}' where they belong, can enough joints move{stated}?"
 
 
 def _is_rounding(robot: Robot, openings: Iterable[Opening]) -> bool:
