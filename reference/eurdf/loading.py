@@ -276,8 +276,8 @@ def _check_loops(read: ReadRobot) -> Analysis | None:
     if not given_up and not diagnostics.error_count:
         q = robot.configurations["assembled"] if assembly is None else assembly.q
         advise_on_quaternions(read, robot, diagnostics)
-        if assembly is not None:
-            advise_on_neutral(read, robot, diagnostics)
+        if assembly is not None and advise_on_neutral(read, robot, diagnostics):
+            return None  # the rest would be consequences
         advise_on_massless_links(read, robot, q, diagnostics)
         analysis = analyze(robot, q) if robot.mechanism.actuators else None
         advise_on_actuation(read, robot, analysis, diagnostics)

@@ -84,7 +84,7 @@ def test_check_reports_contradicting_couplings(tmp_path: Path) -> None:
     (found,) = eurdf.check(coupled_robot(tmp_path, f"{LATER}couplings:\n{items}actuators: [j0]\n")).diagnostics
     assert found.code == "closure-cannot-close"
     assert found.hint is not None
-    assert "check the coefficients and offsets of the couplings" in found.hint
+    assert "are the coefficients and offsets of the couplings right" in found.hint
 
 
 def test_check_reports_a_coupling_that_is_open_when_assembled(tmp_path: Path) -> None:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from eurdf.closures import CLOSED
 from eurdf.diagnostics import Diagnostics, Fix
 from eurdf.kinematics.opening import Opening, widest
 from eurdf.linking.robot_files import ReadRobot
@@ -55,7 +57,7 @@ def closure_diagnostics(read: ReadRobot, robot: Robot, assembly: Assembly | None
         return diagnostics
     pose = _pose(robot, robot.configuration({}))
     rounding = _is_rounding(robot, assembly.open)
-    causes = [] if rounding else _causes(read, pose, None)
+    causes = [] if rounding else _causes(read, robot, pose, None)
     hint = f"{_closed_to(assembly.open)}: write the numbers of the files with more digits" if rounding else None
     diagnostics.report(
         "closure-cannot-close",
@@ -84,7 +86,7 @@ def _report_assembled(
             hint = f"{_closed_to(best)} at best: write the numbers of the URDF with more digits"
     else:
         unmoved = _unmoved(pose)
-        fixes = _causes(read, pose, _ASSEMBLED)
+        fixes = _causes(read, robot, pose, _ASSEMBLED)
         if not any(fix.edits for fix in fixes) and not unmoved:
             fixes = [*closed_as_stated(read, robot, pose, q), *fixes]
     worst = max(openings, key=lambda each: each.width)
@@ -97,10 +99,21 @@ def _report_assembled(
     )
 
 
-def advise_on_neutral(read: ReadRobot, robot: Robot, diagnostics: Diagnostics) -> None:
+def advise_on_neutral(read: ReadRobot, robot: Robot, diagnostics: Diagnostics) -> bool:
     """Report loops that close far from neutral, and exactly there after one slip, where no 'assembled' is stated."""
-    pose = _pose(robot, robot.configuration({}))
-    found = [fix for fix in _causes(read, pose, None) if fix.edits]
+    from eurdf.advice.open_loops import causes_of_open_loops, proposed
+    from eurdf.kinematics.residual import openings_once
+
+    neutral = robot.configuration({})
+    openings = openings_once(robot, neutral)
+    count = sum(each.is_open for each in openings)
+    # Where no loop is closed, neutral need not be a configuration that anybody looked at.
+    all_open = count == len(openings)
+    if count < 1 + all_open or _is_rounding(robot, openings):
+        return False
+    pose = _pose(robot, neutral)
+    causes = causes_of_open_loops(read, pose, None, only_exchanged=all_open)
+    found = [fix for fix in proposed(causes, count) if fix.edits]
     if found:
         worst = max(range(len(robot.constraints)), key=pose.opening)
         diagnostics.report(
@@ -109,6 +122,7 @@ def advise_on_neutral(read: ReadRobot, robot: Robot, diagnostics: Diagnostics) -
             read.place_of_constraint(robot.constraints[worst].name),
             found[0].question,
         )
+    return bool(found)
 
 
 def _pose(robot: Robot, q: Vector) -> StatedPose:
@@ -117,23 +131,29 @@ def _pose(robot: Robot, q: Vector) -> StatedPose:
     return StatedPose(robot.mechanism, robot.joint_positions(q, mimic=True))
 
 
-def _causes(read: ReadRobot, pose: StatedPose, configuration: str | None) -> list[Fix]:
-    from eurdf.advice.open_loops import proposed
+def _causes(read: ReadRobot, robot: Robot, pose: StatedPose, configuration: str | None) -> list[Fix]:
+    """Slips without which the loops close exactly; or else about, which is no more than a question."""
+    from eurdf.advice.open_loops import causes_of_open_loops, proposed
+    from eurdf.kinematics.scale import characteristic_length
 
-    return proposed(read, pose, configuration)
+    loops = sum(not pose.opening(index) <= CLOSED for index in range(len(pose.constraints)))
+    if causes := causes_of_open_loops(read, pose, configuration):
+        return proposed(causes, loops)
+    about = causes_of_open_loops(read, pose, configuration, ROUNDED * min(1.0, characteristic_length(robot)))
+    return [replace(fix, edits=()) for fix in proposed(about, loops)]
 
 
 def _unmoved(pose: StatedPose) -> str:
     """For a message: a gap that no joint changes."""
     for index, constraint in enumerate(pose.constraints):
-        gap = pose.unmoved(index)
+        gap = None if pose.opening(index) <= CLOSED else pose.unmoved(index)
         length = 0.0 if gap is None else float(gap @ gap) ** 0.5
         if gap is not None and length > ROUNDED:
             along = (gap / length).round(6)
             along *= 1.0 if along[along.nonzero()][0] > 0.0 else -1.0
             axis = " ".join(f"{value + 0.0:.3g}" for value in along)
-            is_open = Opening(constraint.name, length, 0.0)
-            return f"; no configuration closes {is_open}, as no joint moves it along [{axis}] of the root link"
+            shown = Opening(constraint.name, length, 0.0)
+            return f"; {shown} along [{axis}] of the root link, in which no joint moves it: no configuration closes it"
     return ""
 
 

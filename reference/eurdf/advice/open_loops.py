@@ -6,7 +6,7 @@ several such changes; names, and the other side of the robot, decide between the
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from difflib import SequenceMatcher
 from itertools import combinations
@@ -30,16 +30,22 @@ from eurdf.mechanism.pose import IDENTITY
 _MOST_STEPS = 60_000
 
 
-def causes_of_open_loops(read: ReadRobot, pose: StatedPose, configuration: str | None) -> list[Slip]:
+def causes_of_open_loops(
+    read: ReadRobot, pose: StatedPose, configuration: str | None, exact: float = EXACT, only_exchanged: bool = False
+) -> list[Slip]:
     """The slips without which loops close exactly, and none opens, the likeliest first.
 
-    The pose is that of a named configuration, or the neutral one.
+    Args:
+        read: The robot as read.
+        pose: It at a configuration.
+        configuration: The name of that; None for neutral.
+        exact: By how much loops are open that close exactly, m or rad.
+        only_exchanged: Whether only exchanged frames are looked for.
     """
-    loops, steps, found = OpenLoops(read, pose, configuration), 0, []
-    kinds = other_coordinates, other_constraints, _other_frames, _exchanged_frames, other_poses
-    for slip in (slip for kind in (*kinds, _other_parents, _exchanged_origins) for slip in kind(loops)):
+    loops, steps, found = OpenLoops(read, pose, configuration, exact), 0, []
+    for slip in (slip for kind in ((_exchanged_frames,) if only_exchanged else _KINDS) for slip in kind(loops)):
         steps += 5 + sum(len(pose.chain(pose.joints[name].child)) for name in slip.change.joints)
-        if closed := pose.closed_by(slip.change, EXACT, CLOSED):
+        if closed := pose.closed_by(slip.change, exact, CLOSED):
             found.append(replace(slip, closed=closed))
         if steps > _MOST_STEPS:
             break
@@ -47,16 +53,14 @@ def causes_of_open_loops(read: ReadRobot, pose: StatedPose, configuration: str |
     return list({each.fix.edits or each.question: each for each in reversed(found)}.values())[::-1]
 
 
-def proposed(read: ReadRobot, pose: StatedPose, configuration: str | None) -> list[Fix]:
-    """The likeliest cause, for `Diagnostics.report`: with its edits where there is no doubt, else without.
+def proposed(causes: Sequence[Slip], loops: int) -> list[Fix]:
+    """The likeliest cause of so many open loops, for `Diagnostics.report`: with edits if there is no doubt.
 
     There is a second one if it may as well be that.
     """
-    causes = causes_of_open_loops(read, pose, configuration)
     if not causes:
         return []
     first, *others = causes
-    loops = sum(not pose.opening(index) <= CLOSED for index in range(len(pose.constraints)))
     doubtful = [each for each in others if not first.is_likelier_than(each)]
     if not doubtful and first.closed == loops and first.rank < GUESSED:
         return [first.fix]
@@ -79,7 +83,7 @@ def _other_frames(loops: OpenLoops) -> Iterator[Slip]:
             candidates = {link: Anchor(link, anchor.pose) for link in links} if any(anchor.pose.xyz) else {}
         points = [pose.poses[each.body].act(each.pose.xyz) for each in candidates.values()]
         place = pose.frame((index, 1 - of)).xyz
-        for name, is_there in zip(candidates, pose.reached(index, points, place, EXACT), strict=True):
+        for name, is_there in zip(candidates, pose.reached(index, np.array(points), place, loops.exact), strict=True):
             there = candidates[name]
             if not is_there or (there.body, there.pose) == (anchor.body, anchor.pose):
                 continue
@@ -93,18 +97,21 @@ def _other_frames(loops: OpenLoops) -> Iterator[Slip]:
 def _exchanged_frames(loops: OpenLoops) -> Iterator[Slip]:
     """Frames of two closures that are exchanged.
 
-    To exchange the other two gives the same pairs, under the other names: that whose names fit better is tried.
+    To exchange the other two gives the same pairs, under the other names: that whose names fit better is taken.
     """
     for one, other in combinations(dict.fromkeys(index for index, _ in loops.sides), 2):
         for crossed in (0, 1):
-            ways = [_exchange(loops, (one, of), (other, of ^ crossed)) for of in (1, 0)]
-            yield from sorted(filter(None, ways), key=lambda way: -way.score)[:1]
+            ways = []
+            for of in (1, 0):
+                sides = (one, of), (other, of ^ crossed)
+                a, b = (loops.pose.constraints[index].anchors[k] for index, k in sides)
+                change = Change(anchors=dict(zip(sides, (b, a), strict=True)))
+                if loops.pose.closed_by(change, loops.exact, CLOSED):
+                    ways.append(_exchange(loops, change, sides))
+            yield from sorted(ways, key=lambda way: -way.score)[:1]
 
 
-def _exchange(loops: OpenLoops, *sides: Side) -> Slip | None:
-    a, b = (loops.pose.constraints[index].anchors[of] for index, of in sides)
-    if (a.body, a.pose) == (b.body, b.pose):
-        return None
+def _exchange(loops: OpenLoops, change: Change, sides: Sequence[Side]) -> Slip:
     entries = [loops.entry(index) for index, _ in sides]
     frames = [entry.frames[of] for entry, (_, of) in zip(entries, sides, strict=True)]
     score = 0.0
@@ -112,7 +119,6 @@ def _exchange(loops: OpenLoops, *sides: Side) -> Slip | None:
         score += _fit(frame.target, entry.name) + _fit(frame.target, entry.frames[1 - of].target)
     shown = [f"frame {'AB'[of]} of '{entry.name}'" for entry, (_, of) in zip(entries, sides, strict=True)]
     tokens = [loops.in_yaml(*frame.pointer) for frame in frames]
-    change = Change(anchors=dict(zip(sides, (b, a), strict=True)))
     return exchanged(SURE, change, " and ".join(shown), [tokens], score)
 
 
@@ -129,8 +135,7 @@ def _other_parents(loops: OpenLoops) -> Iterator[Slip]:
     for joint, sides in _of_urdf(loops):
         index, of = sides[0]
         local = pose.poses[joint.parent].inverse() * pose.frame((index, of))
-        points = [pose.poses[link].act(local.xyz) for link in links]
-        reached = pose.reached(index, points, pose.frame((index, 1 - of)).xyz, EXACT)
+        reached = pose.reached(index, pose.points(links, local.xyz), pose.frame((index, 1 - of)).xyz, loops.exact)
         for link in np.array(links)[reached].tolist():
             if link == joint.parent or joint.name in pose.chain(link):
                 continue
@@ -165,3 +170,14 @@ def _of_urdf(loops: OpenLoops) -> Iterator[tuple[UrdfJoint, list[Side]]]:
         joint, made = loops.read.urdf.joints.get(name), loops.pose.joints[name]
         if joint is not None and (made.parent, made.placement) == (joint.parent, joint.placement):
             yield joint, sides
+
+
+_KINDS = (
+    other_coordinates,
+    other_constraints,
+    _other_frames,
+    _exchanged_frames,
+    other_poses,
+    _other_parents,
+    _exchanged_origins,
+)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from eurdf.advice.quaternions import w_first
-from eurdf.advice.slip import AS_THERE, EXACT, GUESSED, LIKELY, POSSIBLE, RARE, SURE, OpenLoops, Slip, Token, written
+from eurdf.advice.slip import AS_THERE, GUESSED, LIKELY, POSSIBLE, RARE, SURE, OpenLoops, Slip, Token, written
 from eurdf.advice.spelling import OF_ANGLE, OF_LENGTH, in_unit, negated, other_side, shortest, with_one_slip
 from eurdf.advice.stated_pose import Change, Side, meets
 from eurdf.format.closure_model import NamedFrame, PoseEntry
@@ -76,7 +76,9 @@ def _other_positions(loops: OpenLoops, placed: _Placed, expected: Sequence[float
     def tried(rank: int, texts: Sequence[str], note: str = "") -> Slip:
         x, y, z = map(float, texts)
         if expected is not None:  # a position that is as there is right, and one that becomes so is likely
-            rank += AS_THERE * (math.dist(xyz, expected) <= EXACT) - (math.dist((x, y, z), expected) <= EXACT)
+            rank += AS_THERE * (math.dist(xyz, expected) <= loops.exact) - (
+                math.dist((x, y, z), expected) <= loops.exact
+            )
         change = placed.moved(loops, Pose((x, y, z), placed.pose.quaternion, placed.pose.rpy))
         what, edits = f"the position of {placed.what}", zip(placed.xyz, texts, strict=True)
         # The shorter text is that with fewer changes.
@@ -96,8 +98,8 @@ def _other_positions(loops: OpenLoops, placed: _Placed, expected: Sequence[float
         yield tried(LIKELY, [shortest(each, 1e-9) for each in expected])
     for side, k in product(placed.sides, range(3)):
         for step in _steps_along(loops, side, parent.rotate(AXES[k])):
-            found = _slip(old[k], xyz[k] + step, OF_LENGTH)
-            if found is None and expected is not None and abs(expected[k] - xyz[k] - step) <= EXACT:
+            found = _slip(old[k], xyz[k] + step, OF_LENGTH, loops.exact)
+            if found is None and expected is not None and abs(expected[k] - xyz[k] - step) <= loops.exact:
                 found = POSSIBLE, shortest(expected[k], 1e-9)
             if found is not None:
                 yield tried(found[0], [*old[:k], found[1], *old[k + 1 :]])
@@ -191,7 +193,7 @@ def _signs(loops: OpenLoops) -> Sequence[float]:
     for name, joint in joints.items():
         if (there := joints.get(other_side(name) or "")) is not None:
             for k, (one, other) in enumerate(zip(joint.placement.xyz, there.placement.xyz, strict=True)):
-                if one and abs(abs(one) - abs(other)) <= EXACT:
+                if one and abs(abs(one) - abs(other)) <= loops.exact:
                     votes[k] += math.copysign(1.0, one * other)
     return [math.copysign(1.0, vote) for vote in votes]
 
@@ -226,7 +228,7 @@ def other_coordinates(loops: OpenLoops) -> Iterator[Slip]:
         units = OF_LENGTH if joint.type.slides else OF_ANGLE
         closing = [-value, *(float(in_unit(token.text, factor)) for factor in units.values())]
         for other in (*closing, *(value + step for step in _turns_of(loops, joint))):
-            rank, text = _slip(token.text, other, units) or (GUESSED, shortest(other, EXACT / 10.0))
+            rank, text = _slip(token.text, other, units, loops.exact) or (GUESSED, shortest(other, loops.exact / 10.0))
             change, what = _turned(loops, joint.name, float(text)), f"joint '{joint.name}' in configuration '{name}'"
             yield written(rank, change, what, text, token.text, [(token, text)])
 
@@ -255,29 +257,38 @@ def _turns_of(loops: OpenLoops, joint: Joint) -> Iterator[float]:
 
 
 def other_constraints(loops: OpenLoops) -> Iterator[Slip]:
-    """Other numbers of the closures that are open, such as the length of a rod."""
+    """Other numbers of the closures that are open, such as the length of a rod, or another type."""
     for index in loops.indices:
         closure: Any = loops.pose.constraints[index]
-        numbers = closure.stated() if closure.anchors else {}
+        if not closure.anchors:
+            continue
+        pointer, numbers, freer = loops.entry(index).pointer, closure.stated(), closure.with_orientation_free()
+        if freer is not closure:
+            type_ = loops.in_yaml(*(("type", pointer[-1]) if pointer[0] == "closed_loop" else (*pointer, "type")))
+            what, change = f"the type of closure '{closure.name}'", Change(constraints={index: freer})
+            yield written(RARE, change, what, freer.type, closure.type, [(type_, freer.type)])
         for key, sign in product((key for key, value in numbers.items() if isinstance(value, float)), (1.0, -1.0)):
-            token = loops.in_yaml(*loops.entry(index).pointer, key)
+            token = loops.in_yaml(*pointer, key)
             other = numbers[key] + sign * loops.pose.opening(index)
             if token is not None and other > 0.0:
-                rank, text = _slip(token.text, other, OF_LENGTH) or (GUESSED, shortest(other, EXACT / 10.0))
+                rank, text = _slip(token.text, other, OF_LENGTH, loops.exact) or (
+                    GUESSED,
+                    shortest(other, loops.exact / 10.0),
+                )
                 change = Change(constraints={index: replace(closure, **{key: float(text)})})
                 what = f"'{key}' of closure '{closure.name}'"
                 yield written(rank, change, what, text, token.text, [(token, text)])
 
 
-def _slip(token: str, value: float, units: Mapping[str, Decimal]) -> tuple[int, str] | None:
+def _slip(token: str, value: float, units: Mapping[str, Decimal], exact: float) -> tuple[int, str] | None:
     """How likely a slip a number is in place of what closes the loops, and the latter; None if it is none."""
     number = float(token)
-    if number and abs(number + value) <= EXACT:
+    if number and abs(number + value) <= exact:
         return POSSIBLE, negated(token)
     if not number:
-        return GUESSED, shortest(value, EXACT / 2.0)
+        return GUESSED, shortest(value, exact / 2.0)
     for factor in units.values() if abs(number) >= _LEAST_IN_UNIT else ():
-        if abs(float(in_unit(token, factor)) - value) <= EXACT:
+        if abs(float(in_unit(token, factor)) - value) <= exact:
             return SURE, in_unit(token, factor)
-    text = with_one_slip(token, value, EXACT)
+    text = with_one_slip(token, value, exact)
     return None if text is None else (RARE, text)

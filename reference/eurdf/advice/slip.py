@@ -105,8 +105,10 @@ def written(
     note: str = "",
 ) -> Slip:
     """That something is written in place of something else."""
-    summary = f"write {new} in place of {old} as {what}: the loops then close"
-    return Slip(rank, change, summary, f"is {what} {new}, not {old}{note}? The loops then close.", tuple(edits), score)
+    summary = f"write {new} in place of {old}{note} as {what}: the loops then close"
+    return Slip(
+        rank, change, summary, f"the loops close if {what} is {new}, not {old}{note}: is it?", tuple(edits), score
+    )
 
 
 def exchanged(
@@ -114,7 +116,7 @@ def exchanged(
 ) -> Slip:
     """That two things are in the place of each other; pairs are the same parts of both."""
     edits = [(to, "" if of is None else of.text) for one, other in pairs for to, of in ((one, other), (other, one))]
-    question = f"are {what} exchanged? The loops close with each in the place of the other."
+    question = f"the loops close if {what} are exchanged: are they?"
     return Slip(rank, change, f"exchange {what}: the loops then close", question, edits, score)
 
 
@@ -126,6 +128,7 @@ class OpenLoops:
         read: The robot as read.
         pose: It at the configuration.
         configuration: Its name; None for neutral.
+        exact: By how much loops are open that close exactly, m or rad.
         indices: The numbers of the open constraints, of many only the first.
         sides: The frames of the closures among them.
         joints: The joints that move these, with the frames that each moves.
@@ -134,6 +137,7 @@ class OpenLoops:
     read: ReadRobot
     pose: StatedPose
     configuration: str | None
+    exact: float
     indices: list[int] = field(init=False)
     sides: list[Side] = field(init=False)
     joints: dict[str, list[Side]] = field(init=False)
@@ -158,7 +162,7 @@ class OpenLoops:
         document = self.read.description.document
         data: Any = document.data
         for step in pointer:
-            if isinstance(data, dict) and step not in data:
+            if step not in (data if isinstance(data, dict) else range(len(data)) if isinstance(data, list) else ()):
                 return None
             data = data[step]
         start, end = document.span(pointer)

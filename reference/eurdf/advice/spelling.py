@@ -14,7 +14,7 @@ OF_ANGLE = {"degrees": Decimal(repr(math.pi / 180.0))}
 _DECIMALS = 12
 
 _DIGITS = ("", ".", *"0123456789")
-_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)")
+_NUMBER = re.compile(r"-?(0|[1-9]\d*)(\.\d+)?")
 
 _SIDE = re.compile(r"(?<![a-z])(left|right|l|r)(?![a-z])", re.IGNORECASE)
 _OTHER = {"left": "right", "right": "left", "l": "r", "r": "l"}
@@ -57,7 +57,7 @@ def negated(token: str) -> str:
 def with_one_slip(token: str, value: float, tolerance: float) -> str | None:
     """The number as it is written, but for one digit or two that are exchanged, so that it has a value; else None.
 
-    Numbers with a single digit say nothing of slips.
+    Two numbers with a single digit each say nothing of slips.
     """
     texts = [
         token[:i] + digit + token[i + more :] for i in range(len(token) + 1) for digit in _DIGITS for more in (0, 1)
@@ -65,7 +65,7 @@ def with_one_slip(token: str, value: float, tolerance: float) -> str | None:
     texts += [token[:i] + token[i + 1] + token[i] + token[i + 2 :] for i in range(len(token) - 1)]
     near = [(abs(float(text) - value), text) for text in texts if _NUMBER.fullmatch(text) and text != token]
     off, best = min(near, default=(math.inf, ""))
-    return best if off <= tolerance and all(_significant(text) > 1 for text in (token, best)) else None
+    return best if off <= tolerance and max(map(_significant, (token, best))) > 1 else None
 
 
 def _significant(token: str) -> int:

@@ -52,13 +52,14 @@ def closed_as_stated(
         if diagnostics.errors:
             return []
         kept = f" with {quoted(sorted(in_loops))} as stated" if in_loops else ""
-        what = summary or f"state {quoted(sorted(moved))} too, as {{}} does: the loops then close{kept}"
+        missing = sorted(_moved(robot, q, found.q, CLOSED) - set(stated))
+        what = summary or f"state {quoted(missing)} too, as {{}} does: the loops then close{kept}"
         source = read.description.document.source
         start = _common(source.text, text)
         end = _common(source.text[:start:-1], text[:start:-1])
         edit = source.edit(start, len(source.text) - end, text[start : len(text) - end])
         forgotten = moved or summary
-        question = f"are the coordinates approximate? {_COMMAND} then closes the loops{kept}."
+        question = f"{_COMMAND} closes the loops{kept}: are the coordinates approximate?"
         return [Fix(what.format(_COMMAND), (edit,) if forgotten else (), question)]
     return []
 
@@ -69,14 +70,14 @@ def _common(one: str, other: str) -> int:
     return next((index for index, (a, b) in pairs if a != b), min(len(one), len(other)))
 
 
-def _moved(robot: Robot, q: Vector, to: Vector) -> set[str]:
-    """The joints that are far from where they were."""
+def _moved(robot: Robot, q: Vector, to: Vector, share: float = 1.0) -> set[str]:
+    """The joints that are not near where they were, to a share of what counts as near."""
     before, after = robot.joint_positions(q), robot.joint_positions(to)
     return {
         name
         for name, values in before.items()
         if any(
-            not abs(one - other) <= _NEAR.get(coordinate, _NEAR_QUATERNION)
+            not abs(one - other) <= share * _NEAR.get(coordinate, _NEAR_QUATERNION)
             for coordinate, one, other in zip(_coordinates(robot, name), values, after[name], strict=True)
         )
     }

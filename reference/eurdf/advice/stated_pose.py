@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from eurdf.array import Mask, Vector
+from eurdf.array import Mask, Matrix, Vector
 from eurdf.closures.kind import ClosureKind, PoseArrays
 from eurdf.closures.se3 import rotation_of
 from eurdf.mechanism.body import WORLD, Anchor
@@ -64,6 +64,7 @@ class StatedPose:
         self.poses = {WORLD: IDENTITY, mechanism.bodies[0].name: IDENTITY}
         for joint in mechanism.joints:  # parents come first
             self.poses[joint.child] = self.poses[joint.parent] * joint.placement * self._moved[joint.name]
+        self._turned: dict[str, Matrix] | None = None
         self._chains: dict[str, tuple[str, ...]] = {}
         self._base = [self._opening(index, None) for index in range(len(self.constraints))]
         self.of_joint: dict[str, list[int]] = {}
@@ -169,12 +170,17 @@ class StatedPose:
             count += is_closed and not was_closed
         return count
 
-    def reached(self, index: int, points: Sequence[Vector3], other: Vector3, tolerance: float) -> Mask:
-        """Which points, in the root, m, can be the origin of one frame of a closure if that of the other is at a place.
+    def points(self, bodies: Sequence[str], local: Vector3) -> Matrix:
+        """A point that each of some bodies carries at the same place in its frame, in the root: (n, 3), m."""
+        if self._turned is None:
+            R = rotation_of(np.array([pose.quaternion for pose in self.poses.values()]))
+            self._turned = dict(zip(self.poses, R, strict=True))
+        R = np.array([self._turned[body] for body in bodies])
+        return np.asarray(R @ np.array(local) + np.array([self.poses[body].xyz for body in bodies]))
 
-        The mask has the shape (number of points,).
-        """
-        constraint, p = self.constraints[index], np.array(points).reshape(-1, 3) - np.array(other)
+    def reached(self, index: int, points: Matrix, other: Vector3, tolerance: float) -> Mask:
+        """Which points (n, 3), in the root, m, the origin of a frame of a closure can be at, by that of the other."""
+        constraint, p = self.constraints[index], points.reshape(-1, 3) - np.array(other)
         if meets(constraint):
             return np.asarray(np.linalg.norm(p, axis=1) <= tolerance)
         assert isinstance(constraint, ClosureKind)
