@@ -57,7 +57,7 @@ def closure_diagnostics(read: ReadRobot, robot: Robot, assembly: Assembly | None
         return diagnostics
     pose = _pose(robot, robot.configuration({}))
     rounding = _is_rounding(robot, assembly.open)
-    causes = [] if rounding else _causes(read, robot, pose, None)
+    causes = [] if rounding else _causes(read, robot, pose, None)[0]
     hint = f"{_closed_to(assembly.open)}: write the numbers of the files with more digits" if rounding else None
     diagnostics.report(
         "closure-cannot-close",
@@ -86,9 +86,10 @@ def _report_assembled(
             hint = f"{_closed_to(best)} at best: write the numbers of the URDF with more digits"
     else:
         unmoved = _unmoved(pose)
-        fixes = _causes(read, robot, pose, _ASSEMBLED)
+        fixes, doubtful = _causes(read, robot, pose, _ASSEMBLED)
         if not any(fix.edits for fix in fixes) and not unmoved:
-            fixes = [*closed_as_stated(read, robot, pose, q), *fixes]
+            found = closed_as_stated(read, robot, pose, q)
+            fixes = [*fixes[:1], *(replace(fix, edits=()) for fix in found)] if doubtful else [*found, *fixes]
     worst = max(openings, key=lambda each: each.width)
     diagnostics.report(
         "assembled-open",
@@ -131,16 +132,20 @@ def _pose(robot: Robot, q: Vector) -> StatedPose:
     return StatedPose(robot.mechanism, robot.joint_positions(q, mimic=True))
 
 
-def _causes(read: ReadRobot, robot: Robot, pose: StatedPose, configuration: str | None) -> list[Fix]:
-    """Slips without which the loops close exactly; or else about, which is no more than a question."""
+def _causes(read: ReadRobot, robot: Robot, pose: StatedPose, configuration: str | None) -> tuple[list[Fix], bool]:
+    """Slips without which the loops close exactly; or else about, which is no more than a question.
+
+    And whether another slip than one of stated coordinates is among those that close them exactly.
+    """
     from eurdf.advice.open_loops import causes_of_open_loops, proposed
+    from eurdf.advice.slip import GUESSED
     from eurdf.kinematics.scale import characteristic_length
 
     loops = sum(not pose.opening(index) <= CLOSED for index in range(len(pose.constraints)))
     if causes := causes_of_open_loops(read, pose, configuration):
-        return proposed(causes, loops)
+        return proposed(causes, loops), any(each.rank < GUESSED or not each.change.coordinates for each in causes)
     about = causes_of_open_loops(read, pose, configuration, ROUNDED * min(1.0, characteristic_length(robot)))
-    return [replace(fix, edits=()) for fix in proposed(about, loops)]
+    return [replace(fix, edits=()) for fix in proposed(about, loops)], False
 
 
 def _unmoved(pose: StatedPose) -> str:

@@ -24,7 +24,7 @@ _LEAST_IN_UNIT = 1.0
 
 
 @dataclass(frozen=True, slots=True)
-class _Placed:
+class _WrittenPose:
     """A pose that a file states.
 
     Attributes:
@@ -60,7 +60,7 @@ class _Placed:
 def other_poses(loops: OpenLoops) -> Iterator[Slip]:
     """Other poses of the joints of open loops, and of the frames of their closures."""
     signs = _signs(loops)
-    for placed in _placed(loops):
+    for placed in _written_poses(loops):
         expected = None
         if placed.there is not None:
             expected = tuple(s * value + 0.0 for s, value in zip(signs, placed.there[0], strict=True))
@@ -70,7 +70,7 @@ def other_poses(loops: OpenLoops) -> Iterator[Slip]:
             yield from _other_turns(loops, placed, placed.rpy)
 
 
-def _other_positions(loops: OpenLoops, placed: _Placed, expected: Sequence[float] | None) -> Iterator[Slip]:
+def _other_positions(loops: OpenLoops, placed: _WrittenPose, expected: Sequence[float] | None) -> Iterator[Slip]:
     old, xyz = [token.text for token in placed.xyz], placed.pose.xyz
 
     def tried(rank: int, texts: Sequence[str], note: str = "") -> Slip:
@@ -105,7 +105,7 @@ def _other_positions(loops: OpenLoops, placed: _Placed, expected: Sequence[float
                 yield tried(found[0], [*old[:k], found[1], *old[k + 1 :]])
 
 
-def _other_turns(loops: OpenLoops, placed: _Placed, rpy: Vector3) -> Iterator[Slip]:
+def _other_turns(loops: OpenLoops, placed: _WrittenPose, rpy: Vector3) -> Iterator[Slip]:
     options = [(SURE, tuple(map(math.radians, rpy)), " (degrees)")] if any(rpy) else []
     for k in range(3):
         others = {rpy[k] + quarters * math.pi / 2: GUESSED for quarters in (-1, 1, 2)}
@@ -139,7 +139,7 @@ def _steps_along(loops: OpenLoops, side: Side, axis: Vector3) -> Iterator[float]
         yield from (along + math.sqrt(square), along - math.sqrt(square))
 
 
-def _placed(loops: OpenLoops) -> Iterator[_Placed]:
+def _written_poses(loops: OpenLoops) -> Iterator[_WrittenPose]:
     """The poses that the files state of joints of open loops, and of frames of their closures."""
     urdf, description = loops.read.urdf, loops.read.description
     for name, sides in loops.joints.items():
@@ -148,7 +148,7 @@ def _placed(loops: OpenLoops) -> Iterator[_Placed]:
             continue
         image = urdf.joints.get(other_side(name) or "")
         origin, turned = (loops.in_urdf(name, "origin", attribute) for attribute in ("xyz", "rpy"))
-        yield _Placed(
+        yield _WrittenPose(
             f"joint '{name}'",
             joint.parent,
             joint.placement,
@@ -179,7 +179,7 @@ def _placed(loops: OpenLoops) -> Iterator[_Placed]:
         numbers = [[loops.in_yaml(*entry.pointer, key, k) for k in range(3)] for key in ("xyz", "rpy")]
         xyz, turns = ([token for token in tokens if token is not None] for tokens in numbers)
         there = other and (other.xyz, other.rpy)
-        yield _Placed(what, anchor.body, anchor.pose, entry.rpy, there, sides, xyz, turns)
+        yield _WrittenPose(what, anchor.body, anchor.pose, entry.rpy, there, sides, xyz, turns)
 
 
 def _angles(pose: Pose) -> Vector3 | None:

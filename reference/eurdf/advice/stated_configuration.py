@@ -25,9 +25,9 @@ def closed_as_stated(
 ) -> list[Fix]:
     """The closed configuration that `eurdf assemble` finds from the open one, if it keeps what the file states.
 
-    All that is stated is held, or else what is actuated of it, or else nothing; what is not held stays near. Of the
-    joints that are not stated one may move far; all may if of the open loops only motors are stated, and away from 0.
-    What moves a little where nothing is rounded may hide an error in a length: it is no more than a question.
+    All that is stated is held, or else what is actuated of it, or else nothing; what is not held stays near. If joints
+    of the open loops are stated away from 0, one that is not may move far, and all if only motors are stated. What
+    moves a little where nothing is rounded may hide an error in a length: it is no more than a question.
 
     Args:
         read: The robot as read, with a configuration ``assembled``.
@@ -39,11 +39,13 @@ def closed_as_stated(
     stated = read.mechanism.configurations[NAME]
     open_ = [index for index, each in enumerate(pose.constraints) if each.anchors and not pose.opening(index) <= CLOSED]
     in_loops = {name for index in open_ for names in pose.between(index) for name in names} & set(stated)
-    only_motors = in_loops <= set(robot.actuation.joints) and any(any(stated[name]) for name in in_loops)
+    only_motors = in_loops <= set(robot.actuation.joints)
+    is_away = any(abs(value) > CLOSED for name in in_loops for value in stated[name][:3])
     for held in held_in_turn(robot, stated):
         found = assemble(robot, q, hold=held, restarts=0)
         moved = _moved(robot, q, found.q)
-        if not found.closes or moved & set(stated) or (len(moved) > 1 and not only_motors):
+        few = not moved or (is_away and (only_motors or len(moved) == 1))
+        if not found.closes or moved & set(stated) or not few:
             continue
         try:
             text, diagnostics = with_closed_configuration(read, robot, found.q)
