@@ -56,15 +56,18 @@ def closure_diagnostics(read: ReadRobot, robot: Robot, assembly: Assembly | None
         )
         return diagnostics
     pose = _pose(robot, robot.configuration({}))
-    rounding = _is_rounding(robot, assembly.open)
-    causes = [] if rounding else _causes(read, robot, pose, None)[0]
-    hint = f"{_closed_to(assembly.open)}: write the numbers of the files with more digits" if rounding else None
+    hint: str | None
+    fixes: Sequence[Fix] = ()
+    if _is_rounding(robot, assembly.open):
+        hint = f"{_closed_to(assembly.open)}: write the numbers of the files with more digits"
+    else:
+        hint, fixes = _asked(read, worst.name, _causes(read, robot, pose, None)[0])
     diagnostics.report(
         "closure-cannot-close",
         f"no configuration was found that closes the loops; least open: {widest(assembly.open)}{_unmoved(pose)}",
         read.place_of_constraint(worst.name),
-        hint or (None if causes else _question(read, worst.name)),
-        causes,
+        hint,
+        fixes,
     )
     return diagnostics
 
@@ -74,28 +77,28 @@ def _report_assembled(
 ) -> None:
     """Report that loops are open at the assembled configuration, and why."""
     from eurdf.advice.stated_configuration import closed_as_stated
+    from eurdf.kinematics.assembly import assemble
 
-    pose = _pose(robot, q)
-    hint, unmoved = None, ""
+    pose, unmoved = _pose(robot, q), ""
+    hint: str | None
     if _is_rounding(robot, openings):
-        fixes = closed_as_stated(read, robot, pose, q, f"{_closed_to(openings)}: write more digits, as {{}} does")
-        if not fixes:
-            from eurdf.kinematics.assembly import assemble
-
-            best = assemble(robot).open
-            hint = f"{_closed_to(best)} at best: write the numbers of the URDF with more digits"
+        more = f"{_closed_to(openings)}: write more digits, as {{}} does"
+        fixes, least = closed_as_stated(read, robot, pose, q, more), assemble(robot)
+        hint = more.format("`eurdf assemble --write --force`")
+        if not least.closes:
+            hint = f"{_closed_to(least.open)} at best: write the numbers of the URDF with more digits"
     else:
         unmoved = _unmoved(pose)
-        fixes, doubtful = _causes(read, robot, pose, _ASSEMBLED)
-        if not any(fix.edits for fix in fixes) and not unmoved:
+        causes, doubtful = _causes(read, robot, pose, _ASSEMBLED)
+        if not unmoved and not any(fix.edits for fix in causes):
             found = closed_as_stated(read, robot, pose, q)
-            fixes = [*fixes[:1], *(replace(fix, edits=()) for fix in found)] if doubtful else [*found, *fixes]
-    worst = max(openings, key=lambda each: each.width)
+            causes = [*causes[:1], *(replace(fix, edits=()) for fix in found)] if doubtful else [*found, *causes]
+        hint, fixes = _asked(read, max(openings, key=lambda each: each.width).name, causes)
     diagnostics.report(
         "assembled-open",
         f"the loops are open at the assembled configuration: {widest(openings)}{unmoved}",
         read.place_of_configuration(_ASSEMBLED),
-        hint or (None if fixes else _question(read, worst.name)),
+        hint,
         fixes,
     )
 
@@ -135,7 +138,7 @@ def _pose(robot: Robot, q: Vector) -> StatedPose:
 def _causes(read: ReadRobot, robot: Robot, pose: StatedPose, configuration: str | None) -> tuple[list[Fix], bool]:
     """Slips without which the loops close exactly; or else about, which is no more than a question.
 
-    And whether another slip than one of stated coordinates is among those that close them exactly.
+    And whether there may be a slip: to guess a parent or a frame is always possible where one joint should be at 0.
     """
     from eurdf.advice.open_loops import causes_of_open_loops, proposed
     from eurdf.advice.slip import GUESSED
@@ -143,7 +146,7 @@ def _causes(read: ReadRobot, robot: Robot, pose: StatedPose, configuration: str 
 
     loops = sum(not pose.opening(index) <= CLOSED for index in range(len(pose.constraints)))
     if causes := causes_of_open_loops(read, pose, configuration):
-        return proposed(causes, loops), any(each.rank < GUESSED or not each.change.coordinates for each in causes)
+        return proposed(causes, loops), any(each.rank < GUESSED or each.change.placements for each in causes)
     about = causes_of_open_loops(read, pose, configuration, ROUNDED * min(1.0, characteristic_length(robot)))
     return [replace(fix, edits=()) for fix in proposed(about, loops)], False
 
@@ -162,11 +165,16 @@ def _unmoved(pose: StatedPose) -> str:
     return ""
 
 
-def _question(read: ReadRobot, name: str) -> str:
+def _asked(read: ReadRobot, name: str, causes: Sequence[Fix]) -> tuple[str | None, list[Fix]]:
+    """The causes to try; or the hint that asks about them, or about the constraint of a name where there are none."""
+    if certain := [fix for fix in causes if fix.edits]:
+        return None, certain
+    if causes:
+        return " ".join(fix.question for fix in causes[:2] if fix.question), []
     if any(coupling.name == name for coupling in read.mechanism.couplings):
-        return "are the coefficients and offsets of the couplings right, and can enough joints move?"
+        return "are the coefficients and offsets of the couplings right, and can enough joints move?", []
     stated = f", and does '{_ASSEMBLED}' state all joints" if _ASSEMBLED in read.mechanism.configurations else ""
-    return f"are the frames of closure '{name}' where they belong, can enough joints move{stated}?"
+    return f"are the frames of closure '{name}' where they belong, can enough joints move{stated}?", []
 
 
 def _is_rounding(robot: Robot, openings: Iterable[Opening]) -> bool:

@@ -103,12 +103,11 @@ class Diagnostic:
     def tried(self, is_right: Callable[[Fix], bool]) -> Diagnostic:
         """The same diagnostic without proposals, with the first one that a trial finds right as its fix and hint.
 
-        One without edits is only asked about. If none is right, the hint stays, or asks about the first proposals that
-        have a question.
+        If none is right, the hint stays, or asks about the first proposals that have a question.
         """
         if not self.proposals:
             return self
-        fix = next((each for each in self.proposals if each.edits and is_right(each)), None)
+        fix = next(filter(is_right, self.proposals), None)
         asked = [proposal.question for proposal in self.proposals if proposal.question][:ASKED]
         hint = fix.summary if fix else self.hint or (" ".join(asked) or None)
         return Diagnostic(self.code, self.message, self._place, hint, fix=fix)
