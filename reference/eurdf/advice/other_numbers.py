@@ -16,6 +16,7 @@ from eurdf.advice.slip import AS_THERE, GUESSED, LIKELY, POSSIBLE, RARE, SURE, O
 from eurdf.advice.spelling import OF_ANGLE, OF_LENGTH, in_unit, negated, other_side, shortest, with_one_slip
 from eurdf.advice.stated_pose import Change, Side, meets
 from eurdf.format.closure_model import NamedFrame, PoseEntry
+from eurdf.mechanism.constraint import Coupling
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.pose import AXES, IDENTITY, ORIGIN, Pose, Vector3
 
@@ -64,7 +65,7 @@ def other_poses(loops: OpenLoops) -> Iterator[Slip]:
         expected = None
         if placed.there is not None:
             expected = tuple(s * value + 0.0 for s, value in zip(signs, placed.there[0], strict=True))
-        if len(placed.xyz) == 3:
+        if placed.xyz:
             yield from _other_positions(loops, placed, expected)
         if placed.rpy is not None:
             yield from _other_turns(loops, placed, placed.rpy)
@@ -76,9 +77,8 @@ def _other_positions(loops: OpenLoops, placed: _WrittenPose, expected: Sequence[
     def tried(rank: int, texts: Sequence[str], note: str = "") -> Slip:
         x, y, z = map(float, texts)
         if expected is not None:  # a position that is as there is right, and one that becomes so is likely
-            rank += AS_THERE * (math.dist(xyz, expected) <= loops.exact) - (
-                math.dist((x, y, z), expected) <= loops.exact
-            )
+            was, would_be = (math.dist(each, expected) <= loops.exact for each in (xyz, (x, y, z)))
+            rank += AS_THERE * was - would_be
         change = placed.moved(loops, Pose((x, y, z), placed.pose.quaternion, placed.pose.rpy))
         what, edits = f"the position of {placed.what}", zip(placed.xyz, texts, strict=True)
         # The shorter text is that with fewer changes.
@@ -155,8 +155,8 @@ def _written_poses(loops: OpenLoops) -> Iterator[_WrittenPose]:
             _angles(joint.placement),
             image and (image.placement.xyz, _angles(image.placement)),
             sides,
-            origin.parts() if origin else (),
-            turned.parts() if turned else (),
+            _numbers(origin.parts() if origin else ()),
+            _numbers(turned.parts() if turned else ()),
             name,
         )
     added = {entry.name: entry for entry in description.frames}
@@ -176,10 +176,15 @@ def _written_poses(loops: OpenLoops) -> Iterator[_WrittenPose]:
     for what, entry, other, sides in stated.values():
         index, of = sides[0]
         anchor = loops.pose.constraints[index].anchors[of]
-        numbers = [[loops.in_yaml(*entry.pointer, key, k) for k in range(3)] for key in ("xyz", "rpy")]
-        xyz, turns = ([token for token in tokens if token is not None] for tokens in numbers)
+        xyz, turns = (_numbers([loops.in_yaml(*entry.pointer, key, k) for k in range(3)]) for key in ("xyz", "rpy"))
         there = other and (other.xyz, other.rpy)
         yield _WrittenPose(what, anchor.body, anchor.pose, entry.rpy, there, sides, xyz, turns)
+
+
+def _numbers(tokens: Sequence[Token | None]) -> list[Token]:
+    """Three numbers, or nothing."""
+    found = [token for token in tokens if token is not None and token.is_number]
+    return found if len(found) == 3 else []
 
 
 def _angles(pose: Pose) -> Vector3 | None:
@@ -217,13 +222,12 @@ def other_coordinates(loops: OpenLoops) -> Iterator[Slip]:
             continue
         value = loops.pose.coordinates[joint.name][0]
         axis = loops.in_urdf(joint.name, "axis", "xyz") if joint.name in loops.read.urdf.joints else None
-        if value and axis is not None and joint.mimic is None:
-            old = axis.parts()
+        if value and axis is not None and joint.mimic is None and (old := _numbers(axis.parts())):
             new = [negated(token.text) if float(token.text) else token.text for token in old]
             change, what = _turned(loops, joint.name, -value), f"the axis of joint '{joint.name}'"
             yield written(POSSIBLE, change, what, " ".join(new), axis.text, zip(old, new, strict=True), score=-0.1)
         token = loops.in_yaml("configurations", name, joint.name)
-        if token is None or "[" in token.text:
+        if token is None or not token.is_number:
             continue
         units = OF_LENGTH if joint.type.slides else OF_ANGLE
         closing = [-value, *(float(in_unit(token.text, factor)) for factor in units.values())]
@@ -261,6 +265,7 @@ def other_constraints(loops: OpenLoops) -> Iterator[Slip]:
     for index in loops.indices:
         closure: Any = loops.pose.constraints[index]
         if not closure.anchors:
+            yield from _of_coupling(loops, index, closure)
             continue
         pointer, numbers, freer = loops.entry(index).pointer, closure.stated(), closure.with_orientation_free()
         if freer is not closure:
@@ -270,14 +275,39 @@ def other_constraints(loops: OpenLoops) -> Iterator[Slip]:
         for key, sign in product((key for key, value in numbers.items() if isinstance(value, float)), (1.0, -1.0)):
             token = loops.in_yaml(*pointer, key)
             other = numbers[key] + sign * loops.pose.opening(index)
-            if token is not None and other > 0.0:
-                rank, text = _slip(token.text, other, OF_LENGTH, loops.exact) or (
-                    GUESSED,
-                    shortest(other, loops.exact / 10.0),
-                )
+            if token is not None and token.is_number and other > 0.0:
+                likely = _slip(token.text, other, OF_LENGTH, loops.exact)
+                rank, text = likely or (GUESSED, shortest(other, loops.exact / 10.0))
                 change = Change(constraints={index: replace(closure, **{key: float(text)})})
                 what = f"'{key}' of closure '{closure.name}'"
                 yield written(rank, change, what, text, token.text, [(token, text)])
+
+
+def _of_coupling(loops: OpenLoops, index: int, coupling: Coupling) -> Iterator[Slip]:
+    """Another offset, coefficient or coordinate with which a coupling is met."""
+    pointer = next(entry.pointer for entry in loops.read.description.couplings if entry.name == coupling.name)
+    at = {name: loops.pose.coordinates[name][0] for name in coupling.joints}
+    gap = sum(c * at[name] for name, c in coupling.coefficients) - coupling.offset
+    other = replace(coupling, offset=coupling.offset + gap)
+    found = [
+        ((*pointer, "offset"), other.offset, Change(constraints={index: other}), f"the offset of '{coupling.name}'")
+    ]
+    for name, c in coupling.coefficients:
+        if at[name]:
+            factors = tuple((each, c - gap / at[name] if each == name else of) for each, of in coupling.coefficients)
+            change = Change(constraints={index: replace(coupling, coefficients=factors)})
+            what = f"the coefficient of '{name}' in '{coupling.name}'"
+            found.append(((*pointer, "joints", name), c - gap / at[name], change, what))
+        if loops.configuration is not None:
+            change, value = _turned(loops, name, at[name] - gap / c), at[name] - gap / c
+            what = f"joint '{name}' in configuration '{loops.configuration}'"
+            found.append((("configurations", loops.configuration, name), value, change, what))
+    for place, value, change, what in found:
+        token = loops.in_yaml(*place)
+        if token is not None and token.is_number:
+            likely = _slip(token.text, value, OF_ANGLE, loops.exact)
+            rank, text = likely or (GUESSED, shortest(value, loops.exact / 10.0))
+            yield written(rank, change, what, text, token.text, [(token, text)])
 
 
 def _slip(token: str, value: float, units: Mapping[str, Decimal], exact: float) -> tuple[int, str] | None:

@@ -26,6 +26,8 @@ AS_THERE = 3
 _CLEARLY = 2
 _BETTER = 0.5
 
+_DECIMAL = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+
 # Loops that are looked at.
 _MOST_LOOPS = 8
 
@@ -45,6 +47,11 @@ class Token(NamedTuple):
     def edit(self, text: str) -> Edit:
         """An edit that writes something else."""
         return self.source.edit(self.start, self.end, text)
+
+    @property
+    def is_number(self) -> bool:
+        """Whether it is a number in decimal digits, and neither an alias nor a list."""
+        return _DECIMAL.fullmatch(self.text) is not None
 
     def parts(self) -> list[Token]:
         """The words of an attribute."""
@@ -81,9 +88,9 @@ class Slip:
 
     @property
     def fix(self) -> Fix:
-        """What `Diagnostics.report` takes: without edits if one of them has no place."""
+        """What `Diagnostics.report` takes: without edits if one of them has no place in a file that somebody wrote."""
         made = [token.edit(text) for token, text in self.edits if token is not None and token.text != text]
-        lacks = any(token is None for token, _ in self.edits)
+        lacks = any(token is None or token.source.made_from for token, _ in self.edits)
         return Fix(self.summary, () if lacks else tuple(made), self.question)
 
     def is_likelier_than(self, other: Slip) -> bool:
