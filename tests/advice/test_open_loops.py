@@ -174,6 +174,16 @@ def test_exchanged_frames_are_asked_about_without_assembled(tmp_path: Path) -> N
     assert "frame B of 'closure_2' and frame B of 'closure_3' are exchanged" in (found.hint or "")
 
 
+def test_frame_is_found_by_name_where_no_pose_is_stated(tmp_path: Path) -> None:
+    turned = ('<origin xyz="0.06 0 0.08"/>', '<origin xyz="0.06 0 0.08" rpy="0 0.3 0"/>')  # neutral is open
+    folder = edited(tmp_path, "four_bar", "robot.v1.yaml", turned)
+    assert eurdf.check(folder).diagnostics == ()
+    edited(tmp_path, "four_bar", "robot.v1.yaml", turned, ("pin_a, rocker_pin_b", "pin_a, crank"))
+    (found,) = eurdf.check(folder).diagnostics
+    assert (found.code, found.fix is not None) == ("closure-cannot-close", True)
+    assert "write 'rocker_pin_b' in place of 'crank'" in (found.hint or "")
+
+
 @pytest.mark.parametrize(
     ("written", "value", "meant"),
     [

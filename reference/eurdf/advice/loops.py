@@ -23,6 +23,9 @@ ROUNDED = 1e-4
 
 _ASSEMBLED = "assembled"
 
+# Open closures whose frames others may fit better by name.
+_MOST_NAMED = 8
+
 
 def closure_diagnostics(read: ReadRobot, robot: Robot, assembly: Assembly | None = None) -> Diagnostics:
     """EU-CLO-005, EU-CLO-006: the loops close, at the assembled configuration where there is one.
@@ -61,7 +64,13 @@ def closure_diagnostics(read: ReadRobot, robot: Robot, assembly: Assembly | None
     if _is_rounding(robot, assembly.open):
         hint = f"{_closed_to(assembly.open)}: write the numbers of the files with more digits"
     else:
-        hint, fixes = _asked(read, worst.name, _causes(read, robot, pose, None)[0])
+        from eurdf.advice.open_loops import suggested_by_names
+
+        causes = _causes(read, robot, pose, None)[0]
+        if not any(fix.edits for fix in causes):  # neutral need not be where the loops are to close
+            widest_open = sorted(assembly.open, key=lambda each: -each.width)[:_MOST_NAMED]
+            causes = [*suggested_by_names(read, pose, {each.name for each in widest_open}), *causes]
+        hint, fixes = _asked(read, worst.name, causes)
     diagnostics.report(
         "closure-cannot-close",
         f"no configuration was found that closes the loops; least open: {widest(assembly.open)}{_unmoved(pose)}",

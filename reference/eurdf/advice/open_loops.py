@@ -6,16 +6,18 @@ several such changes; names, and the other side of the robot, decide between the
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from difflib import SequenceMatcher
-from itertools import combinations
+from itertools import combinations, compress, product
 
 import numpy as np
 
 from eurdf.advice.other_numbers import other_constraints, other_coordinates, other_poses
 from eurdf.advice.slip import AS_THERE, EXACT, GUESSED, LIKELY, SURE, OpenLoops, Slip, exchanged, written
-from eurdf.advice.spelling import other_side, side
+from eurdf.advice.spelling import common_start, other_side, side
 from eurdf.advice.stated_pose import Change, Side, StatedPose
 from eurdf.closures import CLOSED
 from eurdf.diagnostics import Fix
@@ -24,7 +26,13 @@ from eurdf.format.urdf.data import UrdfJoint
 from eurdf.format.yaml_text import scalar
 from eurdf.linking.robot_files import ReadRobot
 from eurdf.mechanism.body import Anchor
-from eurdf.mechanism.pose import IDENTITY
+from eurdf.mechanism.pose import IDENTITY, Pose
+
+# Names of links and joints that are compared with those of frames.
+_MOST_NAMES = 500
+
+# By how much names fit better that are worth a trial.
+_FITS_BETTER = 0.05
 
 # Joints that poses are walked along: about half a second.
 _MOST_STEPS = 60_000
@@ -67,11 +75,35 @@ def proposed(causes: Sequence[Slip], loops: int) -> list[Fix]:
     return [replace(each.fix, edits=()) for each in (first, *doubtful[:1])]
 
 
+def suggested_by_names(read: ReadRobot, pose: StatedPose, names: AbstractSet[str]) -> list[Fix]:
+    """Other frames of closures, whose names fit better: to try where no configuration closes some of them."""
+    loops, found = OpenLoops(read, pose, None, EXACT), list[tuple[float, str, Fix]]()
+    entries = {index: loops.entry(index) for index, each in enumerate(pose.constraints) if each.anchors}
+    targets = {index: [frame.target for frame in entry.frames] for index, entry in entries.items()}
+    used = {name for pair in targets.values() for name in pair}
+    for (index, entry), of in product(entries.items(), (0, 1)):
+        frame, beside = entry.frames[of], targets[index][1 - of]
+        what, token = f"frame {'AB'[of]} of closure '{entry.name}'", loops.in_yaml(*frame.pointer)
+        others = read.urdf.links.keys() | read.urdf.joints.keys() if isinstance(frame, NamedFrame) else set()
+        for name in sorted(others - used if entry.name in names and len(others) <= _MOST_NAMES else ()):
+            slip = written(GUESSED, Change(), what, f"'{name}'", f"'{frame.target}'", [(token, scalar(name))])
+            found.append((_fit(name, beside) - _fit(frame.target, beside), f"{what} '{name}'", slip.fix))
+    for one, other in combinations(entries, 2):
+        (a, b), (c, d) = targets[one], targets[other]
+        if names & {entries[one].name, entries[other].name}:
+            slip = _exchange(loops, Change(), ((one, 1), (other, 1)))
+            what = f"frame B of closure '{entries[one].name}' '{d}' and that of '{entries[other].name}'"
+            found.append((_fit(d, a) + _fit(b, c) - _fit(b, a) - _fit(d, c), f"{what} '{b}'", slip.fix))
+    found = sorted((each for each in found if each[0] > _FITS_BETTER), key=lambda each: -each[0])[:2]
+    return [replace(fix, question=f"by the names, is {what}?") for _, what, fix in found]
+
+
 def _other_frames(loops: OpenLoops) -> Iterator[Slip]:
     """Another frame in place of one that a closure names, or another link or joint in place of that of a pose."""
     pose, links = loops.pose, loops.read.urdf.links
     named = {link: Anchor(link, frame=link) for link in links}
     named |= {each.name: Anchor(each.body, each.pose, each.name) for each in pose.mechanism.frames}
+    named |= {each.name: Anchor(each.child, frame=each.name) for each in loops.read.urdf.joints.values()}
     used = {anchor.frame for each in pose.mechanism.closures for anchor in each.anchors}
     for index, of in loops.sides:
         closure, entry = pose.constraints[index], loops.entry(index)
@@ -83,14 +115,17 @@ def _other_frames(loops: OpenLoops) -> Iterator[Slip]:
             candidates = {link: Anchor(link, anchor.pose) for link in links} if any(anchor.pose.xyz) else {}
         points = [pose.poses[each.body].act(each.pose.xyz) for each in candidates.values()]
         place = pose.frame((index, 1 - of)).xyz
-        for name, is_there in zip(candidates, pose.reached(index, np.array(points), place, loops.exact), strict=True):
-            there = candidates[name]
-            if not is_there or (there.body, there.pose) == (anchor.body, anchor.pose):
-                continue
-            now, then = (_fit(each, beside, closure.name) for each in (frame.target, name))
+        reached = pose.reached(index, np.array(points), place, loops.exact).tolist()
+        best: dict[tuple[str, Pose], tuple[float, str]] = {(anchor.body, anchor.pose): (math.inf, "")}
+        for name, there in compress(candidates.items(), reached):
+            best[there.body, there.pose] = max(
+                best.get((there.body, there.pose), (-math.inf, "")), (_fit(name, beside, closure.name), name)
+            )
+        now = _fit(frame.target, beside, closure.name)
+        for then, name in (each for each in best.values() if each[1]):
             rank = SURE if then > now and name not in used else GUESSED
             edits = [(loops.in_yaml(*pointer), scalar(name))]
-            change = Change(anchors={(index, of): there})
+            change = Change(anchors={(index, of): candidates[name]})
             yield written(rank, change, what, f"'{name}'", f"'{frame.target}'", edits, score=then)
 
 
@@ -123,9 +158,10 @@ def _exchange(loops: OpenLoops, change: Change, sides: Sequence[Side]) -> Slip:
 
 
 def _fit(name: str, *others: str) -> float:
-    """How well a name fits others: how similar it is to the first, and whether it says the same side as all."""
+    """How well a name fits others: how it begins as the first and is like it, and whether it says the same side."""
     apart = sum(side(each) not in (None, side(name)) for each in others) if side(name) else 0
-    return SequenceMatcher(None, name, others[0]).ratio() - apart
+    begins = common_start(name, others[0]) / max(len(name), len(others[0]))
+    return 0.5 * (SequenceMatcher(None, name, others[0]).ratio() + begins) - apart
 
 
 def _other_parents(loops: OpenLoops) -> Iterator[Slip]:

@@ -37,6 +37,12 @@ def other_side(name: str) -> str | None:
     return None if changed == name else changed
 
 
+def common_start(one: str, other: str) -> int:
+    """The number of characters with which both texts begin."""
+    pairs = enumerate(zip(one, other, strict=False))
+    return next((index for index, (a, b) in pairs if a != b), min(len(one), len(other)))
+
+
 def shortest(value: float, tolerance: float) -> str:
     """The number with as few decimals as the tolerance allows."""
     digits = next((n for n in range(_DECIMALS) if abs(round(value, n) - value) <= tolerance), _DECIMALS)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from eurdf.advice.spelling import common_start
 from eurdf.advice.stated_pose import StatedPose
 from eurdf.array import Vector
 from eurdf.closures import CLOSED
@@ -57,19 +58,13 @@ def closed_as_stated(
         missing = sorted(_moved(robot, q, found.q, CLOSED) - set(stated))
         what = summary or f"state {quoted(missing)} too, as {{}} does: the loops then close{kept}"
         source = read.description.document.source
-        start = _common(source.text, text)
-        end = _common(source.text[:start:-1], text[:start:-1])
+        start = common_start(source.text, text)
+        end = common_start(source.text[:start:-1], text[:start:-1])
         edit = source.edit(start, len(source.text) - end, text[start : len(text) - end])
         forgotten = moved or summary
         question = f"{_COMMAND} closes the loops{kept}: are the coordinates approximate?"
         return [Fix(what.format(_COMMAND), (edit,) if forgotten else (), question)]
     return []
-
-
-def _common(one: str, other: str) -> int:
-    """The number of characters with which both texts begin."""
-    pairs = enumerate(zip(one, other, strict=False))
-    return next((index for index, (a, b) in pairs if a != b), min(len(one), len(other)))
 
 
 def _moved(robot: Robot, q: Vector, to: Vector, share: float = 1.0) -> set[str]:
