@@ -67,9 +67,9 @@ def closure_diagnostics(read: ReadRobot, robot: Robot, assembly: Assembly | None
         from eurdf.advice.open_loops import suggested_by_names
 
         causes = _causes(read, robot, pose, None)[0]
-        if not any(fix.edits for fix in causes):  # neutral need not be where the loops are to close
-            widest_open = sorted(assembly.open, key=lambda each: -each.width)[:_MOST_NAMED]
-            causes = [*suggested_by_names(read, pose, {each.name for each in widest_open}), *causes]
+        # Neutral need not be where the loops are to close.
+        widest_open = sorted(assembly.open, key=lambda each: -each.width)[:_MOST_NAMED]
+        causes += suggested_by_names(read, pose, {each.name for each in widest_open})
         hint, fixes = _asked(read, worst.name, causes)
     diagnostics.report(
         "closure-cannot-close",
@@ -175,15 +175,19 @@ def _unmoved(pose: StatedPose) -> str:
 
 
 def _asked(read: ReadRobot, name: str, causes: Sequence[Fix]) -> tuple[str | None, list[Fix]]:
-    """The causes to try; or the hint that asks about them, or about the constraint of a name where there are none."""
-    if certain := [fix for fix in causes if fix.edits]:
+    """The causes to try, and the hint that asks about the others, or about the constraint of a name if there are none.
+
+    Without a hint, those that were tried are asked about.
+    """
+    certain = [fix for fix in causes if fix.edits]
+    if asked := [fix.question for fix in causes if fix.question and not fix.edits]:
+        return " ".join(asked[:2]), certain
+    if any(fix.question for fix in certain):
         return None, certain
-    if causes:
-        return " ".join(fix.question for fix in causes[:2] if fix.question), []
     if any(coupling.name == name for coupling in read.mechanism.couplings):
-        return "are the coefficients and offsets of the couplings right, and can enough joints move?", []
+        return "are the coefficients and offsets of the couplings right, and can enough joints move?", certain
     stated = f", and does '{_ASSEMBLED}' state all joints" if _ASSEMBLED in read.mechanism.configurations else ""
-    return f"are the frames of closure '{name}' where they belong, can enough joints move{stated}?", []
+    return f"are the frames of closure '{name}' where they belong, can enough joints move{stated}?", certain
 
 
 def _is_rounding(robot: Robot, openings: Iterable[Opening]) -> bool:

@@ -77,7 +77,7 @@ def proposed(causes: Sequence[Slip], loops: int) -> list[Fix]:
 
 def suggested_by_names(read: ReadRobot, pose: StatedPose, names: AbstractSet[str]) -> list[Fix]:
     """Other frames of closures, whose names fit better: to try where no configuration closes some of them."""
-    loops, found = OpenLoops(read, pose, None, EXACT), list[tuple[float, str, Fix]]()
+    loops, found = OpenLoops(read, pose, None, EXACT), list[tuple[float, Slip]]()
     entries = {index: loops.entry(index) for index, each in enumerate(pose.constraints) if each.anchors}
     targets = {index: [frame.target for frame in entry.frames] for index, entry in entries.items()}
     used = {name for pair in targets.values() for name in pair}
@@ -86,16 +86,16 @@ def suggested_by_names(read: ReadRobot, pose: StatedPose, names: AbstractSet[str
         what, token = f"frame {'AB'[of]} of closure '{entry.name}'", loops.in_yaml(*frame.pointer)
         others = read.urdf.links.keys() | read.urdf.joints.keys() if isinstance(frame, NamedFrame) else set()
         for name in sorted(others - used if entry.name in names and len(others) <= _MOST_NAMES else ()):
-            slip = written(GUESSED, Change(), what, f"'{name}'", f"'{frame.target}'", [(token, scalar(name))])
-            found.append((_fit(name, beside) - _fit(frame.target, beside), f"{what} '{name}'", slip.fix))
+            edits = [(token, scalar(name))]
+            slip = written(GUESSED, Change(), what, f"'{name}'", f"'{frame.target}'", edits)
+            found.append((_fit(name, beside) - _fit(frame.target, beside), slip))
     for one, other in combinations(entries, 2):
         (a, b), (c, d) = targets[one], targets[other]
         if names & {entries[one].name, entries[other].name}:
-            slip = _exchange(loops, Change(), ((one, 1), (other, 1)))
-            what = f"frame B of closure '{entries[one].name}' '{d}' and that of '{entries[other].name}'"
-            found.append((_fit(d, a) + _fit(b, c) - _fit(b, a) - _fit(d, c), f"{what} '{b}'", slip.fix))
+            gain = _fit(d, a) + _fit(b, c) - _fit(b, a) - _fit(d, c)
+            found.append((gain, _exchange(loops, Change(), ((one, 1), (other, 1)))))
     found = sorted((each for each in found if each[0] > _FITS_BETTER), key=lambda each: -each[0])[:2]
-    return [replace(fix, question=f"by the names, is {what}?") for _, what, fix in found]
+    return [replace(slip.fix, question=None) for _, slip in found]
 
 
 def _other_frames(loops: OpenLoops) -> Iterator[Slip]:
