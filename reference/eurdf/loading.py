@@ -16,7 +16,8 @@ from eurdf.advice.angles import advise_on_angles
 from eurdf.advice.lengths import advise_on_lengths
 from eurdf.advice.loops import closure_diagnostics
 from eurdf.advice.quaternions import advise_on_quaternions
-from eurdf.diagnostics import Diagnostic, Diagnostics, Severity, quoted
+from eurdf.advice.trial import Evidence
+from eurdf.diagnostics import Diagnostic, Diagnostics, Fix, Severity, quoted
 from eurdf.diagnostics.report import Report
 from eurdf.errors import InvalidRobot
 from eurdf.format.urdf.data import Urdf
@@ -31,6 +32,7 @@ from eurdf.reading.robot_source import RobotSource
 from eurdf.writing.simplification import saving
 
 if TYPE_CHECKING:
+    from eurdf.kinematics.analysis import Analysis
     from eurdf.pinocchio.robot import Robot
 
 # A tuple: a union would be made in each call.
@@ -152,7 +154,8 @@ def load(
 
 def _diagnostics(read: ReadRobot, of_meshes: Sequence[Diagnostic], loops: bool, robot: Robot) -> tuple[Diagnostic, ...]:
     """All diagnostics of a robot that was loaded, in the order of `eurdf.check`."""
-    of_loops = closure_diagnostics(read, robot) if loops else ()
+    of_loops = closure_diagnostics(read, robot) if loops else Diagnostics()
+    of_loops.tried(lambda *_: False)
     return (*read.diagnostics, *inertia_diagnostics(read), *of_meshes, *of_loops)
 
 
@@ -201,7 +204,8 @@ def check(
         RobotNotFound, CannotExpand, MissingExtra: See `load`.
         ValueError: `confined` and `allow_outside` are both True.
     """
-    read = read_robot(
+    reading = partial(
+        read_robot,
         path,
         urdf,
         package_dirs=package_dirs,
@@ -209,9 +213,27 @@ def check(
         confined=confined,
         allow_outside=allow_outside,
     )
+    read = reading()
+    evidence = _findings(read, package_dirs, confined, allow_outside)
+
+    def is_right(found: Diagnostic, fix: Fix) -> bool:
+        trial = reading(texts=fix.texts())
+        after = _findings(trial, package_dirs, confined, allow_outside)
+        return after.is_as_good_as(evidence, found.code)
+
+    read.diagnostics.tried(is_right)
+    is_sound = read.linked is not None and read.yaml is not None and not read.diagnostics.error_count
+    return Report(read.path, tuple(read.diagnostics), saving(read.mechanism) if is_sound else ())
+
+
+def _findings(
+    read: ReadRobot, package_dirs: Sequence[str | os.PathLike[str]], confined: bool, allow_outside: bool
+) -> Evidence:
+    """Add what is found after reading to the diagnostics of a robot; what it says of itself with them."""
     diagnostics = read.diagnostics
     refused = diagnostics.refused  # without meshes, which the kinematics does not need
     meshes: dict[str, Mesh] = {}
+    analysis: Analysis | None = None
     if read.tree is not None:
         files = find_meshes(read.urdf, package_dirs, confined=confined, allow_outside=allow_outside)
         by_path, unreadable = _read_mesh_files(read.urdf, files)
@@ -221,22 +243,27 @@ def check(
     if read.linked is not None and not refused:
         if read.yaml is not None:
             if read.mechanism.constraints:
-                _check_loops(read)
+                analysis = _check_loops(read)
             else:
                 advise_on_quaternions(read, None, diagnostics)
         warn_of_ignored_mimics(read.mechanism, read.urdf, diagnostics)
         advise_on_angles(read, diagnostics)
         advise_on_lengths(read, meshes, diagnostics)
-    is_sound = read.linked is not None and read.yaml is not None and not diagnostics.error_count
-    return Report(read.path, tuple(diagnostics), saving(read.mechanism) if is_sound else ())
+    return Evidence(diagnostics.counts(), analysis)
 
 
-def _check_loops(read: ReadRobot) -> None:
-    """Report what needs a simulator: whether the loops close and, where there is no error, advice on how they move."""
+def _check_loops(read: ReadRobot) -> Analysis | None:
+    """Report what needs a simulator: whether the loops close and, where there is no error, advice on how they move.
+
+    Returns:
+        How the robot moves, where there is no error.
+    """
     # Only now: a description without closures is checked without a simulator.
     from eurdf.advice.actuation import advise_on_actuation
     from eurdf.advice.limits import advise_on_limits
+    from eurdf.advice.loops import advise_on_neutral
     from eurdf.advice.massless import advise_on_massless_links
+    from eurdf.kinematics.analysis import analyze
     from eurdf.kinematics.assembly import assemble
     from eurdf.pinocchio.robot import build_robot
 
@@ -249,9 +276,14 @@ def _check_loops(read: ReadRobot) -> None:
     if not given_up and not diagnostics.error_count:
         q = robot.configurations["assembled"] if assembly is None else assembly.q
         advise_on_quaternions(read, robot, diagnostics)
+        if assembly is not None and advise_on_neutral(read, robot, diagnostics):
+            return None  # the rest would be consequences
         advise_on_massless_links(read, robot, q, diagnostics)
-        advise_on_actuation(read, robot, q, diagnostics)
+        analysis = analyze(robot, q) if robot.mechanism.actuators else None
+        advise_on_actuation(read, robot, analysis, diagnostics)
         advise_on_limits(read, robot, q, diagnostics)
+        return analysis
+    return None
 
 
 def _read_mesh_files(urdf: Urdf, files: FoundFiles) -> tuple[dict[str, Mesh], Diagnostics]:

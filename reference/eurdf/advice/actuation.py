@@ -27,15 +27,16 @@ _NAMES_LISTED = 6
 _MOTIONS_LISTED = 3
 
 
-def advise_on_actuation(read: ReadRobot, robot: Robot, q: Vector, diagnostics: Diagnostics) -> None:
+def advise_on_actuation(read: ReadRobot, robot: Robot, analysis: Analysis | None, diagnostics: Diagnostics) -> None:
     """Report loops without an actuator; else actuators that depend on one another, and motions left uncontrolled.
 
-    Nothing is reported where an earlier warning may be the reason: a misspelt key, or a closure that is left out.
+    The analysis is None for a robot without actuators. Nothing is reported where an earlier warning may be the reason:
+    a misspelt key, or a closure that is left out.
     """
     mechanism = robot.mechanism
     if any(found.code in _REASONS for found in read.diagnostics):
         return
-    if not mechanism.actuators:
+    if analysis is None:
         key = _closures_key(mechanism)
         noun = "coupling" if key == "couplings" else "closure"
         diagnostics.report(
@@ -45,7 +46,6 @@ def advise_on_actuation(read: ReadRobot, robot: Robot, q: Vector, diagnostics: D
             f"list the joints that its motors drive under '{_actuators_key(mechanism)}'",
         )
         return
-    analysis = analyze(robot, q)
     if analysis.left_out:
         place = _place_of_key(read, _closures_key(mechanism))
         diagnostics.report("x-loops-not-checked", analysis.left_out, place, "analyze parts of the robot separately")

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 
+from eurdf.diagnostics.fix import Fix
 from eurdf.diagnostics.lines import Lines
 from eurdf.diagnostics.registry import REFUSED_PHASES, REGISTRY, Phase, Severity
 from eurdf.diagnostics.wording import no_command, visible
 
 #: Maximum number of listed diagnostics of one code; the last one says how many more there are.
 LISTED = 100
+
+#: Questions that a hint asks, at most.
+ASKED = 2
 
 #: Length of a message or hint above which long names in it are shortened.
 LONGEST = 1000
@@ -25,6 +29,9 @@ _LONG_NAME = re.compile(rf"'([^']{{{NAME_KEPT}}})[^']*([^']{{{NAME_KEPT // 2}}})
 
 #: A hint, or a function that finds it if that takes time.
 Hint = str | None | Callable[[], str | None]
+
+#: Fixes to try, the likeliest first, or a function that finds them if that takes time.
+Proposals = Iterable[Fix] | Callable[[], Iterable[Fix]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,13 +64,25 @@ class Diagnostic:
     Attributes:
         code: Its code in the registry.
         message: What is wrong, in one sentence; names are shortened if it is longer than `LONGEST`.
-        hint: What to do about it, or None; shortened likewise.
+        hint: What to do about it, or None; shortened likewise. It is an imperative if that is certain, else a question.
+        fix: The edits that do it; None unless a trial showed that with them the robot is as good as it says itself.
+        proposals: Fixes that have not been tried, the likeliest first.
     """
 
-    def __init__(self, code: str, message: str, place: Place | Callable[[], Place], hint: str | None = None) -> None:
+    def __init__(
+        self,
+        code: str,
+        message: str,
+        place: Place | Callable[[], Place],
+        hint: str | None = None,
+        *,
+        fix: Fix | None = None,
+        proposals: tuple[Fix, ...] = (),
+    ) -> None:
         self.code = code
         self.message = _bounded(message)
         self.hint = None if hint is None else _bounded(hint)
+        self.fix, self.proposals = fix, proposals
         self._place = place
 
     @cached_property
@@ -73,12 +92,25 @@ class Diagnostic:
 
     def __getstate__(self) -> dict[str, object]:
         """What is pickled and copied: a place that is computed later needs the whole file."""
-        return {"code": self.code, "message": self.message, "hint": self.hint, "_place": self.place}
+        return {**self.__dict__, "_place": self.place}
 
     def followed_by(self, more: int) -> Diagnostic:
         """The same diagnostic, with a hint that more like it are not listed."""
         untold = f"{more:,} more like it are not listed"
-        return Diagnostic(self.code, self.message, self._place, f"{self.hint}; {untold}" if self.hint else untold)
+        hint = f"{self.hint}; {untold}" if self.hint else untold
+        return Diagnostic(self.code, self.message, self._place, hint, fix=self.fix, proposals=self.proposals)
+
+    def tried(self, is_right: Callable[[Fix], bool]) -> Diagnostic:
+        """The same diagnostic without proposals, with the first one that a trial finds right as its fix and hint.
+
+        If none is right, the hint stays, or asks about the first proposals that have a question.
+        """
+        if not self.proposals:
+            return self
+        fix = next(filter(is_right, self.proposals), None)
+        asked = [proposal.question for proposal in self.proposals if proposal.question][:ASKED]
+        hint = fix.summary if fix else self.hint or (" ".join(asked) or None)
+        return Diagnostic(self.code, self.message, self._place, hint, fix=fix)
 
     @property
     def severity(self) -> Severity:
@@ -153,12 +185,24 @@ class Diagnostics:
         self._total = 0
         self._last: dict[str, int] = {}  # by code, the index in `_found` of the last one listed
 
-    def report(self, code: str, message: str, place: Place | Callable[[], Place], hint: Hint = None) -> None:
-        """Add a diagnostic with a code of the registry (EU-DIA-005). A hint function is called only if it is listed."""
+    def report(
+        self,
+        code: str,
+        message: str,
+        place: Place | Callable[[], Place],
+        hint: Hint = None,
+        proposals: Proposals = (),
+    ) -> None:
+        """Add a diagnostic with a code of the registry (EU-DIA-005).
+
+        Functions for the hint and for the proposals are called only if it is listed.
+        """
         if code not in REGISTRY:
             raise KeyError(code)
         if self._counts_in(code):
-            self._found.append(Diagnostic(code, message, place, hint() if callable(hint) else hint))
+            hint = hint() if callable(hint) else hint
+            fixes = tuple(proposals() if callable(proposals) else proposals)
+            self._found.append(Diagnostic(code, message, place, hint, proposals=fixes))
 
     def add(self, diagnostic: Diagnostic) -> None:
         """Add an existing diagnostic."""
@@ -178,6 +222,14 @@ class Diagnostics:
         more = {self._last[code]: count - LISTED for code, count in self._count.items() if count > LISTED}
         for index, found in enumerate(self._found):
             yield found.followed_by(more[index]) if index in more else found
+
+    def tried(self, is_right: Callable[[Diagnostic, Fix], bool]) -> None:
+        """Try the proposals of every diagnostic: see `Diagnostic.tried`."""
+        self._found = [found.tried(partial(is_right, found)) for found in self._found]
+
+    def counts(self) -> Counter[str]:
+        """The number of diagnostics of each code, listed or not."""
+        return Counter(self._count)
 
     def __len__(self) -> int:
         """Number of diagnostics, listed or not."""

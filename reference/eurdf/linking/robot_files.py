@@ -7,9 +7,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Literal, NamedTuple, TypeVar
 
-from eurdf.collection import find_robot
+from eurdf.collection import RobotFiles, find_robot
 from eurdf.diagnostics import Diagnostics, FileError, Place
 from eurdf.errors import CannotExpand, InvalidRobot
 from eurdf.format.model import Description
@@ -109,6 +110,7 @@ def read_robot(
     confined: bool = False,
     allow_outside: bool = False,
     inertias: bool = True,
+    texts: Mapping[str, str] = MappingProxyType({}),
 ) -> ReadRobot:
     """Read and link the files of a robot, and check its inertias.
 
@@ -126,6 +128,7 @@ def read_robot(
         confined: Whether a URDF that the description names must be in the folder of the description.
         allow_outside: Whether meshes may be anywhere, for `find_meshes`: no mesh is looked for here.
         inertias: Whether to check the inertias of a robot that can be linked. If not, `inertia_diagnostics` does.
+        texts: Texts in place of those of files, by path as diagnostics have it; of texts that were given, by name.
 
     Raises:
         RobotNotFound: Where there are no such files.
@@ -138,7 +141,7 @@ def read_robot(
     diagnostics = Diagnostics()
     name = display_name(path)
     try:
-        files = find_robot(path, urdf)
+        files = RobotFiles(*(_open(file, texts) for file in find_robot(path, urdf)))
         given = files.urdf and _expanded(files.urdf, name, diagnostics, package_dirs, xacro_args)
     except FileError as error:
         diagnostics.add(error.diagnostic)
@@ -160,7 +163,7 @@ def read_robot(
             if not _may_read(named, is_inside, own, description, diagnostics, confined):
                 return ReadRobot(name, diagnostics)
             # Another file that the description names may be anyone's: no line of it is shown.
-            read = partial(read_source, named, is_quoted=is_inside)
+            read = partial(_named_source, named, is_inside, texts)
             if is_xacro(named):
                 if description is None:
                     return ReadRobot(name, diagnostics)
@@ -327,6 +330,25 @@ def _own_source(path: Path | Source, confined: bool = False) -> Source:
         message = f"'{path}' is a link to a file in another folder, and files are confined to their folder"
         raise FileError("file-unreadable", message, Place(os.fspath(path)))
     return read_source(path, is_quoted=is_inside)
+
+
+def _open(file: Path | Source | None, texts: Mapping[str, str]) -> Path | Source | None:
+    """A file, or what was read already, or else the text that stands in its place."""
+    if file is None:
+        return None
+    name = file.file if isinstance(file, Source) else os.fspath(file)
+    if name not in texts:
+        return file
+    text = texts[name]
+    if isinstance(file, Source):
+        return replace(file, text=text, data=text.encode())
+    return Source(name, text, text.encode(), is_quoted=_is_inside(file, file.parent))
+
+
+def _named_source(path: Path, is_quoted: bool, texts: Mapping[str, str]) -> Source:
+    """The text of the URDF that a description names, or the one that stands in its place."""
+    found = _open(path, texts)
+    return replace(found, is_quoted=is_quoted) if isinstance(found, Source) else read_source(path, is_quoted=is_quoted)
 
 
 def _is_inside(path: Path, folder: Path) -> bool:

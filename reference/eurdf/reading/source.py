@@ -7,7 +7,7 @@ import stat
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from eurdf.diagnostics import FileError, Place
+from eurdf.diagnostics import Edit, FileError, Place
 from eurdf.diagnostics.lines import Lines
 from eurdf.reading.other_formats import of_binary, other_format
 from eurdf.regular_file import open_now, open_regular, reason_of
@@ -69,6 +69,10 @@ class Source:
             end_line, last = self.position(end)
             end_column = last if end_line == line else None
         return Place(self.file, line, column, end_column, pointer, self._quoted)
+
+    def edit(self, start: int, end: int, text: str) -> Edit:
+        """An edit of the characters from ``start`` to before ``end``."""
+        return Edit(self.file, start, end, text, self.lines)
 
     def place_of_line(self, line: int) -> Place:
         """Place of a line, from 1, as a whole."""

@@ -57,17 +57,20 @@ class XmlDocument:
             element: An element of this file.
             attribute: Name of an attribute as lxml gives it. If the element lacks it, the place is the element's.
         """
-        pointer, (start, after_name) = self._of_root() if element is self.root else self._of(element)
-        if attribute is None:
-            return self.source.place(start, after_name, pointer)
-        name = written_name(element, attribute)
-        pointer += "/@" + name
-        end = after_name
-        while found := ATTRIBUTE.match(self.source.text, end):
+        pointer, _ = self._of_root() if element is self.root else self._of(element)
+        named = "" if attribute is None else "/@" + written_name(element, attribute)
+        return self.source.place(*self.span(element, attribute), pointer + named)
+
+    def span(self, element: etree._Element, attribute: str | None = None) -> tuple[int, int]:
+        """Indices in the text of the first character of what `place` is the place of, and of the one after its last."""
+        _, (start, end) = self._of_root() if element is self.root else self._of(element)
+        after_name = end
+        name = None if attribute is None else written_name(element, attribute)
+        while name is not None and (found := ATTRIBUTE.match(self.source.text, end)):
             if found[1] == name:
-                return self.source.place(*found.span(2 if found[2] is not None else 3), pointer)
+                return found.span(2 if found[2] is not None else 3)
             end = found.end()
-        return self.source.place(start, after_name, pointer)
+        return start, after_name
 
     def _of_root(self) -> tuple[str, tuple[int, int]]:
         """Its pointer and its tag, without those of all others: of a file that is too large, only this is wanted."""
