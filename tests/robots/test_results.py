@@ -318,6 +318,7 @@ def test_results_print_in_few_lines_with_units(tmp_path: Path) -> None:
             several = case.arguments["robot"], joints, np.tile(case.arguments["q"], (2, 1))
             results |= {"transmissions": eurdf.transmission(*several), "boundary": results["workspace"].boundary}
             results["common"] = eurdf.transmissions.serial_limits(*several)
+            results["map"] = eurdf.transmissions.prepare_transmission(*several[:2]).array_map(np)
         for each in objects(results, {}):
             seen.update(type(each).__mro__)
             if type(each) in kinds:

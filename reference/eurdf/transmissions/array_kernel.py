@@ -52,6 +52,9 @@ class ArrayMap:
         self._concrete = type(xp.asarray(self.lower))
         self._kept: dict[Any, list[Array]] = {}
 
+    def __repr__(self) -> str:
+        return f"<ArrayMap: joints {', '.join(self.joints)}; motors {', '.join(self.motors)}>"
+
     @property
     def halfplanes(self) -> tuple[Array, Array]:
         """A (k, nJ) and b (k,): the joints can be where A q_J ≤ b, a convex part of the workspace.
