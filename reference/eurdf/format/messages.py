@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from eurdf.diagnostics import Diagnostic, did_you_mean
+from eurdf.diagnostics import Diagnostic, Fix, did_you_mean
 from eurdf.format.closure_model import CLOSURE
 from eurdf.format.conventions import HINT, VERSION2_0, VERSION2_1, VERSION_KEY, Version
 from eurdf.format.joint_model import ACTUATOR, JOINT, LimitsEntry
 from eurdf.format.mappings import OneOf, Record, in_order
 from eurdf.format.model import VERSION1, VERSION2
+from eurdf.format.one_cause import later_word, with_one_cause
+from eurdf.format.other_words import number_meant, type_meant
 from eurdf.format.value_types import Violation
 from eurdf.format.wording import described, likeliest_key, near, quoted
 from eurdf.reading.yaml_node import Pointer
@@ -28,6 +29,8 @@ _JOINT_TYPE_HINTS = {
         ("revolute", "continuous", "prismatic", "planar", "floating"), "a joint without a type keeps its URDF type"
     ),
 }
+
+_FOLLOWED = "without this key, the joint follows the <mimic> of the URDF"
 
 _JOINT_KEYS = JOINT.keys(VERSION2_1).keys()
 
@@ -70,6 +73,7 @@ class _Messages:
         self.faulty = {each.pointer[:end] for each in self.found for end in range(1, len(each.pointer) + 1)}
 
     def diagnostics(self) -> list[Diagnostic]:
+        diagnostics, self.found = with_one_cause(self.found, self.document)
         lacking: dict[Pointer, list[str]] = {}
         for each in self.found:
             if each.code == "missing":
@@ -80,7 +84,6 @@ class _Messages:
             if each.code == "unknown-key" and (likely := near(str(each.pointer[-1]), wanted)):
                 meant[each.pointer] = likely
         misspelt = {(*pointer[:-1], key) for pointer, key in meant.items()}
-        diagnostics = []
         for mapping, keys in lacking.items():
             lacked = [key for key in keys if misspelt.isdisjoint((*mapping, each) for each in _alternatives(key))]
             if lacked:
@@ -105,6 +108,10 @@ class _Messages:
         said = sorted((" or ".join(f"'{other}'" for other in _alternatives(key)) for key in keys), key=len)
         listed = f"{', '.join(said[:-1])} and {said[-1]}" if len(said) > 1 else said[0]
         hint = next(filter(None, (self.key_outside(mapping, key) for key in keys)), None)
+        if hint is None and len(keys) == 1 and mapping[:-1] == ("closures",):
+            form = CLOSURE.forms.form_of(self.mapping_at(mapping), self.version)
+            key = form.all_keys.get(keys[0]) if isinstance(form, Record) else None
+            hint = key and f"{key.title}: {key.text.removesuffix('.')}"
         return Diagnostic("missing-key", f"{subject(mapping)} lacks {listed}", self.place(mapping), hint)
 
     def unknown_key(self, violation: Violation, meant: str | None) -> Diagnostic:
@@ -121,15 +128,14 @@ class _Messages:
         if key in apart:
             return Diagnostic("conflicting-keys", f"{subject(mapping)}: {apart[key]}", place)
         of_any_form = record if union is None else union
-        later = of_any_form.keys(VERSION2_1).keys() - of_any_form.keys(self.version)
         likely = meant or likeliest_key(key, (*record.all_keys, *apart))
         beside = self.another_entry(violation.pointer) if meant is None else None
         if meant is None and (outside := _key_of_the_file(violation.pointer)):
             hint = outside
         elif not mapping and key in VERSION1.all_keys:
             hint = f"it is a key of version 1; in version 2.0, use '{VERSION1.all_keys[key].becomes}'"
-        elif key in later:
-            hint = self.version_hint(f"'{key}'")
+        elif self.version == VERSION2_0 and (later := later_word(violation)):
+            hint = self.version_hint(later)
         elif meant is None and (of_joint := _key_of_a_joint(violation.pointer)):
             hint = of_joint
         elif likely is not None:
@@ -170,9 +176,17 @@ class _Messages:
             case "number-out-of-bounds":
                 return Diagnostic(code, f"{name} {text}", place, HINT)
             case "wrong-type":
-                hint = self.misplaced(pointer, value) or _type_hint(text, pointer, value)
-                return Diagnostic(code, f"{name} {text}, not {described(value)}", place, hint)
-        return Diagnostic(code, f"{name} {text}" + ("" if value is None else f", not {described(value)}"), place)
+                message = f"{name} {text}, not {described(value)}"
+                hint = self.misplaced(pointer, value)
+                if hint is None and (written := _written(text, pointer, value)):
+                    fixes = self.fix(pointer, written[0], written[1])
+                    return Diagnostic(code, message, place, written[1], proposals=fixes)
+                if hint is None and text == "must be a list" and isinstance(value, dict):
+                    fixes = self.as_list(pointer, value)
+                    return Diagnostic(code, message, place, _list_hint(pointer, value), proposals=fixes)
+                return Diagnostic(code, message, place, hint or _type_hint(text, pointer, value))
+        hint = _FOLLOWED if pointer[0] == "joints" and pointer[-1] == "mimic" else None
+        return Diagnostic(code, f"{name} {text}" + ("" if value is None else f", not {described(value)}"), place, hint)
 
     def wrong_choice(self, pointer: Pointer, value: Any, allowed: Sequence[str]) -> Diagnostic:
         """The diagnostic of a value that is not one of those allowed."""
@@ -181,8 +195,23 @@ class _Messages:
         message = f"{subject(pointer)} must be {choices}, not {described(value)}"
         if not isinstance(value, str):
             return Diagnostic("wrong-type", message, self.place(pointer))
-        hint = _JOINT_TYPE_HINTS.get(value) if pointer[0] == "joints" else None
+        is_type = len(pointer) == 2 or pointer[-1] == "type"
+        meant = type_meant(pointer[0], value) if is_type else None
+        here = next((choice for choice in allowed if choice.casefold() == meant), None)
+        if here is not None and value.casefold() != meant:
+            fixes = self.fix(pointer, here, f"write '{here}', the word for '{value}' here")
+            return Diagnostic(
+                "wrong-value", message, self.place(pointer), f"'{value}' is called '{here}' here", proposals=fixes
+            )
+        hint = _JOINT_TYPE_HINTS.get(meant or value) if pointer[0] == "joints" else None
+        if here is None and pointer[0] == "closures" and meant in CLOSURE.forms.values_of_type(VERSION2_1):
+            hint = self.version_hint(f"'{value}' is called '{meant}' here; that")
         return Diagnostic("wrong-value", message, self.place(pointer), hint or did_you_mean(value, allowed))
+
+    def fix(self, pointer: Pointer, text: str, summary: str) -> tuple[Fix, ...]:
+        """A fix that writes a text in place of a value, unless that is a block."""
+        start, end = self.document.span(pointer)
+        return () if end is None else (Fix(summary, (self.document.source.edit(start, end, text),)),)
 
     # -- what is indented too little or too much --------------------------------------------------------------------
 
@@ -190,7 +219,22 @@ class _Messages:
         """What to try where a value is of the wrong type; None where its indentation is not the likely reason."""
         if value is None:
             return self.meant_below(pointer)
-        return _key_of_the_file(pointer) or self.another_entry(pointer)
+        # Elsewhere the value of a key is of a wrong type, so that the key belongs there.
+        return (_key_of_the_file(pointer) if pointer[0] in _NAMED else None) or self.another_entry(pointer)
+
+    def as_list(self, pointer: Pointer, value: Mapping[str, Any]) -> tuple[Fix, ...]:
+        """A fix that makes a list of a mapping of names to mappings."""
+        if not _is_by_name(value):
+            return ()
+        text, edits, name = self.document.source.text, [], _name_key(pointer)
+        for key in value:
+            (start, end), (inner, _) = (self.document.span((*pointer, key), by_key) for by_key in (True, False))
+            braces = text.startswith("{", inner)
+            stop = inner + 1 if braces else text.find(":", end) + 1
+            edits.append(
+                self.document.source.edit(start, stop, f"- {'{' * braces}{name}: {text[start:end]}{', ' * braces}")
+            )
+        return (Fix(_list_hint(pointer, value), tuple(edits)),)
 
     def meant_below(self, pointer: Pointer) -> str | None:
         """For a key without a value: whether the next key beside it was meant to be in it."""
@@ -274,17 +318,39 @@ def _type_hint(must: str, pointer: Pointer, value: Any) -> str | None:
         return None if isinstance(pointer[-1], int) else "remove the key if it has no value"
     if ("text" in must or "name" in must) and isinstance(value, bool | int | float):
         return "quote a name that looks like a number, true or false"
-    if must == "must be a list" and isinstance(value, dict):
-        return "begin each item with '- '"
-    if must == "must be a list" and isinstance(value, str | int | float) and len(str(value)) <= 60:
-        if pointer[-1] in ("xyz", "rpy", "axis"):
-            return "write three numbers in brackets, like [0, 0, 1]"
-        return f"write it as a list: [{value}]"
-    if "number" in must and isinstance(value, str):
-        try:
-            number = float(value.replace("_", "").replace(",", "."))
-        except ValueError:
-            return None
-        if math.isfinite(number):
-            return f"write the number as {repr(number).removesuffix('.0')}, without quotes"
+    if must == "must be a list" and pointer[-1] in ("xyz", "rpy", "axis"):
+        return "write three numbers in brackets, like [0, 0, 1]"
     return None
+
+
+def _written(must: str, pointer: Pointer, value: Any) -> tuple[str, str] | None:
+    """The text that says what a value of the wrong type probably means, and the hint; None if it cannot be guessed."""
+    if must == "must be a list" and isinstance(value, str | int | float) and len(str(value)) <= 60:
+        return None if pointer[-1] in ("xyz", "rpy", "axis") else (f"[{value}]", f"write it as a list: [{value}]")
+    if "letters" in must and isinstance(value, list):
+        letters = "".join(value).lower()
+        return letters, f"write axes: {letters}"
+    if "number" not in must or not isinstance(value, str):
+        return None
+    if meant := number_meant(value):
+        number = f"{meant[0]:.12g}"
+        return number, f"write the number in {meant[1]}: {number}"
+    try:
+        number = repr(float(value.replace("_", "").replace(",", "."))).removesuffix(".0")
+    except ValueError:
+        return None
+    return None if number.strip("-") in ("inf", "nan") else (number, f"write the number as {number}, without quotes")
+
+
+def _is_by_name(value: Mapping[str, Any]) -> bool:
+    return bool(value) and all(isinstance(item, dict) for item in value.values())
+
+
+def _name_key(pointer: Pointer) -> str:
+    return "joint" if pointer[-1] == "actuators" else "name"
+
+
+def _list_hint(pointer: Pointer, value: Mapping[str, Any]) -> str:
+    if _is_by_name(value):
+        return f"write a list; its first item begins with '- {_name_key(pointer)}: {next(iter(value))}'"
+    return "begin each item with '- '"

@@ -52,7 +52,7 @@ def link_actuators(entries: Iterable[Geared], joints: Joints) -> tuple[str, ...]
                 "actuator-mimic",
                 f"joint '{name}' mimics '{joint.mimic.joint}' and cannot be actuated",
                 pointer,
-                f"actuate '{joint.mimic.joint}', or free '{name}' with mimic: false, which is of version 2.1",
+                f"'{joint.mimic.joint}', which it follows, is the joint to actuate",
             )
         elif _has_motor(entry, named, reporter):
             listed[name] = None

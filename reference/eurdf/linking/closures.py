@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from functools import partial
 
 from eurdf.closures import REGISTRY
-from eurdf.format.closure_model import ClosureEntry
+from eurdf.diagnostics import Fix
+from eurdf.format.closure_model import ClosureEntry, NamedFrame
+from eurdf.format.yaml_text import scalar
 from eurdf.linking.frame_names import FrameNames
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import RIGID, Closure, Compliance
 from eurdf.mechanism.pose import Pose, Vector3
 from eurdf.reading.yaml_node import Pointer
-from eurdf.reading.yaml_reader import YamlReporter
+from eurdf.reading.yaml_reader import YamlDocument, YamlReporter
+
+# A word of a name, or what is between two.
+_WORD = re.compile(r"([^\W\d_]+)")
 
 
 def link_closures(
@@ -24,6 +31,7 @@ def link_closures(
     closures: list[Closure] = []
     taken: dict[str, ClosureEntry] = {}
     joined: dict[frozenset[tuple[str, Pose]], str] = {}
+    entries = tuple(entries)
     for entry in entries:
         if entry.name in taken:
             reporter.report(
@@ -43,7 +51,8 @@ def link_closures(
                 "closure-duplicate",
                 f"closure '{entry.name}' connects the same two frames as '{joined[pair]}'",
                 entry.pointer,
-                "remove one of them",
+                "a pair of frames needs one closure",
+                partial(_other_frames, entry, entries, names, reporter.document),
             )
             continue
         joined[pair] = entry.name
@@ -59,6 +68,29 @@ def link_closures(
             continue
         closures.append(kind(entry.name, a, b, compliance=_compliance(entry), **kind.values_of(entry.stated)))
     return tuple(closures)
+
+
+def _other_frames(
+    entry: ClosureEntry, entries: Iterable[ClosureEntry], names: FrameNames, document: YamlDocument
+) -> Iterator[Fix]:
+    """Fixes that name other frames, which no closure uses: one word of both names is another, as right for left."""
+    one, other = (frame.target for frame in entry.frames)
+    used = {frame.target for each in entries for frame in each.frames}
+    free = [name for name in names.known() if name not in used]
+    parts = _WORD.split(one)
+    for name in free:
+        pairs = [pair for pair in zip(parts, _WORD.split(name), strict=False) if pair[0] != pair[1]]
+        if len(pairs) != 1 or name.count(pairs[0][1]) != one.count(pairs[0][0]):
+            continue
+        beside = "".join(pairs[0][1] if part == pairs[0][0] else part for part in _WORD.split(other))
+        spans = [document.span(frame.pointer) for frame in entry.frames]
+        if beside in free and all(isinstance(frame, NamedFrame) for frame in entry.frames):
+            edits = (
+                document.source.edit(start, end or start, scalar(new))
+                for (start, end), new in zip(spans, (name, beside), strict=True)
+            )
+            what = f"'{name}' and '{beside}', which no closure uses"
+            yield Fix(f"name the frames {what}", tuple(edits), f"did you mean {what}?")
 
 
 def _compliance(entry: ClosureEntry) -> Compliance:

@@ -169,6 +169,9 @@ def _coordinates(
             f"{found.coordinate} {found.value:.12g} of joint '{joint.name}' in configuration '{configuration}' is "
             f"outside its limits {found.lower:.12g} to {found.upper:.12g}"
         )
+        angle = math.radians(found.value)
+        if found.unit == "rad" and (within_limits(angle, found.lower, found.upper) or abs(found.value) > math.tau):
+            hint = f"is it in degrees? {found.value:g} degrees are {angle:.6g} rad"
     else:
         return values
     reporter.report(code, message, ("configurations", configuration, joint.name), hint)

@@ -54,6 +54,10 @@ class FrameNames:
             return None
         return Anchor(body, Pose.from_xyz_rpy(reference.xyz, reference.rpy))
 
+    def known(self) -> Iterable[str]:
+        """All names of frames."""
+        return dict.fromkeys(chain(self._frames, self._urdf.links, self._urdf.joints, self._joints))
+
     def _known(self, name: str) -> bool:
         return name in self._urdf.links or name in self._urdf.joints or name in self._joints
 
@@ -82,8 +86,7 @@ class FrameNames:
         if child is not None:
             return Anchor(child, frame=name)
         if name not in self._made.faulty:
-            known = chain(self._frames, self._urdf.links, self._urdf.joints, self._joints)
-            self._report_unknown(name, "link, joint or frame", reference.pointer, known)
+            self._report_unknown(name, "link, joint or frame", reference.pointer, self.known())
         return None
 
     def _body(self, reference: FrameReference) -> str | None:

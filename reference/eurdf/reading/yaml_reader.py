@@ -16,7 +16,7 @@ from yaml import CSafeLoader
 from yaml.error import MarkedYAMLError, YAMLError
 from yaml.events import AliasEvent, Event, MappingStartEvent, ScalarEvent, SequenceStartEvent, StreamEndEvent
 
-from eurdf.diagnostics import Diagnostics, FileError, Hint, Place
+from eurdf.diagnostics import Diagnostics, FileError, Hint, Place, Proposals
 from eurdf.reading.core_schema import TAG_PREFIX, resolve, resolve_tagged
 from eurdf.reading.other_formats import of_text, other_format
 from eurdf.reading.source import FILE_LIMIT, Source, short, too_large
@@ -87,9 +87,18 @@ class YamlReporter(NamedTuple):
     document: YamlDocument
     diagnostics: Diagnostics
 
-    def report(self, code: str, message: str, pointer: Pointer, hint: Hint = None, *, key: bool = False) -> None:
+    def report(
+        self,
+        code: str,
+        message: str,
+        pointer: Pointer,
+        hint: Hint = None,
+        proposals: Proposals = (),
+        *,
+        key: bool = False,
+    ) -> None:
         """Report at a value, or at its key: see `Diagnostics.report` and `YamlDocument.place`."""
-        self.diagnostics.report(code, message, partial(self.document.place, pointer, key), hint)
+        self.diagnostics.report(code, message, partial(self.document.place, pointer, key), hint, proposals)
 
 
 def read_yaml(source: Source) -> YamlDocument:
