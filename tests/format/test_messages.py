@@ -173,7 +173,7 @@ def test_fix_of_the_version_leaves_the_rest(version: str) -> None:
     rest = version.replace(LATER, "joints: {k: {stiffness: 1, rest: 0}}\n") + "name_mot: [a]\n" * (version != LATER)
     _, (found,) = read(ROOT + rest)
     (fix,) = found.proposals
-    assert fix.texts() == {"robot.yaml": (LATER if version == LATER else "") + rest}
+    assert fix.texts() == {"robot.yaml": (LATER if version == LATER else "\n") + rest}
 
 
 def test_key_that_is_legal_where_it_is_is_not_moved() -> None:

@@ -43,7 +43,10 @@ _MANY = 4
 def check(
     options: dict[str, Any],
     paths: list[str] = ROBOTS,
-    form: str = option("default: text", "--format", choices=("text", "json", "sarif"), default="text"),
+    form: Any = (
+        option("default: text", "--format", choices=("text", "json", "sarif"), default="text"),
+        option("the same as --format json", "--json", action="store_const", dest="form", const="json"),
+    ),
     strict: bool = flag("treat warnings as errors"),
     allow_none: bool = flag("succeed if a folder contains no robot (for hooks)"),
 ) -> int:

@@ -22,6 +22,7 @@ from eurdf.json_schema import to_json
 #: The results by the names of their schemas: the module and the class of each.
 RESULTS = {
     "assemble": ("assemble", "AssemblyInfo"),
+    "error": ("command", "FailureInfo"),
     "export": ("conversion_info", "ExportInfo"),
     "import": ("conversion_info", "ImportInfo"),
     "info": ("robot_info", "RobotInfo"),
@@ -29,6 +30,7 @@ RESULTS = {
     "serial": ("transmission_info", "SerialInfo"),
     "simplify": ("conversion_info", "SimplifyInfo"),
     "transmission": ("transmission_info", "TransmissionInfo"),
+    "written": ("command", "WrittenInfo"),
 }
 
 

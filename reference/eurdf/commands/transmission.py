@@ -10,10 +10,20 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
-from eurdf.commands.command import JSON, ROBOT, SERIAL_JOINTS, SERIAL_MOTORS, cannot_run, command, flag, option
+from eurdf.commands.command import (
+    JSON,
+    ROBOT,
+    SERIAL_JOINTS,
+    SERIAL_MOTORS,
+    FailureInfo,
+    cannot_run,
+    command,
+    flag,
+    option,
+)
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import refuse_to_replace, write_new, writing
-from eurdf.commands.terminal import Table, write_notes, write_shown
+from eurdf.commands.terminal import Table, waiting, write_notes, write_shown
 from eurdf.errors import CannotRun
 
 if TYPE_CHECKING:
@@ -87,23 +97,28 @@ def transmission(
     try:
         with cannot_run(EurdfError, ValueError, unless=(NoTransmission,)):
             q = _configuration(robot, at) if grid is None else None
-            info = _info(robot, joints, motors, q, grid)
+            with waiting("computing the grid"):
+                info = _info(robot, joints, motors, q, grid)
             if plot:
                 from eurdf.transmissions.plot import plot_workspace
                 from eurdf.transmissions.reachable_set import workspace
 
-                found = workspace(robot, joints, q, motors=motors, grid=_FIGURE if grid is None else grid)
+                with waiting("computing the workspace"):
+                    found = workspace(robot, joints, q, motors=motors, grid=_FIGURE if grid is None else grid)
                 with writing():
                     written.append(os.fspath(plot_workspace(found, plot)))
             if c:
                 from eurdf.transmissions.prepared import prepare_transmission
 
-                prepared = prepare_transmission(robot, joints, q, motors=motors)
+                with waiting("preparing the map"):
+                    prepared = prepare_transmission(robot, joints, q, motors=motors)
                 source = prepared.c_source(real="float" if single else "double")
                 with writing():
                     written += [os.fspath(each) for each in source.write(c, force=force)]
     except NoTransmission as reason:
-        write_notes([str(reason)])
+        write_notes([str(reason)], quiet=False)
+        if json:
+            write_result(FailureInfo(str(reason)))
         return 1
     if table:
         write_new(table, csv_text(info), force)

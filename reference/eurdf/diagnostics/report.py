@@ -145,7 +145,7 @@ def report_schema() -> dict[str, Any]:
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Report of a check of Extended URDF robots",
         **_closed_object(
-            "What 'eurdf check --format json' writes.",
+            "What 'eurdf check --json' writes.",
             version=_value({"const": REPORT_VERSION}, "Version of this form."),
             ok=_value({"type": "boolean"}, "Whether every robot passes."),
             robots=_value({"type": "array", "items": robot}, "One entry for each robot."),

@@ -36,22 +36,22 @@ def report_lines(report: Report, width: int = SOURCE_WIDTH, bar: str = "|") -> I
 
 def summary_line(report: Report, strict: bool = False) -> Line:
     """The verdict on one robot."""
-    counts = _counts(report)
-    style = "bold red" if not report.passes(strict) else "yellow" if counts else "green"
-    return [(f"{visible(report.path)}: ", "bold"), (counts or "valid", style)]
+    found = counts(report)
+    style = "bold red" if not report.passes(strict) else "yellow" if found else "green"
+    return [(f"{visible(report.path)}: ", "bold"), (found or "valid", style)]
 
 
 def total_line(reports: Sequence[Report], strict: bool = False) -> Line:
     """The verdict on several robots together."""
     passed = sum(report.passes(strict) for report in reports)
     failed = len(reports) - passed
-    counts = _counts(*reports)
+    found = counts(*reports)
     return [
         (f"{plural(len(reports), 'robot')}: ", "bold"),
         (f"{passed} passed", "green" if passed else ""),
         (", ", ""),
         (f"{failed} failed", "bold red" if failed else ""),
-        (f" ({counts})" if counts else "", ""),
+        (f" ({found})" if found else "", ""),
     ]
 
 
@@ -148,7 +148,8 @@ def _clip(text: str, span: tuple[int, int], start: int | None, end: int | None, 
     return shown.rstrip(), offset, max(1, sum(sizes[place : min(end - low, last)]))
 
 
-def _counts(*reports: Report) -> str:
+def counts(*reports: Report) -> str:
+    """How many errors and warnings there are; empty if none."""
     errors = sum(len(report.errors) for report in reports)
     warnings = sum(len(report.warnings) for report in reports)
     return ", ".join(plural(number, word) for number, word in ((errors, "error"), (warnings, "warning")) if number)

@@ -179,12 +179,10 @@ class _Messages:
                 message = f"{name} {text}, not {described(value)}"
                 hint = self.misplaced(pointer, value)
                 if hint is None and (written := _written(text, pointer, value)):
-                    fixes = self.fix(pointer, written[0], written[1])
-                    return Diagnostic(code, message, place, written[1], proposals=fixes)
-                if hint is None and text == "must be a list" and isinstance(value, dict):
-                    fixes = self.as_list(pointer, value)
-                    return Diagnostic(code, message, place, _list_hint(pointer, value), proposals=fixes)
-                return Diagnostic(code, message, place, hint or _type_hint(text, pointer, value))
+                    return Diagnostic(code, message, place, written[1], proposals=self.fix(pointer, *written))
+                fixes = self.as_list(pointer, value) if text == "must be a list" and isinstance(value, dict) else ()
+                hint = hint or (fixes[0].summary if fixes else _type_hint(text, pointer, value))
+                return Diagnostic(code, message, place, hint, proposals=fixes)
         hint = _FOLLOWED if pointer[0] == "joints" and pointer[-1] == "mimic" else None
         return Diagnostic(code, f"{name} {text}" + ("" if value is None else f", not {described(value)}"), place, hint)
 
@@ -199,10 +197,9 @@ class _Messages:
         meant = type_meant(pointer[0], value) if is_type else None
         here = next((choice for choice in allowed if choice.casefold() == meant), None)
         if here is not None and value.casefold() != meant:
+            hint: str | None = f"'{value}' is called '{here}' here"
             fixes = self.fix(pointer, here, f"write '{here}', the word for '{value}' here")
-            return Diagnostic(
-                "wrong-value", message, self.place(pointer), f"'{value}' is called '{here}' here", proposals=fixes
-            )
+            return Diagnostic("wrong-value", message, self.place(pointer), hint, proposals=fixes)
         hint = _JOINT_TYPE_HINTS.get(meant or value) if pointer[0] == "joints" else None
         if here is None and pointer[0] == "closures" and meant in CLOSURE.forms.values_of_type(VERSION2_1):
             hint = self.version_hint(f"'{value}' is called '{meant}' here; that")
@@ -224,17 +221,16 @@ class _Messages:
 
     def as_list(self, pointer: Pointer, value: Mapping[str, Any]) -> tuple[Fix, ...]:
         """A fix that makes a list of a mapping of names to mappings."""
-        if not _is_by_name(value):
+        if not value or not all(isinstance(item, dict) for item in value.values()):
             return ()
-        text, edits, name = self.document.source.text, [], _name_key(pointer)
+        text, edits, name = self.document.source.text, [], "joint" if pointer[-1] == "actuators" else "name"
         for key in value:
             (start, end), (inner, _) = (self.document.span((*pointer, key), by_key) for by_key in (True, False))
             braces = text.startswith("{", inner)
             stop = inner + 1 if braces else text.find(":", end) + 1
-            edits.append(
-                self.document.source.edit(start, stop, f"- {'{' * braces}{name}: {text[start:end]}{', ' * braces}")
-            )
-        return (Fix(_list_hint(pointer, value), tuple(edits)),)
+            item = f"- {'{' * braces}{name}: {text[start:end]}{', ' * braces}"
+            edits.append(self.document.source.edit(start, stop, item))
+        return (Fix(f"write a list; its first item begins with '- {name}: {next(iter(value))}'", tuple(edits)),)
 
     def meant_below(self, pointer: Pointer) -> str | None:
         """For a key without a value: whether the next key beside it was meant to be in it."""
@@ -318,6 +314,8 @@ def _type_hint(must: str, pointer: Pointer, value: Any) -> str | None:
         return None if isinstance(pointer[-1], int) else "remove the key if it has no value"
     if ("text" in must or "name" in must) and isinstance(value, bool | int | float):
         return "quote a name that looks like a number, true or false"
+    if must == "must be a list" and isinstance(value, dict):
+        return "begin each item with '- '"
     if must == "must be a list" and pointer[-1] in ("xyz", "rpy", "axis"):
         return "write three numbers in brackets, like [0, 0, 1]"
     return None
@@ -326,7 +324,8 @@ def _type_hint(must: str, pointer: Pointer, value: Any) -> str | None:
 def _written(must: str, pointer: Pointer, value: Any) -> tuple[str, str] | None:
     """The text that says what a value of the wrong type probably means, and the hint; None if it cannot be guessed."""
     if must == "must be a list" and isinstance(value, str | int | float) and len(str(value)) <= 60:
-        return None if pointer[-1] in ("xyz", "rpy", "axis") else (f"[{value}]", f"write it as a list: [{value}]")
+        items = ", ".join(str(value).split()) if "," not in str(value) else value
+        return None if pointer[-1] in ("xyz", "rpy", "axis") else (f"[{items}]", f"write it as a list: [{items}]")
     if "letters" in must and isinstance(value, list):
         letters = "".join(value).lower()
         return letters, f"write axes: {letters}"
@@ -340,17 +339,3 @@ def _written(must: str, pointer: Pointer, value: Any) -> tuple[str, str] | None:
     except ValueError:
         return None
     return None if number.strip("-") in ("inf", "nan") else (number, f"write the number as {number}, without quotes")
-
-
-def _is_by_name(value: Mapping[str, Any]) -> bool:
-    return bool(value) and all(isinstance(item, dict) for item in value.values())
-
-
-def _name_key(pointer: Pointer) -> str:
-    return "joint" if pointer[-1] == "actuators" else "name"
-
-
-def _list_hint(pointer: Pointer, value: Mapping[str, Any]) -> str:
-    if _is_by_name(value):
-        return f"write a list; its first item begins with '- {_name_key(pointer)}: {next(iter(value))}'"
-    return "begin each item with '- '"

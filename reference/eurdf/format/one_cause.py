@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -9,13 +10,15 @@ from eurdf.diagnostics import Diagnostic, Fix
 from eurdf.diagnostics.wording import enumerated, quoted
 from eurdf.format.conventions import VERSION2_0, VERSION2_1, VERSION_KEY, is_own_key
 from eurdf.format.model import VERSION1
-from eurdf.format.other_words import two_sides
 from eurdf.format.value_types import Violation
 from eurdf.format.yaml_text import flow, scalar
 from eurdf.reading.yaml_node import Pointer
 from eurdf.reading.yaml_reader import YamlDocument
 
 _MERGE = "<<"
+
+# Keys that name one of two sides: 'body1' and 'body2', 'link_a' and 'link_b'.
+_SIDE = re.compile(r"(\D*?[^\W\d_])[_-]?[12ab]", re.IGNORECASE)
 
 
 def with_one_cause(found: Sequence[Violation], document: YamlDocument) -> tuple[list[Diagnostic], list[Violation]]:
@@ -40,7 +43,7 @@ def later_word(violation: Violation) -> str | None:
     return f"'{name}'" if name in keys.keys(VERSION2_1).keys() - keys.keys(VERSION2_0) else None
 
 
-_Causes = Iterator[tuple[Diagnostic, list[Violation]]]
+_Causes = Iterator[tuple[Diagnostic, Sequence[Violation]]]
 
 
 def _later_version(found: Sequence[Violation], document: YamlDocument) -> _Causes:
@@ -48,14 +51,14 @@ def _later_version(found: Sequence[Violation], document: YamlDocument) -> _Cause
     later = sorted((each for each in found if later_word(each)), key=lambda each: document.span(each.pointer, True)[0])
     if len(later) < 2 or document.data.get(VERSION_KEY) != VERSION2_0:
         return
-    words = dict.fromkeys(filter(None, map(later_word, later)))
+    words = ", ".join(dict.fromkeys(filter(None, map(later_word, later))))
     code = "wrong-value" if later[0].code == "later-value" else "unknown-key"
-    message = f"the file states version {VERSION2_0}, but uses {', '.join(words)} of version {VERSION2_1}"
-    start, end = document.span((VERSION_KEY,))
-    summary = f'write {VERSION_KEY}: "{VERSION2_1}" on line {document.place((VERSION_KEY,)).line}'
-    fix = Fix(summary, (document.source.edit(start, end or start, f'"{VERSION2_1}"'),))
+    message = f"the file states version {VERSION2_0}, but uses {words} of version {VERSION2_1}"
+    text = f'{VERSION_KEY}: "{VERSION2_1}"'
+    hint = f"write {text} on line {document.place((VERSION_KEY,)).line}"
+    fixes = _instead(document, (VERSION_KEY,), (VERSION_KEY,), text, hint)
     place = document.place(later[0].pointer, code == "unknown-key")
-    yield Diagnostic(code, message, place, summary, proposals=(fix,)), later
+    yield Diagnostic(code, message, place, hint, proposals=fixes), later
 
 
 def _keys_of_version1(found: Sequence[Violation], document: YamlDocument) -> _Causes:
@@ -64,43 +67,29 @@ def _keys_of_version1(found: Sequence[Violation], document: YamlDocument) -> _Ca
     unknown = [each for each in found if each.code == "unknown-key" and len(each.pointer) == 1]
     if len(unknown) < 2 or not all(key in VERSION1.all_keys for key in keys):
         return
-    version = document.data[VERSION_KEY]
+    version, where = document.data[VERSION_KEY], (VERSION_KEY,)
     message = f"the file states version {version}, but has the keys of version 1: {quoted(keys, len(keys))}"
     hint = f"a file of version 1 does not have '{VERSION_KEY}'; without it, `eurdf migrate` writes version 2.0"
-    (start, _), (_, end), text = (
-        document.span((VERSION_KEY,), True),
-        document.span((VERSION_KEY,)),
-        document.source.text,
-    )
-    end = text.find("\n", end) + 1 or len(text)
-    fix = Fix(
-        f"remove '{VERSION_KEY}', which a file of version 1 does not have", (document.source.edit(start, end, ""),)
-    )
-    yield Diagnostic("unknown-key", message, document.place(unknown[0].pointer, True), hint, proposals=(fix,)), unknown
+    fixes = _instead(document, where, where, "", f"remove '{VERSION_KEY}', which a file of version 1 does not have")
+    yield Diagnostic("unknown-key", message, document.place(unknown[0].pointer, True), hint, proposals=fixes), unknown
 
 
 def _merge_keys(found: Sequence[Violation], document: YamlDocument) -> _Causes:
     """The merge key of YAML 1.1, and what a mapping lacks because of it."""
-    mappings = dict.fromkeys(each.pointer[: each.pointer.index(_MERGE)] for each in found if _MERGE in each.pointer)
-    for pointer in mappings:
-        consequences = [each for each in found if each.pointer[: len(pointer)] == pointer]
+    for pointer in dict.fromkeys(
+        each.pointer[: each.pointer.index(_MERGE)] for each in found if _MERGE in each.pointer
+    ):
         at = (*pointer, _MERGE)
-        here, merged = _value(document, pointer), _value(document, at)
+        merged, place = _value(document, at), document.place(at, True)
         parts = [part for part in (merged if isinstance(merged, list) else [merged]) if isinstance(part, dict)]
-        missing = {key: value for part in reversed(parts) for key, value in part.items() if key not in here}
-        separator = (
-            ", " if _value_is_flow(document, pointer) else "\n" + " " * ((document.place(at, True).column or 1) - 1)
-        )
-        (start, _), (_, end) = document.span(at, True), document.span(at)
-        text = separator.join(f"{scalar(key)}: {flow(value)}" for key, value in missing.items())
-        fixes = (
-            [Fix(f"repeat the keys: {flow(missing)}", (document.source.edit(start, end, text),))]
-            if end and text
-            else []
-        )
-        hint = f"it must repeat the keys that it shares: {', '.join(map(scalar, missing))}" if missing else None
-        message = "YAML 1.2 has no merge key '<<'"
-        yield Diagnostic("unknown-key", message, document.place(at, True), hint, proposals=tuple(fixes)), consequences
+        missing = {key: value for part in reversed(parts) for key, value in part.items()}
+        missing = {key: value for key, value in missing.items() if key not in _value(document, pointer)}
+        between = ", " if document.span(pointer)[1] is not None else "\n" + " " * ((place.column or 1) - 1)
+        text = between.join(f"{scalar(key)}: {flow(value)}" for key, value in missing.items())
+        hint = f"the keys that it shares must be repeated: {quoted([*missing], len(missing))}"
+        fixes = _instead(document, at, at, text, f"repeat the keys: {flow(missing)}")
+        consequences = [each for each in found if each.pointer[: len(pointer)] == pointer]
+        yield Diagnostic("unknown-key", "YAML 1.2 has no merge key '<<'", place, hint, proposals=fixes), consequences
 
 
 def _two_sides(found: Sequence[Violation], document: YamlDocument) -> _Causes:
@@ -109,22 +98,27 @@ def _two_sides(found: Sequence[Violation], document: YamlDocument) -> _Causes:
         if lacking.code != "missing" or lacking.pointer[::2] != ("closures", "frames"):
             continue
         closure = lacking.pointer[:-1]
-        unknown = {
-            each.pointer[-1]: each for each in found if each.pointer[:-1] == closure and each.code == "unknown-key"
-        }
-        data = _value(document, closure)
-        if not (sides := two_sides({key: value for key, value in data.items() if key in unknown})):
+        unknown = {each.pointer[-1]: each for each in found if each.pointer[:-1] == closure}
+        data = {key: value for key, value in _value(document, closure).items() if isinstance(value, str | dict)}
+        stems = {key: match[1] for key in data if key in unknown and (match := _SIDE.fullmatch(key))}
+        one, other = next(((a, b) for a in stems for b in stems if a != b and stems[a] == stems[b]), ("", ""))
+        if not one:
             continue
-        spans = [(document.span((*closure, key), True), document.span((*closure, key))) for key in sides]
-        value = f"frames: {flow([data[key] for key in sides])}"
-        fixes = []
-        keys = list(data)
-        if keys.index(sides[1]) == keys.index(sides[0]) + 1 and spans[1][1][1] is not None:
-            fixes.append(Fix(f"write {value}", (document.source.edit(spans[0][0][0], spans[1][1][1], value),)))
-        message = f"a closure has no keys {enumerated(sides)}: its two frames are the list 'frames'"
-        place = document.place((*closure, sides[0]), True)
-        consequences = [lacking, *(unknown[key] for key in sides)]
-        yield Diagnostic("unknown-key", message, place, f"with these: {value}", proposals=tuple(fixes)), consequences
+        text = f"frames: {flow([data[one], data[other]])}"
+        keys = [*_value(document, closure)]
+        follows = keys.index(other) == keys.index(one) + 1
+        fixes = _instead(document, (*closure, one), (*closure, other), text, f"write {text}") if follows else ()
+        message = f"a closure has no keys {enumerated([one, other])}: its two frames are the list 'frames'"
+        diagnostic = Diagnostic(
+            "unknown-key", message, document.place((*closure, one), True), f"with these: {text}", proposals=fixes
+        )
+        yield diagnostic, [lacking, unknown[one], unknown[other]]
+
+
+def _instead(document: YamlDocument, first: Pointer, last: Pointer, text: str, summary: str) -> tuple[Fix, ...]:
+    """A fix that writes a text in place of the entries from one key to another, unless the last is a block."""
+    (start, _), (_, end) = document.span(first, True), document.span(last)
+    return () if end is None else (Fix(summary, (document.source.edit(start, end, text),)),)
 
 
 def _value(document: YamlDocument, pointer: Pointer) -> Any:
@@ -132,7 +126,3 @@ def _value(document: YamlDocument, pointer: Pointer) -> Any:
     for step in pointer:
         value = value[step]
     return value
-
-
-def _value_is_flow(document: YamlDocument, pointer: Pointer) -> bool:
-    return document.span(pointer)[1] is not None
