@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from eurdf.commands.command import JSON, ROBOT, cannot_run, command, flag, option
 from eurdf.commands.output import write_result
 from eurdf.commands.selection import NEUTRAL, named_configuration
-from eurdf.commands.terminal import Table, waiting, write_notes, write_shown
+from eurdf.commands.terminal import Table, progress_bar, write_notes, write_shown
 from eurdf.errors import CannotRun
 from eurdf.json_schema import Count, NullIfInfinite
 from eurdf.mechanism.joint_types import JointType
@@ -143,7 +143,7 @@ def assemble(
         file = file_to_save_to(path, read) if write else None
     robot = build_robot(read.mechanism, geometry=False)
     start = start or (NAME if NAME in robot.configurations else NEUTRAL)
-    with cannot_run(ValueError), waiting("closing the loops"):
+    with cannot_run(ValueError), progress_bar("closing the loops"):
         assembly = _assemble(robot, named_configuration(robot, start), hold, limits)
     beyond = beyond_limits(robot.mechanism.joints, robot.joint_positions(assembly.q))
     info = replace(_assembly_info(robot, assembly, start, hold, {found.joint for found in beyond}), file=file)

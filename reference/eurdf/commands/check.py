@@ -7,7 +7,7 @@ from typing import Any
 
 from eurdf.commands.command import ROBOTS, command, flag, option
 from eurdf.commands.selection import select, without_robot
-from eurdf.commands.terminal import progress_bar, write_json, write_lines, write_reports
+from eurdf.commands.terminal import PATIENCE, progress_bar, write_json, write_lines, write_reports
 from eurdf.errors import CannotRun
 from eurdf.reading.robot_source import is_stream
 
@@ -25,7 +25,7 @@ error if no other path is left, and if a folder has several URDFs and no descrip
 A warning whose code begins with x- is advice: the file conforms, but is probably not what you intended.
 """
 
-# Show progress from this number of robots on.
+# Show progress at once from this number of robots on.
 _MANY = 4
 
 
@@ -63,7 +63,7 @@ def check(
             f"--urdf {urdf} can be read only once, but there are {len(robots)} robots; check them one by one"
         )
     reports = []
-    with progress_bar("checking", len(robots) >= _MANY) as progress:
+    with progress_bar("checking", 0.0 if len(robots) >= _MANY else PATIENCE) as progress:
         for robot in robots:
             reports.append(eurdf.check(robot, **options))
             if progress is not None:

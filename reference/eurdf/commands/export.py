@@ -12,7 +12,7 @@ from eurdf.commands.command import FORCE, JSON, ROBOT, command, flag, option
 from eurdf.commands.conversion_lines import loss_lines, verification_lines
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import writing
-from eurdf.commands.terminal import progress_bar, waiting, write_lines, write_notes, write_refusal
+from eurdf.commands.terminal import progress_bar, write_lines, write_notes, write_refusal
 from eurdf.convert.formats import (
     ACTUATORS,
     CLOSURES,
@@ -108,7 +108,7 @@ def export(
     refusal, paths, verification = "", [], None
     try:
         choices = Choices(to, configuration, actuators, closures, joints, mesh_files, strict)
-        with waiting(f"exporting to {to}"):
+        with progress_bar(f"exporting to {to}"):
             exported = export_linked(read, choices, options["package_dirs"], allow_outside=options["allow_outside"])
     except CannotExport as reason:
         losses = reason.losses

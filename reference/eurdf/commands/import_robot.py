@@ -13,7 +13,7 @@ from eurdf.commands.command import FORCE, JSON, OUTPUT_FOLDER, command, flag, op
 from eurdf.commands.conversion_lines import loss_lines
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import writing
-from eurdf.commands.terminal import waiting, write_lines, write_notes, write_reports
+from eurdf.commands.terminal import progress_bar, write_lines, write_notes, write_reports
 from eurdf.diagnostics import plural
 from eurdf.reading.other_formats import IMPORTED
 
@@ -65,7 +65,7 @@ def import_robot(
     from eurdf.errors import CannotImport
 
     try:
-        with waiting("importing"):
+        with progress_bar("importing"):
             found = eurdf.import_robot(file, format=format_, within=within, strict=strict, allow_outside=allow_outside)
     except CannotImport as reason:
         place_of = _places((Path(reason.path),))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from eurdf.commands.command import JSON, ROBOT, ROOT, command
 from eurdf.commands.output import write_result
-from eurdf.commands.terminal import Cell, Table, waiting, write_lines, write_reports, write_shown
+from eurdf.commands.terminal import Cell, Table, progress_bar, write_lines, write_reports, write_shown
 from eurdf.reading.robot_source import display_name
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ def info(options: dict[str, Any], path: str = ROBOT, root: Root | None = ROOT, j
     from eurdf.commands.robot_info import robot_info
     from eurdf.diagnostics.report import Report
 
-    with waiting("analysing the loops"):
+    with progress_bar("analysing the loops"):
         robot = eurdf.load(path, root=root, geometry=False, check_loops=not json, **options)
         found = robot_info(robot, eurdf.analyze(robot))
     if json:

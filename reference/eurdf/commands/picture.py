@@ -8,7 +8,7 @@ from eurdf.commands.command import FORCE_FILE, JSON, ROBOT, WrittenInfo, cannot_
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import refuse_to_replace, writing
 from eurdf.commands.selection import NEUTRAL, named_configuration
-from eurdf.commands.terminal import waiting, write_notes
+from eurdf.commands.terminal import progress_bar, write_notes
 from eurdf.errors import CannotRun
 
 _DESCRIPTION = """\
@@ -57,7 +57,7 @@ def picture(
     from eurdf.viewing.graph import save_graph
     from eurdf.writing.saved_configuration import NAME
 
-    with cannot_run(ValueError, by=f"'{path}': "), waiting("drawing"):
+    with cannot_run(ValueError, by=f"'{path}': "), progress_bar("drawing"):
         robot = eurdf.load(path, **options)
         if not graph:
             if configuration in (None, NAME) and NAME not in robot.configurations:

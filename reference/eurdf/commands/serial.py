@@ -21,7 +21,7 @@ from eurdf.commands.command import (
     option,
 )
 from eurdf.commands.output_file import writing
-from eurdf.commands.terminal import Table, waiting, write_json, write_lines, write_notes, write_shown
+from eurdf.commands.terminal import Table, progress_bar, write_json, write_lines, write_notes, write_shown
 
 if TYPE_CHECKING:
     from eurdf.array import Matrix, Vector
@@ -85,7 +85,7 @@ def serial(
 
     robot = eurdf.load(path, **options)
     with cannot_run(EurdfError, ValueError):
-        with waiting("computing the workspace"):
+        with progress_bar("computing the workspace"):
             twin = eurdf.transmissions.serial_twin(
                 robot, joints, None, motors=motors, limits=limits, armature=dict(armature), grid=grid, degree=degree
             )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from eurdf.commands.command import FORCE, JSON, ROBOT, cannot_run, command, flag, option
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import writing
-from eurdf.commands.terminal import Table, waiting, write_notes, write_shown
+from eurdf.commands.terminal import Table, progress_bar, write_notes, write_shown
 
 if TYPE_CHECKING:
     from eurdf.convert.simplify import Simplification
@@ -47,7 +47,7 @@ def simplify(
     from eurdf.commands.conversion_info import SimplifyInfo
     from eurdf.errors import CannotSimplify
 
-    with cannot_run(CannotSimplify), waiting("comparing motions"):
+    with cannot_run(CannotSimplify), progress_bar("comparing motions"):
         found = eurdf.simplify(path, expand=expand, only=only, **options)
     paths: tuple[str, ...] = ()
     notes: list[str] = []

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from eurdf.diagnostics.report import Report
     from eurdf.diagnostics.text import Line
 
-# A wait of this many seconds is shown on a terminal.
-_PATIENCE = 1.0
+#: A wait of this many seconds is shown on a terminal.
+PATIENCE = 1.0
 
 # Columns between two columns of a table, and those that a sentence in it needs at least.
 _GAP, _SENTENCE = 3, 40
@@ -137,44 +137,32 @@ def write_refusal(path: str, diagnostics: Iterable[Diagnostic], as_json: bool, s
 
 
 @contextmanager
-def progress_bar(what: str, wanted: bool = True) -> Iterator[Callable[[float, float], None] | None]:
-    """A bar on the standard error, if that is a terminal, while the context lasts.
+def progress_bar(what: str, after: float = PATIENCE) -> Iterator[Callable[[float, float], None] | None]:
+    """A bar on the standard error, if that is a terminal, while the context lasts, from so many seconds on.
 
     Yields:
         What to call with the amount that is done and the whole; None if there is no bar.
     """
-    if not (wanted and _shows_progress()):
+    if not (sys.stderr.isatty() and is_terminal(sys.stderr)) or STYLE.get().quiet:
         yield None
         return
     from rich.progress import Progress
 
-    with Progress(console=_console(sys.stderr), transient=True) as bar:
-        task = bar.add_task(what)
-        yield lambda done, whole: bar.update(task, completed=done, total=whole)
-
-
-@contextmanager
-def waiting(what: str) -> Iterator[None]:
-    """Say on the standard error what takes longer than a second, if that is a terminal, while the context lasts."""
-    if not _shows_progress():
-        yield
-        return
-    from rich.status import Status
-
-    status = Status(f"{what} ...", console=_console(sys.stderr), spinner="line")
-    timer = Timer(_PATIENCE, status.start)
+    bar = Progress(console=_console(sys.stderr), transient=True)
+    task = bar.add_task(what, total=None)
+    timer = Timer(after, bar.start)
     timer.daemon = True
-    timer.start()
+    if after:
+        timer.start()
+    else:
+        bar.start()
     try:
-        yield
+        yield lambda done, whole: bar.update(task, completed=done, total=whole)
     finally:
         timer.cancel()
-        timer.join()
-        status.stop()
-
-
-def _shows_progress() -> bool:
-    return sys.stderr.isatty() and is_terminal(sys.stderr) and not STYLE.get().quiet
+        if after:
+            timer.join()
+        bar.stop()
 
 
 def write_shown(*shown: Table | Sequence[Cell]) -> None:

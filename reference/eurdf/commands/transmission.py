@@ -6,7 +6,7 @@ import csv
 import io
 import json as json_text
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
@@ -23,7 +23,7 @@ from eurdf.commands.command import (
 )
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import refuse_to_replace, write_new, writing
-from eurdf.commands.terminal import Table, waiting, write_notes, write_shown
+from eurdf.commands.terminal import Table, progress_bar, write_notes, write_shown
 from eurdf.errors import CannotRun
 
 if TYPE_CHECKING:
@@ -97,20 +97,20 @@ def transmission(
     try:
         with cannot_run(EurdfError, ValueError, unless=(NoTransmission,)):
             q = _configuration(robot, at) if grid is None else None
-            with waiting("computing the grid"):
-                info = _info(robot, joints, motors, q, grid)
+            with progress_bar("computing the grid") as progress:
+                info = _info(robot, joints, motors, q, grid, progress)
             if plot:
                 from eurdf.transmissions.plot import plot_workspace
                 from eurdf.transmissions.reachable_set import workspace
 
-                with waiting("computing the workspace"):
+                with progress_bar("computing the workspace"):
                     found = workspace(robot, joints, q, motors=motors, grid=_FIGURE if grid is None else grid)
                 with writing():
                     written.append(os.fspath(plot_workspace(found, plot)))
             if c:
                 from eurdf.transmissions.prepared import prepare_transmission
 
-                with waiting("preparing the map"):
+                with progress_bar("preparing the map"):
                     prepared = prepare_transmission(robot, joints, q, motors=motors)
                 source = prepared.c_source(real="float" if single else "double")
                 with writing():
@@ -132,7 +132,12 @@ def transmission(
 
 
 def _info(
-    robot: Robot, joint_names: Sequence[str], motor_names: Sequence[str] | None, q: Vector | None, grid: int | None
+    robot: Robot,
+    joint_names: Sequence[str],
+    motor_names: Sequence[str] | None,
+    q: Vector | None,
+    grid: int | None,
+    progress: Callable[[float, float], None] | None,
 ) -> TransmissionInfo:
     """The transmission at q, or over a grid."""
     from eurdf.commands.transmission_info import transmission_info
@@ -152,7 +157,7 @@ def _info(
     found: dict[tuple[int, ...], Vector] = dict(zip(map(tuple, reached.index.tolist()), reached.q, strict=True))
     nodes = list(product(*(range(len(axis)) for axis in reached.axes)))
     positions = [[float(axis[i]) for axis, i in zip(reached.axes, node, strict=True)] for node in nodes]
-    return transmission_info(robot, joints, motors, [found.get(node) for node in nodes], positions)
+    return transmission_info(robot, joints, motors, [found.get(node) for node in nodes], positions, progress)
 
 
 def _configuration(robot: Robot, given: str | None) -> Vector:

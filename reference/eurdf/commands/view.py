@@ -10,7 +10,7 @@ from typing import Any
 from eurdf.commands.command import FORCE_FILE, ROBOT, ROOT, WrittenInfo, cannot_run, command, flag, option
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import refuse_to_replace, write_new
-from eurdf.commands.terminal import waiting, write_lines, write_notes
+from eurdf.commands.terminal import progress_bar, write_lines, write_notes
 from eurdf.errors import CannotRun
 
 _DESCRIPTION = """\
@@ -79,7 +79,7 @@ def view(
 
         from eurdf.viewing.live_robot import live_page
 
-        with waiting("writing the page"):
+        with progress_bar("writing the page"):
             page = live_page(eurdf.load(path, **options))
         write_new(output, page, force)
         if json:
