@@ -68,8 +68,8 @@ def export(
         "what actuators become in MJCF and USD; default: motor", choices=ACTUATORS, default="motor"
     ),
     closures: ClosureChoice = option(
-        "hinge: 3d closures become hinges where their bodies turn about one axis alone, for solvers that hold no ball "
-        "joint in a loop; default: stated",
+        "hinge: 3d closures become hinges where their bodies turn about one axis alone, for solvers without ball "
+        "joints in loops; default: stated",
         choices=CLOSURES,
         default="stated",
     ),
