@@ -163,8 +163,7 @@ FIXES = [
 @pytest.mark.parametrize(("wrong", "right"), FIXES)
 def test_words_of_other_formats_have_a_fix(wrong: str, right: str) -> None:
     _, (found,) = read(f"{ROOT}{wrong}\n")
-    (fix,) = found.proposals
-    assert fix.texts() == {"robot.yaml": f"{ROOT}{right}\n"}
+    assert found.proposals[0].texts() == {"robot.yaml": f"{ROOT}{right}\n"}
     assert read(f"{ROOT}{right}\n")[0] is not None
 
 

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
-from eurdf.diagnostics import Diagnostic, Fix, did_you_mean
+from eurdf.diagnostics import Diagnostic, Fix, renamings
+from eurdf.diagnostics.wording import similar
 from eurdf.format.closure_model import CLOSURE
 from eurdf.format.conventions import HINT, VERSION2_0, VERSION2_1, VERSION_KEY, Version
+from eurdf.format.fixes import added, free_name, listed, named, removed, renamed, restated
 from eurdf.format.joint_model import ACTUATOR, JOINT, LimitsEntry
 from eurdf.format.mappings import OneOf, Record, in_order
 from eurdf.format.model import VERSION1, VERSION2
@@ -30,7 +36,8 @@ _JOINT_TYPE_HINTS = {
     ),
 }
 
-_FOLLOWED = "without this key, the joint follows the <mimic> of the URDF"
+#: Keys whose values are three numbers.
+_VECTORS = ("xyz", "rpy", "axis")
 
 _JOINT_KEYS = JOINT.keys(VERSION2_1).keys()
 
@@ -41,6 +48,12 @@ _OF_JOINTS -= {"name", "type", "joint", "axes"}
 
 #: Keys of the file whose values are mappings of names that the user chooses, and what these are names of.
 _NAMED = {"joints": "joint", "configurations": "configuration"}
+
+#: Lists of the file whose items have a name that may be any, and what these are.
+_NUMBERED = {"closures": "closure", "couplings": "coupling"}
+
+#: Keys that only one type has.
+_TYPES = {"axes": "universal", "pitch": "helical", "length": "distance", "axis": "hinge"}
 
 
 def diagnostics_of(found: Sequence[Violation], version: Version, document: YamlDocument) -> list[Diagnostic]:
@@ -98,7 +111,7 @@ class _Messages:
             last = diagnostics.pop()
             more = f"{self.omitted:,} more errors of the file are not listed"
             hint = f"{last.hint}; {more}" if last.hint else more
-            diagnostics.append(Diagnostic(last.code, last.message, last.place, hint))
+            diagnostics.append(Diagnostic(last.code, last.message, last.place, hint, proposals=last.proposals))
         return diagnostics
 
     # -- missing and unknown keys ---------------------------------------------------------------------------------
@@ -110,9 +123,26 @@ class _Messages:
         hint = next(filter(None, (self.key_outside(mapping, key) for key in keys)), None)
         if hint is None and len(keys) == 1 and mapping[:-1] == ("closures",):
             form = CLOSURE.forms.form_of(self.mapping_at(mapping), self.version)
-            key = form.all_keys.get(keys[0]) if isinstance(form, Record) else None
-            hint = key and f"{key.title}: {key.text.removesuffix('.')}"
-        return Diagnostic("missing-key", f"{subject(mapping)} lacks {listed}", self.place(mapping), hint)
+            stated = form.all_keys.get(keys[0]) if isinstance(form, Record) else None
+            hint = stated and f"{stated.title}: {stated.text.removesuffix('.')}"
+        is_all = len(keys) == 1 and not any(
+            each.code == "unknown-key" and each.pointer[:-1] == mapping for each in self.found
+        )
+        value = self.missing_value(mapping, keys[0]) if is_all else None
+        proposals = () if value is None else added(self.document, mapping, keys[0], value)
+        message = f"{subject(mapping)} lacks {listed}"
+        return Diagnostic("missing-key", message, self.place(mapping), hint, proposals=tuple(proposals))
+
+    def missing_value(self, mapping: Pointer, key: str) -> str | None:
+        """The value that a missing key can only have, or that may be any: a name."""
+        if key == "type":
+            return next((kind for other, kind in _TYPES.items() if other in self.mapping_at(mapping)), None)
+        if key != "name" or mapping[0] not in _NUMBERED:
+            return None
+        lists = [self.document.data.get(each) for each in _NUMBERED]
+        items = [item for each in lists if isinstance(each, list) for item in each]
+        taken = {item.get("name") for item in items if isinstance(item, dict)}
+        return free_name(f"{_NUMBERED[str(mapping[0])]}_{int(mapping[1]) + 1}", taken)
 
     def unknown_key(self, violation: Violation, meant: str | None) -> Diagnostic:
         """The diagnostic of a key that the mapping does not have, or that does not go with its others.
@@ -130,16 +160,19 @@ class _Messages:
         of_any_form = record if union is None else union
         likely = meant or likeliest_key(key, (*record.all_keys, *apart))
         beside = self.another_entry(violation.pointer) if meant is None else None
+        proposals: Sequence[Fix] = ()
         if meant is None and (outside := _key_of_the_file(violation.pointer)):
             hint = outside
         elif not mapping and key in VERSION1.all_keys:
             hint = f"it is a key of version 1; in version 2.0, use '{VERSION1.all_keys[key].becomes}'"
         elif self.version == VERSION2_0 and (later := later_word(violation)):
             hint = self.version_hint(later)
+            proposals = self.version_fix(hint)
         elif meant is None and (of_joint := _key_of_a_joint(violation.pointer)):
             hint = of_joint
         elif likely is not None:
             hint = f"did you mean '{likely}'?" + (f" {beside}" if beside else "")
+            proposals = renamed(self.document, violation.pointer, likely, key=True)
         elif beside:
             hint = beside
         else:
@@ -149,7 +182,11 @@ class _Messages:
             known = ", ".join(f"'{known}'" for known, _ in in_order(keys))
             hint = f"the keys here are {known}; your own keys begin with 'x-'"
         message = f"{subject(mapping)} has an unknown key {quoted(key)}"
-        return Diagnostic("unknown-key", message, place, hint)
+        return Diagnostic("unknown-key", message, place, hint, proposals=tuple(proposals))
+
+    def version_fix(self, hint: str) -> tuple[Fix]:
+        """What the hint about the version says, as a fix."""
+        return (replace(restated(self.document, (VERSION_KEY,), VERSION2_1), summary=hint),)
 
     def version_hint(self, what: str) -> str:
         """Which line to change so that a file may have what version 2.1 adds."""
@@ -170,21 +207,26 @@ class _Messages:
                 return self.wrong_choice(pointer, value, about)
             case "later-value":
                 message = f"{name} cannot be {described(value)} in a file of version {VERSION2_0}"
-                return Diagnostic("wrong-value", message, place, self.version_hint(f"{pointer[-1]} '{value}'"))
+                later = self.version_hint(f"{pointer[-1]} '{value}'")
+                return Diagnostic("wrong-value", message, place, later, proposals=self.version_fix(later))
             case "missing-key" if about is not None:
                 return Diagnostic(code, f"{name} {text}", self.place((*pointer, about), key=True))
             case "number-out-of-bounds":
                 return Diagnostic(code, f"{name} {text}", place, HINT)
             case "wrong-type":
                 message = f"{name} {text}, not {described(value)}"
-                hint = self.misplaced(pointer, value)
-                if hint is None and (written := _written(text, pointer, value)):
-                    return Diagnostic(code, message, place, written[1], proposals=self.fix(pointer, *written))
-                fixes = self.as_list(pointer, value) if text == "must be a list" and isinstance(value, dict) else ()
-                hint = hint or (fixes[0].summary if fixes else _type_hint(text, pointer, value))
+                if (misplaced := self.misplaced(pointer, value)) is not None:
+                    return Diagnostic(code, message, place, misplaced)
+                fixes = _type_fix(self.document, text, pointer, value)
+                is_nested = fixes and isinstance(value, dict | list)
+                hint = fixes[0].summary if is_nested else _type_hint(text, pointer, value)
                 return Diagnostic(code, message, place, hint, proposals=fixes)
-        hint = _FOLLOWED if pointer[0] == "joints" and pointer[-1] == "mimic" else None
-        return Diagnostic(code, f"{name} {text}" + ("" if value is None else f", not {described(value)}"), place, hint)
+        message = f"{name} {text}" + ("" if value is None else f", not {described(value)}")
+        if pointer[0] == "joints" and pointer[-1] == "mimic":
+            hint = "without this key, the joint follows the <mimic> of the URDF"
+            proposals = tuple(removed(self.document, pointer, "it: the joint follows the <mimic> of the URDF"))
+            return Diagnostic(code, message, place, hint, proposals=proposals)
+        return Diagnostic(code, message, place)
 
     def wrong_choice(self, pointer: Pointer, value: Any, allowed: Sequence[str]) -> Diagnostic:
         """The diagnostic of a value that is not one of those allowed."""
@@ -196,19 +238,17 @@ class _Messages:
         is_type = len(pointer) == 2 or pointer[-1] == "type"
         meant = type_meant(pointer[0], value) if is_type else None
         here = next((choice for choice in allowed if choice.casefold() == meant), None)
-        if here is not None and value.casefold() != meant:
-            hint: str | None = f"'{value}' is called '{here}' here"
-            fixes = self.fix(pointer, here, f"write '{here}', the word for '{value}' here")
-            return Diagnostic("wrong-value", message, self.place(pointer), hint, proposals=fixes)
         hint = _JOINT_TYPE_HINTS.get(meant or value) if pointer[0] == "joints" else None
-        if here is None and pointer[0] == "closures" and meant in CLOSURE.forms.values_of_type(VERSION2_1):
-            hint = self.version_hint(f"'{value}' is called '{meant}' here; that")
-        return Diagnostic("wrong-value", message, self.place(pointer), hint or did_you_mean(value, allowed))
-
-    def fix(self, pointer: Pointer, text: str, summary: str) -> tuple[Fix, ...]:
-        """A fix that writes a text in place of a value, unless that is a block."""
-        start, end = self.document.span(pointer)
-        return () if end is None else (Fix(summary, (self.document.source.edit(start, end, text),)),)
+        if here is not None and value.casefold() != meant:
+            hint = f"'{value}' is called '{here}' here"
+            proposals: Sequence[Fix] = [
+                replace(restated(self.document, pointer, here), summary=f"write '{here}': {hint}")
+            ]
+        elif here is None and pointer[0] == "closures" and meant in CLOSURE.forms.values_of_type(VERSION2_1):
+            hint, proposals = self.version_hint(f"'{value}' is called '{meant}' here; that"), ()
+        else:
+            proposals = renamings(similar(value, allowed), partial(named, self.document, pointer, False))
+        return Diagnostic("wrong-value", message, self.place(pointer), hint, proposals=tuple(proposals))
 
     # -- what is indented too little or too much --------------------------------------------------------------------
 
@@ -218,19 +258,6 @@ class _Messages:
             return self.meant_below(pointer)
         # Elsewhere the value of a key is of a wrong type, so that the key belongs there.
         return (_key_of_the_file(pointer) if pointer[0] in _NAMED else None) or self.another_entry(pointer)
-
-    def as_list(self, pointer: Pointer, value: Mapping[str, Any]) -> tuple[Fix, ...]:
-        """A fix that makes a list of a mapping of names to mappings."""
-        if not value or not all(isinstance(item, dict) for item in value.values()):
-            return ()
-        text, edits, name = self.document.source.text, [], "joint" if pointer[-1] == "actuators" else "name"
-        for key in value:
-            (start, end), (inner, _) = (self.document.span((*pointer, key), by_key) for by_key in (True, False))
-            braces = text.startswith("{", inner)
-            stop = inner + 1 if braces else text.find(":", end) + 1
-            item = f"- {'{' * braces}{name}: {text[start:end]}{', ' * braces}"
-            edits.append(self.document.source.edit(start, stop, item))
-        return (Fix(f"write a list; its first item begins with '- {name}: {next(iter(value))}'", tuple(edits)),)
 
     def meant_below(self, pointer: Pointer) -> str | None:
         """For a key without a value: whether the next key beside it was meant to be in it."""
@@ -308,6 +335,36 @@ def _key_of_a_joint(pointer: Pointer) -> str | None:
     )
 
 
+def _type_fix(document: YamlDocument, must: str, pointer: Pointer, value: Any) -> tuple[Fix, ...]:
+    """What `_type_hint` says, as a fix."""
+    if value is None:
+        return () if isinstance(pointer[-1], int) else tuple(removed(document, pointer, f"'{pointer[-1]}'"))
+    if must == "must be a list" and isinstance(value, str | int | float) and pointer[-1] not in _VECTORS:
+        items = re.split(r"[,\s]+", value.strip(", ")) if isinstance(value, str) else [value]
+        return (restated(document, pointer, items),)
+    if must == "must be a list" and isinstance(value, dict):
+        return tuple(listed(document, pointer, "joint" if pointer[-1] == "actuators" else "name"))
+    if "letters" in must and isinstance(value, list):
+        return (restated(document, pointer, "".join(value).lower()),)
+    if "number" in must and isinstance(value, str) and (number := _number(value)) is not None:
+        return (restated(document, pointer, int(number) if number.is_integer() else number),)
+    if ("text" in must or "name" in must) and isinstance(value, bool | int | float):
+        start, end = document.span(pointer)
+        return (restated(document, pointer, document.source.text[start:end]),)
+    return ()
+
+
+def _number(text: str) -> float | None:
+    """The finite number that a text is, if it is one, also with a comma or underscores, a unit or π."""
+    if meant := number_meant(text):
+        return float(f"{meant[0]:.12g}")
+    try:
+        number = float(text.replace("_", "").replace(",", "."))
+    except ValueError:
+        return None
+    return number if math.isfinite(number) else None
+
+
 def _type_hint(must: str, pointer: Pointer, value: Any) -> str | None:
     """How to write what is probably meant, if it can be guessed."""
     if value is None:
@@ -316,26 +373,14 @@ def _type_hint(must: str, pointer: Pointer, value: Any) -> str | None:
         return "quote a name that looks like a number, true or false"
     if must == "must be a list" and isinstance(value, dict):
         return "begin each item with '- '"
-    if must == "must be a list" and pointer[-1] in ("xyz", "rpy", "axis"):
-        return "write three numbers in brackets, like [0, 0, 1]"
-    return None
-
-
-def _written(must: str, pointer: Pointer, value: Any) -> tuple[str, str] | None:
-    """The text that says what a value of the wrong type probably means, and the hint; None if it cannot be guessed."""
     if must == "must be a list" and isinstance(value, str | int | float) and len(str(value)) <= 60:
-        items = ", ".join(str(value).split()) if "," not in str(value) else value
-        return None if pointer[-1] in ("xyz", "rpy", "axis") else (f"[{items}]", f"write it as a list: [{items}]")
-    if "letters" in must and isinstance(value, list):
-        letters = "".join(value).lower()
-        return letters, f"write axes: {letters}"
-    if "number" not in must or not isinstance(value, str):
-        return None
-    if meant := number_meant(value):
-        number = f"{meant[0]:.12g}"
-        return number, f"write the number in {meant[1]}: {number}"
-    try:
-        number = repr(float(value.replace("_", "").replace(",", "."))).removesuffix(".0")
-    except ValueError:
-        return None
-    return None if number.strip("-") in ("inf", "nan") else (number, f"write the number as {number}, without quotes")
+        if pointer[-1] in _VECTORS:
+            return "write three numbers in brackets, like [0, 0, 1]"
+        return f"write it as a list: [{value}]"
+    if "number" in must and isinstance(value, str):
+        number = _number(value)
+        if number is not None:
+            meant = number_meant(value)
+            unit = f"in {meant[1]}, " if meant else ""
+            return f"write the number {unit}as {repr(number).removesuffix('.0')}, without quotes"
+    return None

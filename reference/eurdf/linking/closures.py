@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
 from eurdf.closures import REGISTRY
 from eurdf.diagnostics import Fix
 from eurdf.format.closure_model import ClosureEntry, NamedFrame
+from eurdf.format.fixes import renumbered
 from eurdf.format.yaml_text import scalar
 from eurdf.linking.frame_names import FrameNames
 from eurdf.mechanism.body import Anchor
@@ -22,16 +23,16 @@ _WORD = re.compile(r"([^\W\d_]+)")
 
 
 def link_closures(
-    entries: Iterable[ClosureEntry], names: FrameNames, rigid: Mapping[str, str], reporter: YamlReporter
+    entries: Sequence[ClosureEntry], names: FrameNames, rigid: Mapping[str, str], reporter: YamlReporter
 ) -> tuple[Closure, ...]:
     """Look the frames of every closure up and check what two frames can have wrong together.
 
     A closure of a type that begins with ``x-`` is left out (EU-CLO-012). ``rigid`` has the body that each is fixed to.
     """
     closures: list[Closure] = []
+    names_of_all = {entry.name for entry in entries}
     taken: dict[str, ClosureEntry] = {}
     joined: dict[frozenset[tuple[str, Pose]], str] = {}
-    entries = tuple(entries)
     for entry in entries:
         if entry.name in taken:
             reporter.report(
@@ -39,6 +40,7 @@ def link_closures(
                 f"there is already a closure '{entry.name}'",
                 (*entry.pointer, "name"),
                 "give every closure a unique name",
+                partial(renumbered, reporter.document, (*entry.pointer, "name"), entry.name, names_of_all),
             )
             continue
         taken[entry.name] = entry
@@ -51,7 +53,7 @@ def link_closures(
                 "closure-duplicate",
                 f"closure '{entry.name}' connects the same two frames as '{joined[pair]}'",
                 entry.pointer,
-                "a pair of frames needs one closure",
+                "which of them connects other frames?",
                 partial(_other_frames, entry, entries, names, reporter.document),
             )
             continue
@@ -71,26 +73,23 @@ def link_closures(
 
 
 def _other_frames(
-    entry: ClosureEntry, entries: Iterable[ClosureEntry], names: FrameNames, document: YamlDocument
+    entry: ClosureEntry, entries: Sequence[ClosureEntry], names: FrameNames, document: YamlDocument
 ) -> Iterator[Fix]:
     """Fixes that name other frames, which no closure uses: one word of both names is another, as right for left."""
     one, other = (frame.target for frame in entry.frames)
     used = {frame.target for each in entries for frame in each.frames}
     free = [name for name in names.known() if name not in used]
     parts = _WORD.split(one)
-    for name in free:
+    for name in free if all(isinstance(frame, NamedFrame) for frame in entry.frames) else ():
         pairs = [pair for pair in zip(parts, _WORD.split(name), strict=False) if pair[0] != pair[1]]
         if len(pairs) != 1 or name.count(pairs[0][1]) != one.count(pairs[0][0]):
             continue
         beside = "".join(pairs[0][1] if part == pairs[0][0] else part for part in _WORD.split(other))
-        spans = [document.span(frame.pointer) for frame in entry.frames]
-        if beside in free and all(isinstance(frame, NamedFrame) for frame in entry.frames):
-            edits = (
-                document.source.edit(start, end or start, scalar(new))
-                for (start, end), new in zip(spans, (name, beside), strict=True)
-            )
+        if beside in free:
+            new = zip(entry.frames, (name, beside), strict=True)
+            edits = tuple(document.edit(frame.pointer, scalar(each)) for frame, each in new)
             what = f"'{name}' and '{beside}', which no closure uses"
-            yield Fix(f"name the frames {what}", tuple(edits), f"did you mean {what}?")
+            yield Fix(f"name the frames {what}", edits, f"did you mean {what}?")
 
 
 def _compliance(entry: ClosureEntry) -> Compliance:
