@@ -155,6 +155,7 @@ FIXES = [
     ("joints: {a: &a {damping: 1}, b: {<<: *a}}", "joints: {a: &a {damping: 1}, b: {damping: 1}}"),
     ("configurations: {c: {k: -90°}}", "configurations: {c: {k: -1.57079632679}}"),
     ("configurations: {c: {k: 2*pi/3}}", "configurations: {c: {k: 2.09439510239}}"),
+    ("frames: [{name: p, link: a, xyz: 0.5 0 -2}]", "frames: [{name: p, link: a, xyz: [0.5, 0.0, -2.0]}]"),
     ("configurations: {c: {k: 30 mm}}", "configurations: {c: {k: 0.03}}"),
 ]
 # fmt: on

@@ -52,9 +52,6 @@ _NAMED = {"joints": "joint", "configurations": "configuration"}
 #: Lists of the file whose items have a name that may be any, and what these are.
 _NUMBERED = {"closures": "closure", "couplings": "coupling"}
 
-#: Keys that only one type has.
-_TYPES = {"axes": "universal", "pitch": "helical", "length": "distance", "axis": "hinge"}
-
 
 def diagnostics_of(found: Sequence[Violation], version: Version, document: YamlDocument) -> list[Diagnostic]:
     """The diagnostics of the errors of a file, which was checked against a version, in file order."""
@@ -136,7 +133,10 @@ class _Messages:
     def missing_value(self, mapping: Pointer, key: str) -> str | None:
         """The value that a missing key can only have, or that may be any: a name."""
         if key == "type":
-            return next((kind for other, kind in _TYPES.items() if other in self.mapping_at(mapping)), None)
+            union = CLOSURE.forms if mapping[0] == "closures" else JOINT
+            form = union.form_of(self.mapping_at(mapping))
+            types = form.values_of_type() if isinstance(form, Record) else ()
+            return types[0] if len(types) == 1 else None
         if key != "name" or mapping[0] not in _NUMBERED:
             return None
         lists = [self.document.data.get(each) for each in _NUMBERED]
@@ -339,9 +339,11 @@ def _type_fix(document: YamlDocument, must: str, pointer: Pointer, value: Any) -
     """What `_type_hint` says, as a fix."""
     if value is None:
         return () if isinstance(pointer[-1], int) else tuple(removed(document, pointer, f"'{pointer[-1]}'"))
-    if must == "must be a list" and isinstance(value, str | int | float) and pointer[-1] not in _VECTORS:
-        items = re.split(r"[,\s]+", value.strip(", ")) if isinstance(value, str) else [value]
-        return (restated(document, pointer, items),)
+    if must == "must be a list" and isinstance(value, str | int | float):
+        items: list[Any] = re.split(r"[,\s]+", value.strip(", ")) if isinstance(value, str) else [value]
+        if pointer[-1] in _VECTORS:
+            items = [number for number in map(_number, map(str, items)) if number is not None]
+        return (restated(document, pointer, items),) if pointer[-1] not in _VECTORS or len(items) == 3 else ()
     if must == "must be a list" and isinstance(value, dict):
         return tuple(listed(document, pointer, "joint" if pointer[-1] == "actuators" else "name"))
     if "letters" in must and isinstance(value, list):
