@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
+from functools import cache, partial
 from inspect import currentframe, signature
-from typing import TYPE_CHECKING, Concatenate, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
 
 from eurdf.advice.angles import advise_on_angles
 from eurdf.advice.lengths import advise_on_lengths
@@ -28,7 +28,7 @@ from eurdf.mechanism.mechanism import Root
 from eurdf.mesh_files.kinds import KINDS, suffix_of
 from eurdf.pinocchio.arguments import accepting
 from eurdf.pinocchio.meshes import Mesh, read_meshes
-from eurdf.reading.robot_source import RobotSource
+from eurdf.reading.robot_source import RobotSource, is_stream
 from eurdf.writing.simplification import saving
 
 if TYPE_CHECKING:
@@ -37,6 +37,9 @@ if TYPE_CHECKING:
 
 # A tuple: a union would be made in each call.
 _SOURCES = (str, bytes, os.PathLike, Mapping)
+
+# Mesh files by the text of the URDF that names them: where they are, the meshes by path, and what is wrong with some.
+_MeshFiles = dict[bytes, tuple[FoundFiles, dict[str, Mesh], Diagnostics]]
 
 _Rest = ParamSpec("_Rest")
 _Result = TypeVar("_Result")
@@ -203,8 +206,8 @@ def check(
         RobotNotFound, CannotExpand, MissingExtra: See `load`.
         ValueError: `confined` and `allow_outside` are both True.
     """
-    reading = partial(
-        read_robot,
+    return check_texts(
+        {},
         path,
         urdf,
         package_dirs=package_dirs,
@@ -212,30 +215,49 @@ def check(
         confined=confined,
         allow_outside=allow_outside,
     )
-    read = reading()
-    evidence = _findings(read, package_dirs, confined, allow_outside)
+
+
+def check_texts(texts: Mapping[str, str], path: RobotSource, urdf: RobotSource | None = None, **options: Any) -> Report:
+    """The result of `check`, with texts in place of those of files: see `read_robot`."""
+    find = {name: value for name, value in options.items() if name != "xacro_args"}
+    mesh_files: _MeshFiles = {}
+
+    @cache
+    def evidence_with(*fixes: Fix) -> Evidence:
+        fixed = {**texts, **Fix.together(fixes).texts()}
+        return _findings(read_robot(path, urdf, **options, texts=fixed), mesh_files, find)
 
     def is_right(found: Diagnostic, fix: Fix) -> bool:
-        trial = reading(texts=fix.texts())
-        after = _findings(trial, package_dirs, confined, allow_outside)
-        return after.is_as_good_as(evidence, found.code)
+        after = evidence_with(fix)
+        if after.is_as_good_as(evidence, found.code) and not after.is_enough_for(found.code):
+            # An error that is left hides what is wrong with this fix: try it with the likeliest fixes of all.
+            after = evidence_with(fix, *likeliest)
+        return after.is_enough_for(found.code) and after.is_as_good_as(evidence, found.code)
 
-    read.diagnostics.tried(is_right)
+    read = read_robot(path, urdf, **options, texts=texts)
+    evidence = _findings(read, mesh_files, find)
+    likeliest = [found.proposals[0] for found in read.diagnostics if found.proposals]
+    if not (is_stream(path) or (urdf is not None and is_stream(urdf))):  # which can be read only once
+        read.diagnostics.tried(is_right)
     is_sound = read.linked is not None and read.yaml is not None and not read.diagnostics.error_count
     return Report(read.path, tuple(read.diagnostics), saving(read.mechanism) if is_sound else ())
 
 
-def _findings(
-    read: ReadRobot, package_dirs: Sequence[str | os.PathLike[str]], confined: bool, allow_outside: bool
-) -> Evidence:
-    """Add what is found after reading to the diagnostics of a robot; what it says of itself with them."""
+def _findings(read: ReadRobot, mesh_files: _MeshFiles, find: Mapping[str, Any]) -> Evidence:
+    """Add what is found after reading to the diagnostics of a robot; what it says of itself with them.
+
+    Mesh files are found as ``find`` says, and not read again for the same text of a URDF.
+    """
     diagnostics = read.diagnostics
     refused = diagnostics.refused  # without meshes, which the kinematics does not need
     meshes: dict[str, Mesh] = {}
     analysis: Analysis | None = None
     if read.tree is not None:
-        files = find_meshes(read.urdf, package_dirs, confined=confined, allow_outside=allow_outside)
-        by_path, unreadable = _read_mesh_files(read.urdf, files)
+        text = read.urdf.document.source.data
+        if text not in mesh_files:
+            files = find_meshes(read.urdf, **find)
+            mesh_files[text] = files, *_read_mesh_files(read.urdf, files)
+        files, by_path, unreadable = mesh_files[text]
         meshes = {uri: by_path[path] for uri, path in files.paths.items() if path in by_path}
         for found in (*files.diagnostics, *unreadable):
             diagnostics.add(found)
@@ -248,7 +270,7 @@ def _findings(
         warn_of_ignored_mimics(read.mechanism, read.urdf, diagnostics)
         advise_on_angles(read, diagnostics)
         advise_on_lengths(read, meshes, diagnostics)
-    return Evidence(diagnostics.counts(), analysis)
+    return Evidence(diagnostics.counts(), diagnostics.error_count == 0, analysis)
 
 
 def _check_loops(read: ReadRobot) -> Analysis | None:

@@ -6,8 +6,22 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from eurdf.diagnostics import REGISTRY, Phase
+
 if TYPE_CHECKING:
     from eurdf.kinematics.analysis import Analysis
+
+
+#: Phases whose errors are in the text of the description: what they hide says nothing about them.
+_OF_THE_TEXT = (Phase.YAML, Phase.SCHEMA)
+
+#: Codes of what a value says by itself, whatever the rest of the robot is: an error hides them, but no fix causes them.
+_LOCAL = frozenset(
+    {
+        *("x-angle-in-degrees", "x-length-in-millimetres", "x-tiny-robot", "x-quaternion-order"),
+        *("x-massless-link", "x-mimic-ignored", "x-no-actuator", "closure-type-unknown", "urdf-no-range"),
+    }
+)
 
 
 @dataclass(frozen=True)
@@ -16,19 +30,29 @@ class Evidence:
 
     Attributes:
         counts: The number of diagnostics of each code.
+        is_whole: Whether it has no error, which would hide others.
         analysis: How it moves; None if that is not known, as of one with errors.
     """
 
     counts: Counter[str]
+    is_whole: bool
     analysis: Analysis | None
+
+    def is_enough_for(self, code: str) -> bool:
+        """Whether it can show that a fix of a diagnostic is right: the text alone decides what is wrong with it."""
+        return self.is_whole or REGISTRY[code].phase in _OF_THE_TEXT
 
     def is_as_good_as(self, before: Evidence, code: str) -> bool:
         """Whether after a fix of one diagnostic, whose code is given, the robot is at least as good as before.
 
-        That diagnostic is gone, and there is no new one; no actuator has lost its independence, and the robot has not
-        fewer motions than its actuators have.
+        That diagnostic is gone, and there is no new one, except what an error hid before; no actuator has lost its
+        independence, and the robot has not fewer motions than its actuators have.
         """
-        if self.counts[code] >= before.counts[code] or self.counts - before.counts:
+        new = {each for each in self.counts if self.counts[each] > before.counts[each]}
+        if REGISTRY[code].phase in _OF_THE_TEXT:
+            new = {each for each in new if REGISTRY[each].phase in _OF_THE_TEXT}
+            return not new and self.counts[code] < before.counts[code]
+        if self.counts[code] >= before.counts[code] or not new <= (set() if before.is_whole else _LOCAL):
             return False
         if self.analysis is None:
             return before.analysis is None

@@ -38,7 +38,9 @@ def summary_line(report: Report, strict: bool = False) -> Line:
     """The verdict on one robot."""
     counts = _counts(report)
     style = "bold red" if not report.passes(strict) else "yellow" if counts else "green"
-    return [(f"{visible(report.path)}: ", "bold"), (counts or "valid", style)]
+    fixes = len(report.fixes)
+    more = f"; `eurdf check --fix` applies {plural(fixes, 'fix', 'fixes')}" if fixes else ""
+    return [(f"{visible(report.path)}: ", "bold"), (counts or "valid", style), (more, "")]
 
 
 def total_line(reports: Sequence[Report], strict: bool = False) -> Line:
@@ -105,7 +107,7 @@ def _excerpt_lines(found: Diagnostic, width: int, bar: str) -> Iterator[Line]:
                 ]
     if found.hint:
         hint = visible(found.hint)[:_LONGEST_MESSAGE]
-        yield [(f"{'':>5} = ", "blue"), ("hint", "bold cyan"), (f": {hint}", "")]
+        yield [(f"{'':>5} = ", "blue"), ("fix" if found.fix else "hint", "bold cyan"), (f": {hint}", "")]
 
 
 def _clip(text: str, span: tuple[int, int], start: int | None, end: int | None, width: int) -> tuple[str, int, int]:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any
 
-from eurdf.diagnostics import Diagnostic, did_you_mean
+from eurdf.diagnostics import Diagnostic, Fix, renamings
+from eurdf.diagnostics.wording import similar
 from eurdf.format.closure_model import CLOSURE
 from eurdf.format.conventions import HINT, VERSION2_0, VERSION2_1, VERSION_KEY, Version
+from eurdf.format.fixes import added, free_name, named, removed, renamed, restated
 from eurdf.format.joint_model import ACTUATOR, JOINT, LimitsEntry
 from eurdf.format.mappings import OneOf, Record, in_order
 from eurdf.format.model import VERSION1, VERSION2
@@ -38,6 +41,12 @@ _OF_JOINTS -= {"name", "type", "joint", "axes"}
 
 #: Keys of the file whose values are mappings of names that the user chooses, and what these are names of.
 _NAMED = {"joints": "joint", "configurations": "configuration"}
+
+#: Lists of the file whose items have a name that may be any, and what these are.
+_NUMBERED = {"closures": "closure", "couplings": "coupling"}
+
+#: Keys that only one type has.
+_TYPES = {"axes": "universal", "pitch": "helical", "length": "distance", "axis": "hinge"}
 
 
 def diagnostics_of(found: Sequence[Violation], version: Version, document: YamlDocument) -> list[Diagnostic]:
@@ -95,7 +104,7 @@ class _Messages:
             last = diagnostics.pop()
             more = f"{self.omitted:,} more errors of the file are not listed"
             hint = f"{last.hint}; {more}" if last.hint else more
-            diagnostics.append(Diagnostic(last.code, last.message, last.place, hint))
+            diagnostics.append(Diagnostic(last.code, last.message, last.place, hint, proposals=last.proposals))
         return diagnostics
 
     # -- missing and unknown keys ---------------------------------------------------------------------------------
@@ -105,7 +114,21 @@ class _Messages:
         said = sorted((" or ".join(f"'{other}'" for other in _alternatives(key)) for key in keys), key=len)
         listed = f"{', '.join(said[:-1])} and {said[-1]}" if len(said) > 1 else said[0]
         hint = next(filter(None, (self.key_outside(mapping, key) for key in keys)), None)
-        return Diagnostic("missing-key", f"{subject(mapping)} lacks {listed}", self.place(mapping), hint)
+        value = self.missing_value(mapping, keys[0]) if len(keys) == 1 else None
+        proposals = () if value is None else added(self.document, mapping, keys[0], value)
+        message = f"{subject(mapping)} lacks {listed}"
+        return Diagnostic("missing-key", message, self.place(mapping), hint, proposals=tuple(proposals))
+
+    def missing_value(self, mapping: Pointer, key: str) -> str | None:
+        """The value that a missing key can only have, or that may be any: a name."""
+        if key == "type":
+            return next((kind for other, kind in _TYPES.items() if other in self.mapping_at(mapping)), None)
+        if key != "name" or mapping[0] not in _NUMBERED:
+            return None
+        lists = [self.document.data.get(each) for each in _NUMBERED]
+        items = [item for each in lists if isinstance(each, list) for item in each]
+        taken = {item.get("name") for item in items if isinstance(item, dict)}
+        return free_name(f"{_NUMBERED[str(mapping[0])]}_{int(mapping[1]) + 1}", taken)
 
     def unknown_key(self, violation: Violation, meant: str | None) -> Diagnostic:
         """The diagnostic of a key that the mapping does not have, or that does not go with its others.
@@ -124,16 +147,18 @@ class _Messages:
         later = of_any_form.keys(VERSION2_1).keys() - of_any_form.keys(self.version)
         likely = meant or likeliest_key(key, (*record.all_keys, *apart))
         beside = self.another_entry(violation.pointer) if meant is None else None
+        proposals: Sequence[Fix] = ()
         if meant is None and (outside := _key_of_the_file(violation.pointer)):
             hint = outside
         elif not mapping and key in VERSION1.all_keys:
             hint = f"it is a key of version 1; in version 2.0, use '{VERSION1.all_keys[key].becomes}'"
         elif key in later:
-            hint = self.version_hint(f"'{key}'")
+            hint, proposals = self.version_hint(f"'{key}'"), self.version_fix()
         elif meant is None and (of_joint := _key_of_a_joint(violation.pointer)):
             hint = of_joint
         elif likely is not None:
             hint = f"did you mean '{likely}'?" + (f" {beside}" if beside else "")
+            proposals = renamed(self.document, violation.pointer, likely, key=True)
         elif beside:
             hint = beside
         else:
@@ -143,7 +168,11 @@ class _Messages:
             known = ", ".join(f"'{known}'" for known, _ in in_order(keys))
             hint = f"the keys here are {known}; your own keys begin with 'x-'"
         message = f"{subject(mapping)} has an unknown key {quoted(key)}"
-        return Diagnostic("unknown-key", message, place, hint)
+        return Diagnostic("unknown-key", message, place, hint, proposals=tuple(proposals))
+
+    def version_fix(self) -> tuple[Fix]:
+        """The version that has what version 2.1 adds."""
+        return (restated(self.document, (VERSION_KEY,), VERSION2_1, f"write {VERSION_KEY}:"),)
 
     def version_hint(self, what: str) -> str:
         """Which line to change so that a file may have what version 2.1 adds."""
@@ -164,14 +193,18 @@ class _Messages:
                 return self.wrong_choice(pointer, value, about)
             case "later-value":
                 message = f"{name} cannot be {described(value)} in a file of version {VERSION2_0}"
-                return Diagnostic("wrong-value", message, place, self.version_hint(f"{pointer[-1]} '{value}'"))
+                hint = self.version_hint(f"{pointer[-1]} '{value}'")
+                return Diagnostic("wrong-value", message, place, hint, proposals=self.version_fix())
             case "missing-key" if about is not None:
                 return Diagnostic(code, f"{name} {text}", self.place((*pointer, about), key=True))
             case "number-out-of-bounds":
                 return Diagnostic(code, f"{name} {text}", place, HINT)
             case "wrong-type":
-                hint = self.misplaced(pointer, value) or _type_hint(text, pointer, value)
-                return Diagnostic(code, f"{name} {text}, not {described(value)}", place, hint)
+                message = f"{name} {text}, not {described(value)}"
+                if (misplaced := self.misplaced(pointer, value)) is not None:
+                    return Diagnostic(code, message, place, misplaced)
+                fixes = _type_fix(self.document, text, pointer, value)
+                return Diagnostic(code, message, place, _type_hint(text, pointer, value), proposals=fixes)
         return Diagnostic(code, f"{name} {text}" + ("" if value is None else f", not {described(value)}"), place)
 
     def wrong_choice(self, pointer: Pointer, value: Any, allowed: Sequence[str]) -> Diagnostic:
@@ -182,7 +215,8 @@ class _Messages:
         if not isinstance(value, str):
             return Diagnostic("wrong-type", message, self.place(pointer))
         hint = _JOINT_TYPE_HINTS.get(value) if pointer[0] == "joints" else None
-        return Diagnostic("wrong-value", message, self.place(pointer), hint or did_you_mean(value, allowed))
+        proposals = renamings(similar(value, allowed), partial(named, self.document, pointer, False))
+        return Diagnostic("wrong-value", message, self.place(pointer), hint, proposals=tuple(proposals))
 
     # -- what is indented too little or too much --------------------------------------------------------------------
 
@@ -268,6 +302,29 @@ def _key_of_a_joint(pointer: Pointer) -> str | None:
     )
 
 
+def _type_fix(document: YamlDocument, must: str, pointer: Pointer, value: Any) -> tuple[Fix, ...]:
+    """What `_type_hint` says, as a fix."""
+    if value is None:
+        return () if isinstance(pointer[-1], int) else tuple(removed(document, pointer, f"'{pointer[-1]}'"))
+    if must == "must be a list" and isinstance(value, str | int | float) and pointer[-1] not in ("xyz", "rpy", "axis"):
+        return (restated(document, pointer, [value]),)
+    if "number" in must and isinstance(value, str) and (number := _number(value)) is not None:
+        return (restated(document, pointer, int(number) if number.is_integer() else number),)
+    if ("text" in must or "name" in must) and isinstance(value, bool | int | float):
+        start, end = document.span(pointer)
+        return (restated(document, pointer, document.source.text[start:end]),)
+    return ()
+
+
+def _number(text: str) -> float | None:
+    """The finite number that a text is, if it is one, also with a comma or underscores."""
+    try:
+        number = float(text.replace("_", "").replace(",", "."))
+    except ValueError:
+        return None
+    return number if math.isfinite(number) else None
+
+
 def _type_hint(must: str, pointer: Pointer, value: Any) -> str | None:
     """How to write what is probably meant, if it can be guessed."""
     if value is None:
@@ -281,10 +338,7 @@ def _type_hint(must: str, pointer: Pointer, value: Any) -> str | None:
             return "write three numbers in brackets, like [0, 0, 1]"
         return f"write it as a list: [{value}]"
     if "number" in must and isinstance(value, str):
-        try:
-            number = float(value.replace("_", "").replace(",", "."))
-        except ValueError:
-            return None
-        if math.isfinite(number):
+        number = _number(value)
+        if number is not None:
             return f"write the number as {repr(number).removesuffix('.0')}, without quotes"
     return None

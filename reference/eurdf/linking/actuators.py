@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
+from eurdf.format.fixes import removed, renumbered, swapped
 from eurdf.format.joint_model import Geared
 from eurdf.linking.joints import Joints
 from eurdf.linking.merging import MASSLESS
@@ -40,10 +42,14 @@ def link_actuators(entries: Iterable[Geared], joints: Joints) -> tuple[str, ...]
             message = f"joint '{name}' was split into two joints by version 1"
             reporter.report("unknown-actuator", message, pointer, f"actuate '{first}' or '{second}'")
         elif joint is None:
-            hint = joints.meant(name, (other.name for other in joints.by_name.values() if not other.type.is_fixed))
-            reporter.report("unknown-actuator", f"actuator '{name}' is not a joint of the robot", pointer, hint)
+            moving = (other.name for other in joints.by_name.values() if not other.type.is_fixed)
+            message = f"actuator '{name}' is not a joint of the robot"
+            joints.report_name("unknown-actuator", message, pointer, name, moving)
         elif name in listed:
-            reporter.report("actuator-duplicate", f"joint '{name}' is actuated twice", pointer, "remove one")
+            is_plain = pointer == entry.pointer
+            fixes = partial(removed, reporter.document, pointer, f"the second '{name}'") if is_plain else ()
+            message = f"joint '{name}' is actuated twice"
+            reporter.report("actuator-duplicate", message, pointer, "which of them is another joint?", fixes)
         elif joint.type.is_fixed:
             hint = "remove it, or actuate a joint that moves"
             reporter.report("actuator-immobile", f"joint '{name}' is fixed and cannot be actuated", pointer, hint)
@@ -70,6 +76,7 @@ def _has_motor(entry: Geared, named: Mapping[str, str], reporter: YamlReporter) 
             f"there is already an actuator '{name}', of joint '{named[name]}'",
             pointer,
             "give every actuator a unique name; an actuator without a name has that of its joint",
+            () if entry.name is None else partial(renumbered, reporter.document, pointer, name, named),
         )
         return False
     if entry.control is not None and entry.control[0] > entry.control[1]:
@@ -78,7 +85,8 @@ def _has_motor(entry: Geared, named: Mapping[str, str], reporter: YamlReporter) 
             "actuator-control-reversed",
             f"the lower bound {lower:g} of the control range of actuator '{name}' is above the upper bound {upper:g}",
             (*entry.pointer, "control"),
-            "swap the two bounds",
+            "are they in the wrong order, or is a sign wrong?",
+            swapped(reporter.document, (*entry.pointer, "control", 0), (*entry.pointer, "control", 1)),
         )
         return False
     return True

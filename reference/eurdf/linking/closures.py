@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
+from functools import partial
 
 from eurdf.closures import REGISTRY
 from eurdf.format.closure_model import ClosureEntry
+from eurdf.format.fixes import renumbered
 from eurdf.linking.frame_names import FrameNames
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import RIGID, Closure, Compliance
@@ -15,13 +17,14 @@ from eurdf.reading.yaml_reader import YamlReporter
 
 
 def link_closures(
-    entries: Iterable[ClosureEntry], names: FrameNames, rigid: Mapping[str, str], reporter: YamlReporter
+    entries: Sequence[ClosureEntry], names: FrameNames, rigid: Mapping[str, str], reporter: YamlReporter
 ) -> tuple[Closure, ...]:
     """Look the frames of every closure up and check what two frames can have wrong together.
 
     A closure of a type that begins with ``x-`` is left out (EU-CLO-012). ``rigid`` has the body that each is fixed to.
     """
     closures: list[Closure] = []
+    names_of_all = {entry.name for entry in entries}
     taken: dict[str, ClosureEntry] = {}
     joined: dict[frozenset[tuple[str, Pose]], str] = {}
     for entry in entries:
@@ -31,6 +34,7 @@ def link_closures(
                 f"there is already a closure '{entry.name}'",
                 (*entry.pointer, "name"),
                 "give every closure a unique name",
+                partial(renumbered, reporter.document, (*entry.pointer, "name"), entry.name, names_of_all),
             )
             continue
         taken[entry.name] = entry
@@ -43,7 +47,7 @@ def link_closures(
                 "closure-duplicate",
                 f"closure '{entry.name}' connects the same two frames as '{joined[pair]}'",
                 entry.pointer,
-                "remove one of them",
+                "which of them connects other frames?",
             )
             continue
         joined[pair] = entry.name

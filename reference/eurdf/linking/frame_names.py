@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from functools import partial
 from itertools import chain
 
-from eurdf.diagnostics import did_you_mean
+from eurdf.diagnostics import Fix
 from eurdf.format.closure_model import Frame as FrameEntry
 from eurdf.format.closure_model import FrameReference, NamedFrame
+from eurdf.format.fixes import report_name, restated
 from eurdf.linking.joints import Joints
 from eurdf.mechanism.body import Anchor, Frame
 from eurdf.mechanism.pose import Pose
@@ -76,6 +78,7 @@ class FrameNames:
                     f"'{name}' is both a link and a joint, and the child of the joint is another link, '{child}'",
                     reference.pointer,
                     f"write {{link: {name}}} or {{joint: {name}}}",
+                    partial(self._either, name, reference.pointer),
                 )
                 return None
             return Anchor(name, frame=name)
@@ -85,6 +88,11 @@ class FrameNames:
             known = chain(self._frames, self._urdf.links, self._urdf.joints, self._joints)
             self._report_unknown(name, "link, joint or frame", reference.pointer, known)
         return None
+
+    def _either(self, name: str, pointer: Pointer) -> list[Fix]:
+        """Proposals for an ambiguous name: each of its two meanings."""
+        document = self._made.reporter.document
+        return [replace(restated(document, pointer, {kind: name}), rivals=True) for kind in ("link", "joint")]
 
     def _body(self, reference: FrameReference) -> str | None:
         name, pointer = reference.target, (*reference.pointer, reference.kind)
@@ -99,5 +107,5 @@ class FrameNames:
         return child
 
     def _report_unknown(self, name: str, what: str, pointer: Pointer, known: Iterable[str]) -> None:
-        hint = partial(did_you_mean, name, known)
-        self._made.reporter.report("unknown-frame", f"'{name}' is not a {what} of the robot", pointer, hint)
+        message = f"'{name}' is not a {what} of the robot"
+        report_name(self._made.reporter, "unknown-frame", message, pointer, name, known)

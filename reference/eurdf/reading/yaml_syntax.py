@@ -10,7 +10,7 @@ import yaml
 from yaml import CSafeLoader
 from yaml.error import MarkedYAMLError, YAMLError
 
-from eurdf.diagnostics import FileError, Place
+from eurdf.diagnostics import FileError, Fix, Place
 from eurdf.reading.indentation import first_line_hint, indentation_hint
 from eurdf.reading.source import Source
 
@@ -102,7 +102,14 @@ def stray_mark(source: Source, data: bytes) -> FileError | None:
         return None
     message = "a byte order mark, U+FEFF, is allowed only at the start of the file and in quotes"
     hint = 'remove it, or write "\\ufeff" in double quotes'
-    return FileError("yaml-syntax", message, source.place(index, index + 1), hint)
+    fix = Fix("remove it", (source.edit(index, index + 1, ""),))
+    return FileError("yaml-syntax", message, source.place(index, index + 1), hint, (fix,))
+
+
+def version_fix(source: Source) -> tuple[Fix, ...]:
+    """The proposal to state version 1.2, which is how the file is read."""
+    found = re.search(r"^%YAML[ \t]+(\d+\.\d+)", source.text, re.MULTILINE)
+    return () if found is None else (Fix("write %YAML 1.2", (source.edit(*found.span(1), "1.2"),)),)
 
 
 def syntax_error(source: Source, error: YAMLError | UnicodeDecodeError) -> FileError:
@@ -135,7 +142,22 @@ def syntax_error(source: Source, error: YAMLError | UnicodeDecodeError) -> FileE
         if error.problem == _TOO_DEEP:
             message = "this key is not aligned with those before it"
     start = context if meaning.late else problem
-    return FileError(meaning.code, message, source.place(start, min(start + 1, len(text))), advice)
+    fixes = version_fix(source) if meaning.code == "yaml-version" else _syntax_fixes(source, meaning, start)
+    return FileError(meaning.code, message, source.place(start, min(start + 1, len(text))), advice, fixes)
+
+
+def _syntax_fixes(source: Source, meaning: _Meaning, at: int) -> tuple[Fix, ...]:
+    """Spaces where a tab indents, or after a colon that lacks one."""
+    line, _ = source.position(at)
+    start, end = source.lines.span(line) or (at, at)
+    text = source.text[start:end]
+    if meaning is _TAB:
+        blanks = len(text) - len(text.lstrip())
+        return (Fix("indent with spaces", (source.edit(start, start + blanks, text[:blanks].expandtabs(2)),)),)
+    if found := re.match(r"\s*(?:- )?[\w-]+(:)[^\s:]", text):
+        colon = start + found.end(1)
+        return (Fix("write a space after the ':'", (source.edit(colon, colon, " "),)),)
+    return ()
 
 
 def _about_indentation(source: Source, said: str, problem: int) -> str | None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from eurdf.diagnostics import did_you_mean
 from eurdf.format.conventions import is_too_small, lower_limit, too_small, upper_limit
 from eurdf.format.urdf.data import Limit, UrdfJoint
 from eurdf.format.urdf.elements import RATES, RESERVED, URDF_JOINT_TYPES, UrdfReader, named
@@ -60,10 +59,12 @@ def _type(reader: UrdfReader, element: Element) -> JointType | None:
         return None
     kind = URDF_JOINT_TYPES.get(text)
     if kind is None:
-        hint = did_you_mean(text, URDF_JOINT_TYPES)
+        message = f"'{text}' is not a joint type of URDF"
         if text in ("spherical", "ball", "universal", "cylindrical", "helical", "screw"):
             hint = "write 'revolute' or 'continuous' here, and the type under 'joints' in the YAML file"
-        reader.report("urdf-joint-type", f"'{text}' is not a joint type of URDF", element, "type", hint)
+            reader.report("urdf-joint-type", message, element, "type", hint)
+        else:
+            reader.reporter.report_name("urdf-joint-type", message, element, "type", URDF_JOINT_TYPES)
     return kind
 
 

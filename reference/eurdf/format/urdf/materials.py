@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
-
-from eurdf.diagnostics import did_you_mean
 from eurdf.format.urdf.elements import WHITE, UrdfReader, named
 from eurdf.reading.xml_reader import Element
 
@@ -38,9 +35,7 @@ class Materials:
                 if self._nameless:  # the material without a name may be the one meant
                     return None, ""
                 message = f"material '{name}' is not defined" if name else f"{named(element)} has no name and no color"
-                self._reader.report(
-                    "urdf-unknown-material", message, element, "name", partial(did_you_mean, name, self._known)
-                )
+                self._reader.reporter.report_name("urdf-unknown-material", message, element, "name", self._known)
                 return None, ""
             return self._known[name]
         own = self._look(element)
