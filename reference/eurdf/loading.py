@@ -16,7 +16,7 @@ from eurdf.advice.angles import advise_on_angles
 from eurdf.advice.lengths import advise_on_lengths
 from eurdf.advice.loops import closure_diagnostics
 from eurdf.advice.quaternions import advise_on_quaternions
-from eurdf.advice.trial import Evidence
+from eurdf.advice.trial import Evidence, is_of_the_text
 from eurdf.diagnostics import Diagnostic, Diagnostics, Fix, Severity, quoted
 from eurdf.diagnostics.report import Report
 from eurdf.errors import InvalidRobot
@@ -222,19 +222,21 @@ def check_texts(texts: Mapping[str, str], path: RobotSource, urdf: RobotSource |
     find = {name: value for name, value in options.items() if name != "xacro_args"}
     mesh_files: _MeshFiles = {}
 
+    known = {**texts}
+
     @cache
-    def evidence_with(*fixes: Fix) -> Evidence:
-        fixed = {**texts, **Fix.together(fixes).texts()}
-        return _findings(read_robot(path, urdf, **options, texts=fixed), mesh_files, find)
+    def evidence_with(code: str, *fixes: Fix) -> Evidence:
+        trial = read_robot(path, urdf, **options, texts={**known, **Fix.together(fixes).texts()})
+        return Evidence(trial.diagnostics.counts()) if is_of_the_text(code) else _findings(trial, mesh_files, find)
 
     def is_right(found: Diagnostic, fix: Fix) -> bool:
-        after = evidence_with(fix)
+        after = evidence_with(found.code, fix)
         if after.is_as_good_as(evidence, found.code) and not after.is_enough_for(found.code):
             # An error that is left hides what is wrong with this fix: try it with the likeliest fixes of all.
-            after = evidence_with(fix, *likeliest)
+            after = evidence_with(found.code, fix, *likeliest)
         return after.is_enough_for(found.code) and after.is_as_good_as(evidence, found.code)
 
-    read = read_robot(path, urdf, **options, texts=texts)
+    read = read_robot(path, urdf, **options, texts=known)
     evidence = _findings(read, mesh_files, find)
     likeliest = [found.proposals[0] for found in read.diagnostics if found.proposals]
     if not (is_stream(path) or (urdf is not None and is_stream(urdf))):  # which can be read only once
@@ -270,7 +272,7 @@ def _findings(read: ReadRobot, mesh_files: _MeshFiles, find: Mapping[str, Any]) 
         warn_of_ignored_mimics(read.mechanism, read.urdf, diagnostics)
         advise_on_angles(read, diagnostics)
         advise_on_lengths(read, meshes, diagnostics)
-    return Evidence(diagnostics.counts(), diagnostics.error_count == 0, analysis)
+    return Evidence(diagnostics.counts(), not diagnostics.error_count, analysis)
 
 
 def _check_loops(read: ReadRobot) -> Analysis | None:

@@ -67,8 +67,8 @@ def test_error_is_shown_with_place_and_exits_1(folder: Path, run: Run) -> None:
     assert code == 1
     assert out.startswith("arm/robot.yaml:2:13: error: ")
     assert "    2 | actuators: [sholder]\n      |             ^^^^^^^\n" in out
-    assert "did you mean 'shoulder'?" in out
-    assert out.endswith("arm: 1 error\n")
+    assert "= fix: write 'shoulder'" in out
+    assert out.endswith("arm: 1 error; --fix applies 1 fix\n")
     assert err == ""
 
 
@@ -80,7 +80,7 @@ def test_every_robot_below_a_folder_is_checked(folder: Path, run: Run) -> None:
     assert code == 1
     assert [line for line in out.splitlines() if line.startswith("robots/") and " error: " not in line] == [
         "robots/a: valid",
-        "robots/b: 1 error",
+        "robots/b: 1 error; --fix applies 1 fix",
         "robots/deep/c: valid",
     ]
     assert out.endswith("3 robots: 2 passed, 1 failed (1 error)\n")

@@ -12,9 +12,6 @@ if TYPE_CHECKING:
     from eurdf.kinematics.analysis import Analysis
 
 
-#: Phases whose errors are in the text of the description: what they hide says nothing about them.
-_OF_THE_TEXT = (Phase.YAML, Phase.SCHEMA)
-
 #: Codes of what a value says by itself, whatever the rest of the robot is: an error hides them, but no fix causes them.
 _LOCAL = frozenset(
     {
@@ -22,6 +19,11 @@ _LOCAL = frozenset(
         *("x-massless-link", "x-mimic-ignored", "x-no-actuator", "closure-type-unknown", "urdf-no-range"),
     }
 )
+
+
+def is_of_the_text(code: str) -> bool:
+    """Whether the text of a description alone decides what is wrong: what such an error hides says nothing of it."""
+    return REGISTRY[code].phase in (Phase.YAML, Phase.SCHEMA)
 
 
 @dataclass(frozen=True)
@@ -35,12 +37,12 @@ class Evidence:
     """
 
     counts: Counter[str]
-    is_whole: bool
-    analysis: Analysis | None
+    is_whole: bool = False
+    analysis: Analysis | None = None
 
     def is_enough_for(self, code: str) -> bool:
-        """Whether it can show that a fix of a diagnostic is right: the text alone decides what is wrong with it."""
-        return self.is_whole or REGISTRY[code].phase in _OF_THE_TEXT
+        """Whether it can show that a fix of a diagnostic is right."""
+        return self.is_whole or is_of_the_text(code)
 
     def is_as_good_as(self, before: Evidence, code: str) -> bool:
         """Whether after a fix of one diagnostic, whose code is given, the robot is at least as good as before.
@@ -49,9 +51,8 @@ class Evidence:
         independence, and the robot has not fewer motions than its actuators have.
         """
         new = {each for each in self.counts if self.counts[each] > before.counts[each]}
-        if REGISTRY[code].phase in _OF_THE_TEXT:
-            new = {each for each in new if REGISTRY[each].phase in _OF_THE_TEXT}
-            return not new and self.counts[code] < before.counts[code]
+        if is_of_the_text(code):
+            return self.counts[code] < before.counts[code] and not any(map(is_of_the_text, new))
         if self.counts[code] >= before.counts[code] or not new <= (set() if before.is_whole else _LOCAL):
             return False
         if self.analysis is None:

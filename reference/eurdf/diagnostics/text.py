@@ -39,7 +39,7 @@ def summary_line(report: Report, strict: bool = False) -> Line:
     counts = _counts(report)
     style = "bold red" if not report.passes(strict) else "yellow" if counts else "green"
     fixes = len(report.fixes)
-    more = f"; `eurdf check --fix` applies {plural(fixes, 'fix', 'fixes')}" if fixes else ""
+    more = f"; --fix applies {plural(fixes, 'fix', 'fixes')}" if fixes else ""
     return [(f"{visible(report.path)}: ", "bold"), (counts or "valid", style), (more, "")]
 
 

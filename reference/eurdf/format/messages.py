@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -153,7 +154,8 @@ class _Messages:
         elif not mapping and key in VERSION1.all_keys:
             hint = f"it is a key of version 1; in version 2.0, use '{VERSION1.all_keys[key].becomes}'"
         elif key in later:
-            hint, proposals = self.version_hint(f"'{key}'"), self.version_fix()
+            hint = self.version_hint(f"'{key}'")
+            proposals = self.version_fix(hint)
         elif meant is None and (of_joint := _key_of_a_joint(violation.pointer)):
             hint = of_joint
         elif likely is not None:
@@ -170,9 +172,9 @@ class _Messages:
         message = f"{subject(mapping)} has an unknown key {quoted(key)}"
         return Diagnostic("unknown-key", message, place, hint, proposals=tuple(proposals))
 
-    def version_fix(self) -> tuple[Fix]:
-        """The version that has what version 2.1 adds."""
-        return (restated(self.document, (VERSION_KEY,), VERSION2_1, f"write {VERSION_KEY}:"),)
+    def version_fix(self, hint: str) -> tuple[Fix]:
+        """What the hint about the version says, as a fix."""
+        return (replace(restated(self.document, (VERSION_KEY,), VERSION2_1), summary=hint),)
 
     def version_hint(self, what: str) -> str:
         """Which line to change so that a file may have what version 2.1 adds."""
@@ -194,7 +196,7 @@ class _Messages:
             case "later-value":
                 message = f"{name} cannot be {described(value)} in a file of version {VERSION2_0}"
                 hint = self.version_hint(f"{pointer[-1]} '{value}'")
-                return Diagnostic("wrong-value", message, place, hint, proposals=self.version_fix())
+                return Diagnostic("wrong-value", message, place, hint, proposals=self.version_fix(hint))
             case "missing-key" if about is not None:
                 return Diagnostic(code, f"{name} {text}", self.place((*pointer, about), key=True))
             case "number-out-of-bounds":
