@@ -10,7 +10,7 @@ from eurdf.diagnostics.lines import Lines
 from eurdf.diagnostics.wording import did_you_mean, similar
 
 #: Names that are tried in the place of one that is unknown, at most.
-_FEW = 3
+_FEW = 6
 
 
 @dataclass(frozen=True, slots=True)

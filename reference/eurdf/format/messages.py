@@ -115,7 +115,10 @@ class _Messages:
         said = sorted((" or ".join(f"'{other}'" for other in _alternatives(key)) for key in keys), key=len)
         listed = f"{', '.join(said[:-1])} and {said[-1]}" if len(said) > 1 else said[0]
         hint = next(filter(None, (self.key_outside(mapping, key) for key in keys)), None)
-        value = self.missing_value(mapping, keys[0]) if len(keys) == 1 else None
+        is_all = len(keys) == 1 and not any(
+            each.code == "unknown-key" and each.pointer[:-1] == mapping for each in self.found
+        )
+        value = self.missing_value(mapping, keys[0]) if is_all else None
         proposals = () if value is None else added(self.document, mapping, keys[0], value)
         message = f"{subject(mapping)} lacks {listed}"
         return Diagnostic("missing-key", message, self.place(mapping), hint, proposals=tuple(proposals))

@@ -306,8 +306,18 @@ class UrdfReader:
         """EU-URD-004: an element has its required child elements."""
         element = found.get(tag)
         if element is None:
-            self.report("urdf-missing-element", f"{named(parent)} has no <{tag}>", parent)
+            message, proposals = f"{named(parent)} has no <{tag}>", partial(self._retaggings_to, parent, tag)
+            self.report("urdf-missing-element", message, parent, proposals=proposals)
         return element
+
+    def _retaggings_to(self, parent: Element, tag: str) -> list[Fix]:
+        """Proposals to give a child another tag that has one like it."""
+        document, children = self.reporter.document, {str(child.tag): child for child in parent}
+        alike = similar(tag, children.keys() - _KNOWN_CHILDREN[str(parent.tag)])
+        question = "did you mean <{}> where there is <{}>?"
+        return [
+            Fix(f"write <{tag}>", document.retagged(children[each], tag), question.format(tag, each)) for each in alike
+        ]
 
     def origin(self, element: Element | None) -> Pose:
         """The pose of an ``origin``; the identity if there is none or it has an error (EU-FRM-006)."""
