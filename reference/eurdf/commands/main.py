@@ -23,7 +23,7 @@ from eurdf.sandbox import BOUNDS_MEMORY
 
 #: The commands, in the order in which the help shows them. Each is in the module of its name.
 COMMANDS = (
-    *("check", "info", "view", "picture", "assemble", "export", "import"),
+    *("check", "explain", "info", "view", "picture", "assemble", "export", "import"),
     *("transmission", "serial", "robots", "migrate", "generate", "simplify", "schema", "certify"),
 )
 

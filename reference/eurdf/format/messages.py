@@ -46,9 +46,6 @@ _NAMED = {"joints": "joint", "configurations": "configuration"}
 #: Lists of the file whose items have a name that may be any, and what these are.
 _NUMBERED = {"closures": "closure", "couplings": "coupling"}
 
-#: Keys that only one type has.
-_TYPES = {"axes": "universal", "pitch": "helical", "length": "distance", "axis": "hinge"}
-
 
 def diagnostics_of(found: Sequence[Violation], version: Version, document: YamlDocument) -> list[Diagnostic]:
     """The diagnostics of the errors of a file, which was checked against a version, in file order."""
@@ -126,7 +123,10 @@ class _Messages:
     def missing_value(self, mapping: Pointer, key: str) -> str | None:
         """The value that a missing key can only have, or that may be any: a name."""
         if key == "type":
-            return next((kind for other, kind in _TYPES.items() if other in self.mapping_at(mapping)), None)
+            forms = (JOINT if mapping[0] == "joints" else CLOSURE.forms).records
+            having = [form for form in forms if self.mapping_at(mapping).keys() <= form.keys(self.version).keys()]
+            types = [kind for form in having for kind in form.values_of_type()]
+            return types[0] if len(types) == 1 else None
         if key != "name" or mapping[0] not in _NUMBERED:
             return None
         lists = [self.document.data.get(each) for each in _NUMBERED]
