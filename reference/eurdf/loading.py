@@ -35,8 +35,8 @@ if TYPE_CHECKING:
     from eurdf.kinematics.analysis import Analysis
     from eurdf.pinocchio.robot import Robot
 
-# A tuple: a union would be made in each call.
-_SOURCES = (str, bytes, os.PathLike, Mapping)
+#: The types of a `RobotSource`, as a tuple: a union would be made in each call.
+SOURCES = (str, bytes, os.PathLike, Mapping)
 
 # Mesh files by the text of the URDF that names them: where they are, the meshes by path, and what is wrong with some.
 _MeshFiles = dict[bytes, tuple[FoundFiles, dict[str, Mesh], Diagnostics]]
@@ -163,7 +163,7 @@ def _diagnostics(read: ReadRobot, of_meshes: Sequence[Diagnostic], loops: bool, 
 
 def as_robot(given: Robot | RobotSource, *, geometry: bool = False) -> Robot:
     """The robot that a caller gave, or the one that `load` makes of the path, text or name that was given."""
-    return load(given, geometry=geometry) if isinstance(given, _SOURCES) else given
+    return load(given, geometry=geometry) if isinstance(given, SOURCES) else given
 
 
 def of_any_robot(

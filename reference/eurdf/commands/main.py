@@ -26,7 +26,7 @@ from eurdf.sandbox import BOUNDS_MEMORY
 
 #: The commands, in the groups and the order in which the help shows them. Each is in the module of its name.
 GROUPS = {
-    "look at a robot": ("check", "info", "view", "picture", "robots"),
+    "look at a robot": ("check", "explain", "info", "view", "picture", "robots"),
     "write a description": ("generate", "assemble", "migrate", "simplify", "schema"),
     "convert": ("export", "import", "serial"),
     "measure": ("transmission",),

@@ -133,9 +133,9 @@ class _Messages:
     def missing_value(self, mapping: Pointer, key: str) -> str | None:
         """The value that a missing key can only have, or that may be any: a name."""
         if key == "type":
-            union = CLOSURE.forms if mapping[0] == "closures" else JOINT
-            form = union.form_of(self.mapping_at(mapping))
-            types = form.values_of_type() if isinstance(form, Record) else ()
+            forms = (JOINT if mapping[0] == "joints" else CLOSURE.forms).records
+            having = [form for form in forms if self.mapping_at(mapping).keys() <= form.keys(self.version).keys()]
+            types = [kind for form in having for kind in form.values_of_type()]
             return types[0] if len(types) == 1 else None
         if key != "name" or mapping[0] not in _NUMBERED:
             return None

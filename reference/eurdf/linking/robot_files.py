@@ -127,8 +127,7 @@ def read_robot(
         confined: Whether a URDF that the description names must be in the folder of the description.
         allow_outside: Whether meshes may be anywhere, for `find_meshes`: no mesh is looked for here.
         inertias: Whether to check the inertias of a robot that can be linked. If not, `inertia_diagnostics` does.
-        texts: Texts in place of those of files, by path as diagnostics have it; of texts that were given, by name.
-            What is read is added.
+        texts: Texts in place of those of files, by path as diagnostics have it, or by name; what is read is added.
 
     Raises:
         RobotNotFound: Where there are no such files.
@@ -138,8 +137,7 @@ def read_robot(
     """
     if confined and allow_outside:
         raise ValueError("confined and allow_outside exclude each other; choose one of them")
-    diagnostics = Diagnostics()
-    texts = {} if texts is None else texts
+    diagnostics, texts = Diagnostics(), {} if texts is None else texts
     name = display_name(path)
     try:
         files = RobotFiles(*(_open(file, texts) for file in find_robot(path, urdf)))
@@ -332,12 +330,12 @@ def _own_source(path: Path | Source, confined: bool = False, texts: dict[str, st
     if confined and not is_inside:
         message = f"'{path}' is a link to a file in another folder, and files are confined to their folder"
         raise FileError("file-unreadable", message, Place(os.fspath(path)))
-    return _added_to(texts, read_source(path, is_quoted=is_inside))
+    return _read({} if texts is None else texts, path, is_inside)
 
 
-def _added_to(texts: dict[str, str] | None, source: Source) -> Source:
-    if texts is not None:
-        texts[source.file] = source.text
+def _read(texts: dict[str, str], path: Path, is_quoted: bool) -> Source:
+    source = read_source(path, is_quoted=is_quoted)
+    texts[source.file] = source.text
     return source
 
 
@@ -346,9 +344,8 @@ def _open(file: Path | Source | None, texts: Mapping[str, str]) -> Path | Source
     if file is None:
         return None
     name = file.file if isinstance(file, Source) else os.fspath(file)
-    if name not in texts:
+    if (text := texts.get(name)) is None:
         return file
-    text = texts[name]
     if isinstance(file, Source):
         return replace(file, text=text, data=text.encode())
     return Source(name, text, text.encode(), is_quoted=_is_inside(file, file.parent))
@@ -357,9 +354,7 @@ def _open(file: Path | Source | None, texts: Mapping[str, str]) -> Path | Source
 def _named_source(path: Path, is_quoted: bool, texts: dict[str, str]) -> Source:
     """The text of the URDF that a description names, or the one in its place."""
     found = _open(path, texts)
-    if isinstance(found, Source):
-        return replace(found, is_quoted=is_quoted)
-    return _added_to(texts, read_source(path, is_quoted=is_quoted))
+    return replace(found, is_quoted=is_quoted) if isinstance(found, Source) else _read(texts, path, is_quoted)
 
 
 def _is_inside(path: Path, folder: Path) -> bool:

@@ -29,13 +29,13 @@ def with_configuration(document: YamlDocument, name: str, coordinates: Mapping[s
         NotEditable: The result does not read back as it should, such as where an anchor is involved.
     """
     value: dict[str, Value] = {joint: _plain(values) for joint, values in coordinates.items()}
-    text = _Edit(document).stated(name, value)
+    text = _ChangedText(document).stated(name, value)
     if not _reads_back(text, document.data, name, value):
         raise NotEditable(f"configuration '{name}' cannot be written without changing other parts of the file")
     return text
 
 
-class _Edit:
+class _ChangedText:
     """One text and the changes to it."""
 
     def __init__(self, document: YamlDocument) -> None:
