@@ -55,7 +55,7 @@ def test_message_says_what_to_write_of_joints_left_out(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("value", "hint"), [(57.3, "57.3 degrees are 1.00007 rad"), (-3, "-3 degrees"), (400, "400 degrees")]
+    ("value", "hint"), [(57.3, "57.3 degrees are 1.00007 rad"), (-4, "-4 degrees"), (400, "400 degrees")]
 )
 def test_angle_beyond_its_limits_may_be_in_degrees(tmp_path: Path, value: float, hint: str) -> None:
     (found,) = eurdf.check(written(tmp_path, STAR, f"configurations: {{ready: {{a: {value}}}}}\n")).diagnostics

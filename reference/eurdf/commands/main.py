@@ -65,7 +65,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     as_json = "--json" in argv or "--format=json" in argv or ("--format", "json") in pairwise(argv)
     style = STYLE.set(Style())
     try:
-        args = parser_of(next((name for name in argv if name in COMMANDS), ""), as_json).parse_args(argv)
+        args = parser_of(next((word for word in argv if not word.startswith("-")), ""), as_json).parse_args(argv)
         STYLE.set(Style(*(getattr(args, name, False) for name in Style._fields)))
         code: int = args.run(args)
         sys.stdout.flush()

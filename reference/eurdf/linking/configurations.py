@@ -181,7 +181,8 @@ def _coordinates(
             f"outside its limits {found.lower:.12g} to {found.upper:.12g}"
         )
         angle = math.radians(found.value)
-        if found.unit == "rad" and (within_limits(angle, found.lower, found.upper) or abs(found.value) > math.tau):
+        fits = within_limits(angle, found.lower, found.upper)
+        if found.unit == "rad" and abs(found.value) > (math.pi if fits else math.tau):
             hint = f"is it in degrees? {found.value:g} degrees are {angle:.6g} rad"
         nearest = min(max(found.value, found.lower), found.upper)
         if len(values) == 1 and abs(nearest - found.value) <= QUATERNION_TOLERANCE:
