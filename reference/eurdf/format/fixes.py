@@ -56,7 +56,7 @@ def renumbered(document: YamlDocument, pointer: Pointer, name: str, taken: Conta
 
 def swapped(document: YamlDocument, one: Pointer, other: Pointer) -> Sequence[Fix]:
     """Two numbers, the lower bound above 0 and the upper one below, exchanged; none where a sign may be wrong."""
-    numbers = [_value(document, pointer) for pointer in (one, other)]
+    numbers = [value_at(document, pointer) for pointer in (one, other)]
     if any(isinstance(each, list) for each in numbers) or not numbers[0] > 0.0 > numbers[1]:
         return ()
     edits = [document.edit(one, flow(numbers[1])), document.edit(other, flow(numbers[0]))]
@@ -76,7 +76,7 @@ def added(document: YamlDocument, mapping: Pointer, key: str, value: Value) -> S
 
 def listed(document: YamlDocument, pointer: Pointer, name: str) -> Sequence[Fix]:
     """A list in the place of a mapping of names to mappings, each of which gets its name; none for other mappings."""
-    mapping, text, edits = _value(document, pointer), document.source.text, []
+    mapping, text, edits = value_at(document, pointer), document.source.text, []
     if not mapping or not all(isinstance(item, dict) for item in mapping.values()):
         return ()
     for key in mapping:
@@ -112,7 +112,8 @@ def removed(document: YamlDocument, pointer: Pointer, what: str) -> Sequence[Fix
     return (Fix(f"remove {what}", (document.source.edit(first, last, ""),)),)
 
 
-def _value(document: YamlDocument, pointer: Pointer) -> Any:
+def value_at(document: YamlDocument, pointer: Pointer) -> Any:
+    """The value that a pointer leads to."""
     value: Any = document.data
     for step in pointer:
         value = value[step]

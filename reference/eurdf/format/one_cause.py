@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 from eurdf.diagnostics import Diagnostic, Fix
 from eurdf.diagnostics.wording import enumerated, quoted
 from eurdf.format.conventions import VERSION2_0, VERSION2_1, VERSION_KEY, is_own_key
+from eurdf.format.fixes import value_at
 from eurdf.format.model import VERSION1
 from eurdf.format.value_types import Violation
 from eurdf.format.yaml_text import flow, scalar
@@ -80,10 +80,10 @@ def _merge_keys(found: Sequence[Violation], document: YamlDocument) -> _Causes:
         each.pointer[: each.pointer.index(_MERGE)] for each in found if _MERGE in each.pointer
     ):
         at = (*pointer, _MERGE)
-        merged, place = _value(document, at), document.place(at, True)
+        merged, place = value_at(document, at), document.place(at, True)
         parts = [part for part in (merged if isinstance(merged, list) else [merged]) if isinstance(part, dict)]
         missing = {key: value for part in reversed(parts) for key, value in part.items()}
-        missing = {key: value for key, value in missing.items() if key not in _value(document, pointer)}
+        missing = {key: value for key, value in missing.items() if key not in value_at(document, pointer)}
         between = ", " if document.span(pointer)[1] is not None else "\n" + " " * ((place.column or 1) - 1)
         text = between.join(f"{scalar(key)}: {flow(value)}" for key, value in missing.items())
         hint = f"the keys that it shares must be repeated: {quoted([*missing], len(missing))}"
@@ -99,13 +99,13 @@ def _two_sides(found: Sequence[Violation], document: YamlDocument) -> _Causes:
             continue
         closure = lacking.pointer[:-1]
         unknown = {each.pointer[-1]: each for each in found if each.pointer[:-1] == closure}
-        data = {key: value for key, value in _value(document, closure).items() if isinstance(value, str | dict)}
+        data = {key: value for key, value in value_at(document, closure).items() if isinstance(value, str | dict)}
         stems = {key: match[1] for key in data if key in unknown and (match := _SIDE.fullmatch(key))}
         one, other = next(((a, b) for a in stems for b in stems if a != b and stems[a] == stems[b]), ("", ""))
         if not one:
             continue
         text = f"frames: {flow([data[one], data[other]])}"
-        keys = [*_value(document, closure)]
+        keys = [*value_at(document, closure)]
         follows = keys.index(other) == keys.index(one) + 1
         fixes = _instead(document, (*closure, one), (*closure, other), text, f"write {text}") if follows else ()
         message = f"a closure has no keys {enumerated([one, other])}: its two frames are the list 'frames'"
@@ -119,10 +119,3 @@ def _instead(document: YamlDocument, first: Pointer, last: Pointer, text: str, s
     """A fix that writes a text in place of the entries from one key to another, unless the last is a block."""
     (start, _), (_, end) = document.span(first, True), document.span(last)
     return () if end is None else (Fix(summary, (document.source.edit(start, end, text),)),)
-
-
-def _value(document: YamlDocument, pointer: Pointer) -> Any:
-    value: Any = document.data
-    for step in pointer:
-        value = value[step]
-    return value
