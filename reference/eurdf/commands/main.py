@@ -112,21 +112,21 @@ class _Parser(argparse.ArgumentParser):
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
         """As the base class; what a command does not know is an error of that command, not of `eurdf`."""
-        from eurdf.diagnostics.wording import meant
-
         found, unknown = super().parse_known_args(args, namespace)
         if unknown:
+            from eurdf.diagnostics.wording import meant
+
             hint = meant(unknown[0].partition("=")[0], self._option_string_actions)
             self.error(f"unrecognized arguments: {' '.join(unknown)}{hint}")
         return found, unknown
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
-        from eurdf.convert.formats import format_meant
-        from eurdf.diagnostics.wording import meant
-
         choices = [*(action.choices or ())]
         if not choices or value in choices:
             return
+        from eurdf.convert.formats import format_meant
+        from eurdf.diagnostics.wording import meant
+
         if action.metavar == "COMMAND":
             message = f"there is no command '{value}'{meant(value, choices) or '; `eurdf help` lists the commands'}"
             raise argparse.ArgumentError(None, message)
