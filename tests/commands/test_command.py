@@ -10,7 +10,19 @@ import pytest
 from eurdf.commands.main import COMMANDS, main
 
 #: The commands that link a robot, and those that read a URDF alone.
-OF_ROBOTS = ("check", "info", "view", "picture", "assemble", "export", "transmission", "serial", "migrate", "simplify")
+OF_ROBOTS = (
+    "check",
+    "explain",
+    "info",
+    "view",
+    "picture",
+    "assemble",
+    "export",
+    "transmission",
+    "serial",
+    "migrate",
+    "simplify",
+)
 OF_URDFS = ("generate", "schema")
 
 
