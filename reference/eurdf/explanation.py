@@ -61,7 +61,7 @@ class Topic:
     """What is wrong with it."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Explanation:
     """Why a robot is as it is."""
 
@@ -69,8 +69,12 @@ class Explanation:
     """The robot as it was given; its name, if it was loaded before."""
     topics: tuple[Topic, ...]
     """The subjects on which there is something to say."""
-    diagnostics: tuple[Diagnostic, ...] = field(metadata=HIDDEN, repr=False)
+    diagnostics: tuple[Diagnostic, ...] = field(metadata=HIDDEN)
     """Those of `eurdf.check`, with the fixes; of a loaded robot, those that it has."""
+
+    def __repr__(self) -> str:
+        found = plural(len(self.diagnostics), "diagnostic")
+        return f"<Explanation of '{self.path}': {', '.join(each.subject for each in self.topics)}; {found}>"
 
     def __str__(self) -> str:
         return "\n".join(self.lines())

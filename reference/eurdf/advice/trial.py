@@ -21,9 +21,21 @@ _LOCAL = frozenset(
 )
 
 
+#: Codes of elements and attributes of a URDF, which the other elements say nothing of.
+_OF_ELEMENTS = frozenset(
+    {
+        *("xml-syntax", "urdf-joint-type", "urdf-unknown-element", "urdf-geometry"),
+        *("urdf-missing-attribute", "urdf-missing-element"),
+    }
+)
+
+#: Phases that look at one file.
+_FILES = (Phase.YAML, Phase.SCHEMA, Phase.URDF)
+
+
 def is_of_the_text(code: str) -> bool:
-    """Whether the text of a description alone decides what is wrong: what such an error hides says nothing of it."""
-    return REGISTRY[code].phase in (Phase.YAML, Phase.SCHEMA)
+    """Whether the text of one file alone decides what is wrong: what such an error hides says nothing of it."""
+    return REGISTRY[code].phase in (Phase.YAML, Phase.SCHEMA) or code in _OF_ELEMENTS
 
 
 @dataclass(frozen=True)
@@ -52,7 +64,7 @@ class Evidence:
         """
         new = {each for each in self.counts if self.counts[each] > before.counts[each]}
         if is_of_the_text(code):
-            return self.counts[code] < before.counts[code] and not any(map(is_of_the_text, new))
+            return self.counts[code] < before.counts[code] and not any(REGISTRY[each].phase in _FILES for each in new)
         if self.counts[code] >= before.counts[code] or not new <= (set() if before.is_whole else _LOCAL):
             return False
         if self.analysis is None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cache
 
 from eurdf.diagnostics.lines import Lines
-from eurdf.diagnostics.wording import did_you_mean, similar
+from eurdf.diagnostics.wording import did_you_mean, edits, similar
 
 #: Names that are tried in the place of one that is unknown, at most.
 _FEW = 6
@@ -88,7 +88,17 @@ def misspelt(
         beside: The name of the element that contains it.
     """
     names = cache(lambda: list(known))
-    return lambda: did_you_mean(wrong, names(), beside), lambda: renamings(similar(wrong, names(), beside), write)
+    return lambda: did_you_mean(wrong, names(), beside), lambda: renamings(
+        nearest(wrong, similar(wrong, names(), beside)), write
+    )
+
+
+def nearest(wrong: str, names: Sequence[str]) -> Sequence[str]:
+    """Of some names, those that a wrong one is made to by as few edits, or one more."""
+    if len(names) < 2:
+        return names
+    counts = [edits(wrong, name) for name in names]
+    return [name for name, count in zip(names, counts, strict=True) if count <= min(counts) + 1]
 
 
 def renamings(names: Sequence[str], write: Callable[[str], tuple[Edit, ...]]) -> list[Fix]:

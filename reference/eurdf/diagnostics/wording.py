@@ -87,6 +87,23 @@ def similar(wrong: str, known: Iterable[str], beside: str = "") -> list[str]:
     return sorted(close, key=partial(_ratio, beside), reverse=True) if beside else close
 
 
+def edits(one: str, other: str) -> int:
+    """Number of insertions, deletions and swaps of adjacent characters that turn one name into another."""
+    before: list[int] = []
+    row = list(range(len(other) + 1))
+    for i, a in enumerate(one, 1):
+        above, row = row, [i]
+        for j, b in enumerate(other, 1):
+            least = min(above[j], row[j - 1]) + 1
+            if a == b:
+                least = min(least, above[j - 1])
+            if before and j > 1 and a == other[j - 2] and one[i - 2] == b:
+                least = min(least, before[j - 2] + 1)
+            row.append(least)
+        before = above
+    return row[-1]
+
+
 def meant(wrong: object, known: Iterable[str]) -> str:
     """The hint of `did_you_mean` as the end of a message: after a semicolon, or empty."""
     hint = did_you_mean(wrong, known) if isinstance(wrong, str) else None

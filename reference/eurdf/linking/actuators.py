@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -16,9 +16,10 @@ from eurdf.reading.yaml_node import Pointer
 from eurdf.reading.yaml_reader import YamlDocument, YamlReporter
 
 
-def link_actuators(entries: Iterable[Geared], joints: Joints) -> tuple[str, ...]:
+def link_actuators(entries: Sequence[Geared], joints: Joints) -> tuple[str, ...]:
     """Check every actuator against the joints as the description makes them; returns the names, in file order."""
     reporter = joints.reporter
+    stated = {entry.joint for entry in entries}
     listed: dict[str, None] = {}
     named: dict[str, str] = {}  # by name of an actuator, its joint
     for entry in entries:
@@ -42,7 +43,8 @@ def link_actuators(entries: Iterable[Geared], joints: Joints) -> tuple[str, ...]
             message = f"joint '{name}' was split into two joints by version 1"
             reporter.report("unknown-actuator", message, pointer, f"actuate '{first}' or '{second}'")
         elif joint is None:
-            moving = (other.name for other in joints.by_name.values() if not other.type.is_fixed)
+            free = (other for other in joints.by_name.values() if other.name not in stated)
+            moving = (other.name for other in free if not other.type.is_fixed)
             message = f"actuator '{name}' is not a joint of the robot"
             joints.report_name("unknown-actuator", message, pointer, name, moving)
         elif name in listed:

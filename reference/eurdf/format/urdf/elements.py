@@ -223,10 +223,10 @@ class UrdfReader:
     def missing_attribute(self, element: Element, attribute: str) -> None:
         """EU-URD-005: report that an element lacks a required attribute."""
         message = f"{named(element)} has no attribute '{attribute}'"
-        proposals = partial(self._renamings_to, element, attribute)
+        proposals = partial(self.renamings_to, element, attribute)
         self.report("urdf-missing-attribute", message, element, None, _how_to_add(attribute), proposals)
 
-    def _renamings_to(self, element: Element, attribute: str) -> list[Fix]:
+    def renamings_to(self, element: Element, attribute: str) -> list[Fix]:
         """Proposals to give similar attributes of an element another name."""
         write = self.reporter.document.renamed
         return [
@@ -306,11 +306,11 @@ class UrdfReader:
         """EU-URD-004: an element has its required child elements."""
         element = found.get(tag)
         if element is None:
-            message, proposals = f"{named(parent)} has no <{tag}>", partial(self._retaggings_to, parent, tag)
+            message, proposals = f"{named(parent)} has no <{tag}>", partial(self.retaggings_to, parent, tag)
             self.report("urdf-missing-element", message, parent, proposals=proposals)
         return element
 
-    def _retaggings_to(self, parent: Element, tag: str) -> list[Fix]:
+    def retaggings_to(self, parent: Element, tag: str) -> list[Fix]:
         """Proposals to give a child another tag that has one like it."""
         document, children = self.reporter.document, {str(child.tag): child for child in parent}
         alike = similar(tag, children.keys() - _KNOWN_CHILDREN[str(parent.tag)])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import partial
 
 from eurdf.format.conventions import is_too_small, lower_limit, too_small, upper_limit
 from eurdf.format.urdf.data import Limit, UrdfJoint
@@ -98,7 +99,9 @@ def _limit(
     if element is None:
         if kind.is_ranged:
             hint = "use type 'continuous' for a joint that rotates without limits" if kind == "revolute" else None
-            reader.report("urdf-missing-element", f"{kind} joint '{name}' has no <limit>", joint, hint=hint)
+            proposals = partial(reader.retaggings_to, joint, "limit")
+            message = f"{kind} joint '{name}' has no <limit>"
+            reader.report("urdf-missing-element", message, joint, hint=hint, proposals=proposals)
         return None
     limit = _limit_1_2(reader, kind, element) if reader.version >= "1.2" else _limit_1_0(reader, element)
     if limit is None:
