@@ -181,6 +181,15 @@ def test_wrong_word_names_the_meant_one(argv: str, meant: str, capsys: pytest.Ca
     assert meant in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("argv", [["schema", "-o"], ["view", "four_bar", "-o"]])
+def test_written_file_is_named_as_json(folder: Path, run: Run, argv: list[str]) -> None:
+    code, out, err = run(*argv, "file", "--json")
+    found = json.loads(out)
+    jsonschema.Draft202012Validator(output_schemas()["written.schema.json"]).validate(found)
+    assert (code, found, err) == (0, {"files": ["file"], "url": None}, "wrote 'file'\n")
+    assert (folder / "file").is_file()
+
+
 def test_quiet_command_writes_results_and_errors_only(folder: Path, run: Run) -> None:
     robot(folder / "arm")
     assert run("check", "arm", "-q") == (0, "", "")
