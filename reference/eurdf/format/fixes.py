@@ -75,15 +75,27 @@ def added(document: YamlDocument, mapping: Pointer, key: str, value: Value) -> S
 
 
 def listed(document: YamlDocument, pointer: Pointer, name: str) -> Sequence[Fix]:
-    """A list in the place of a mapping of names to mappings, each of which gets its name; none for other mappings."""
+    """A list in the place of a mapping of names to mappings, each of which gets its name, or of its only item."""
     mapping, text, edits = value_at(document, pointer), document.source.text, []
-    if not mapping or not all(isinstance(item, dict) for item in mapping.values()):
+    if not mapping:
         return ()
+    collection = _collection(document, pointer)
+    first, last = collection.span[0], end_of(collection)
+    if name in mapping:
+        if collection.is_flow:
+            item = f"[{text[first:last]}]"
+            return (Fix(f"write {item}", (document.source.edit(first, last, item),)),)
+        item = "- " + text[first:last].replace("\n", "\n  ")
+        return (Fix("begin the item with '- ', and indent the rest of it", (document.source.edit(first, last, item),)),)
+    if not all(isinstance(item, dict) for item in mapping.values()):
+        return ()
+    if collection.is_flow:
+        edits = [document.source.edit(first, first + 1, "["), document.source.edit(last - 1, last, "]")]
     for key in mapping:
         (start, end), (inner, _) = (document.span((*pointer, key), by_key) for by_key in (True, False))
         braces = text.startswith("{", inner)
         stop = inner + 1 if braces else text.find(":", end) + 1
-        item = f"- {'{' * braces}{name}: {text[start:end]}{', ' * braces}"
+        item = f"{'- ' * (not collection.is_flow)}{'{' * braces}{name}: {text[start:end]}{', ' * braces}"
         edits.append(document.source.edit(start, stop, item))
     return (Fix(f"write a list; its first item begins with '- {name}: {next(iter(mapping))}'", tuple(edits)),)
 
