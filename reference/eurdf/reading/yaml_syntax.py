@@ -20,6 +20,9 @@ _NOT_PRINTABLE = re.compile("[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U0001
 
 _MARK = "\ufeff"
 
+#: Lines that are indented with tabs, at most, of which a fix changes all.
+_MOST_TABS = 1000
+
 
 class _Meaning(NamedTuple):
     """What a problem of libyaml means for the author of the file; ``{line}`` is where the node around it begins."""
@@ -152,8 +155,12 @@ def _syntax_fixes(source: Source, meaning: _Meaning, at: int) -> tuple[Fix, ...]
     start, end = source.lines.span(line) or (at, at)
     text = source.text[start:end]
     if meaning is _TAB:
-        blanks = len(text) - len(text.lstrip())
-        return (Fix("indent with spaces", (source.edit(start, start + blanks, text[:blanks].expandtabs(2)),)),)
+        tabs = list(re.finditer(r"^ *\t[ \t]*", source.text, re.MULTILINE))[:_MOST_TABS]
+        summary = "indent with {} spaces, not tabs"
+        return tuple(
+            Fix(summary.format(width), tuple(source.edit(*each.span(), each[0].expandtabs(width)) for each in tabs))
+            for width in (2, 4, 8)
+        )
     if found := re.match(r"\s*(?:- )?[\w-]+(:)[^\s:]", text):
         colon = start + found.end(1)
         return (Fix("write a space after the ':'", (source.edit(colon, colon, " "),)),)
