@@ -118,6 +118,8 @@ VERSION_2_1 = [
     ("couplings: [{name: g, joints: {a: 2, b: 1}, gear_ratio: 3}]", "the joints that it relates have them"),
     ("closures: [{name: p, type: distance, frames: [a, b]}]", "between the origins of A and B, m"),
     ("joints: {k: {mimic: true}}", "follows the <mimic>"),
+    ("actuators: [{name: a, gear_ratio: 8}]", "did you mean 'joint'?"),
+    ("joints: {k: {spring: 1500}}", "did you mean 'stiffness'?"),
 ]
 OTHER_VERSIONS = [
     ("[2.0]", "wrong-type", "in quotes"),
@@ -159,6 +161,10 @@ FIXES = [
     ("configurations: {c: {k: -90°}}", "configurations: {c: {k: -1.57079632679}}"),
     ("configurations: {c: {k: 2*pi/3}}", "configurations: {c: {k: 2.09439510239}}"),
     ("frames: [{name: p, link: a, xyz: 0.5 0 -2}]", "frames: [{name: p, link: a, xyz: [0.5, 0.0, -2.0]}]"),
+    ("actuators: [{joint: a, gear_ratio: 1/8}]", "actuators: [{joint: a, gear_ratio: 0.125}]"),
+    ("actuators: [{name: a, gear_ratio: 8}]", "actuators: [{joint: a, gear_ratio: 8}]"),
+    ("frames: [{name: p, link: a, pos: [0, 0, 1]}]", "frames: [{name: p, link: a, xyz: [0, 0, 1]}]"),
+    ("root: world", "root: fixed"),
     ("configurations: {c: {k: 30 mm}}", "configurations: {c: {k: 0.03}}"),
 ]
 # fmt: on

@@ -234,3 +234,12 @@ def test_doubled_closure_gets_no_other_frames() -> None:
     (found,) = eurdf.check(doubled, urdf=ROBOTS / "four_bar" / "robot.urdf").diagnostics
     assert found.code == "closure-duplicate"
     assert found.fix is None
+
+
+def test_closure_of_one_body_gets_the_frame_of_the_other_side() -> None:
+    text = (ROBOTS / "four_bar" / "robot.yaml").read_text(encoding="utf-8")
+    wrong = text.replace("[rocker_pin_a, rocker_pin_b]", "[rocker_pin_a, coupler]")
+    (found,) = eurdf.check(wrong, urdf=ROBOTS / "four_bar" / "robot.urdf").diagnostics
+    assert found.code == "closure-same-body"
+    assert found.fix is not None
+    assert [*found.fix.texts().values()] == [text]

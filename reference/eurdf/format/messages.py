@@ -18,7 +18,7 @@ from eurdf.format.joint_model import ACTUATOR, JOINT, LimitsEntry
 from eurdf.format.mappings import OneOf, Record, in_order
 from eurdf.format.model import VERSION1, VERSION2
 from eurdf.format.one_cause import later_word, with_one_cause
-from eurdf.format.other_words import number_meant, type_meant
+from eurdf.format.other_words import key_meant, number_meant, type_meant
 from eurdf.format.value_types import Violation
 from eurdf.format.wording import described, likeliest_key, near, quoted
 from eurdf.reading.yaml_node import Pointer
@@ -91,7 +91,8 @@ class _Messages:
         meant: dict[Pointer, str] = {}  # for an unknown key, the required key that it misspells
         for each in self.found:
             wanted = [other for lacked in lacking.get(each.pointer[:-1], ()) for other in _alternatives(lacked)]
-            if each.code == "unknown-key" and (likely := near(str(each.pointer[-1]), wanted)):
+            key = str(each.pointer[-1]) if each.pointer else ""
+            if each.code == "unknown-key" and (likely := near(key, wanted) or key_meant(key, wanted)):
                 meant[each.pointer] = likely
         misspelt = {(*pointer[:-1], key) for pointer, key in meant.items()}
         for mapping, keys in lacking.items():
@@ -127,6 +128,8 @@ class _Messages:
         )
         value = self.missing_value(mapping, keys[0]) if is_all else None
         proposals = () if value is None else added(self.document, mapping, keys[0], value)
+        if keys == ["joint"] and mapping[0] == "actuators" and "name" in self.mapping_at(mapping):
+            proposals = renamed(self.document, (*mapping, "name"), "joint", key=True)
         message = f"{subject(mapping)} lacks {listed}"
         return Diagnostic("missing-key", message, self.place(mapping), hint, proposals=tuple(proposals))
 
@@ -158,21 +161,23 @@ class _Messages:
         if key in apart:
             return Diagnostic("conflicting-keys", f"{subject(mapping)}: {apart[key]}", place)
         of_any_form = record if union is None else union
-        likely = meant or likeliest_key(key, (*record.all_keys, *apart))
+        word = key_meant(key, record.all_keys.keys() - self.mapping_at(mapping).keys())
+        likely = meant or word or likeliest_key(key, (*record.all_keys, *apart))
         beside = self.another_entry(violation.pointer) if meant is None else None
         proposals: Sequence[Fix] = ()
         if meant is None and (outside := _key_of_the_file(violation.pointer)):
             hint = outside
         elif not mapping and key in VERSION1.all_keys:
             hint = f"it is a key of version 1; in version 2.0, use '{VERSION1.all_keys[key].becomes}'"
-        elif self.version == VERSION2_0 and (later := later_word(violation)):
+        elif meant is None and self.version == VERSION2_0 and (later := later_word(violation)):
             hint = self.version_hint(later)
             proposals = self.version_fix(hint)
         elif meant is None and (of_joint := _key_of_a_joint(violation.pointer)):
             hint = of_joint
         elif likely is not None:
             hint = f"did you mean '{likely}'?" + (f" {beside}" if beside else "")
-            proposals = renamed(self.document, violation.pointer, likely, key=True)
+            if meant or word or near(key, [likely]):  # else it is only a question
+                proposals = renamed(self.document, violation.pointer, likely, key=True)
         elif beside:
             hint = beside
         else:
@@ -235,7 +240,7 @@ class _Messages:
         message = f"{subject(pointer)} must be {choices}, not {described(value)}"
         if not isinstance(value, str):
             return Diagnostic("wrong-type", message, self.place(pointer))
-        is_type = len(pointer) == 2 or pointer[-1] == "type"
+        is_type = len(pointer) == 2 or pointer[-1] in ("type", "root")
         meant = type_meant(pointer[0], value) if is_type else None
         here = next((choice for choice in allowed if choice.casefold() == meant), None)
         hint = _JOINT_TYPE_HINTS.get(meant or value) if pointer[0] == "joints" else None
@@ -349,7 +354,8 @@ def _type_fix(document: YamlDocument, must: str, pointer: Pointer, value: Any) -
     if "letters" in must and isinstance(value, list):
         return (restated(document, pointer, "".join(value).lower()),)
     if "number" in must and isinstance(value, str) and (number := _number(value)) is not None:
-        return (restated(document, pointer, int(number) if number.is_integer() else number),)
+        fix = restated(document, pointer, int(number) if number.is_integer() else number)
+        return (replace(fix, summary=_type_hint(must, pointer, value) or fix.summary),)
     if ("text" in must or "name" in must) and isinstance(value, bool | int | float):
         start, end = document.span(pointer)
         return (restated(document, pointer, document.source.text[start:end]),)
@@ -383,6 +389,6 @@ def _type_hint(must: str, pointer: Pointer, value: Any) -> str | None:
         number = _number(value)
         if number is not None:
             meant = number_meant(value)
-            unit = f"in {meant[1]}, " if meant else ""
+            unit = f"in {meant[1]}, " if meant and meant[1] else ""
             return f"write the number {unit}as {repr(number).removesuffix('.0')}, without quotes"
     return None

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
 from eurdf.closures import REGISTRY
-from eurdf.diagnostics import Fix
+from eurdf.diagnostics import Fix, Proposals
 from eurdf.format.closure_model import ClosureEntry, NamedFrame
 from eurdf.format.fixes import renumbered
 from eurdf.format.yaml_text import scalar
@@ -20,6 +20,10 @@ from eurdf.reading.yaml_reader import YamlDocument, YamlReporter
 
 # A word of a name, or what is between two.
 _WORD = re.compile(r"([^\W\d_]+)")
+
+# A word or a number in a name, and those that name two sides.
+_PART = re.compile(r"[^\W\d_]+|\d+")
+_SIDES = ([{"1", "2"}], [{"a", "b"}], [{"A", "B"}])
 
 
 def link_closures(
@@ -45,7 +49,8 @@ def link_closures(
             continue
         taken[entry.name] = entry
         a, b = map(names.find, entry.frames)
-        if a is None or b is None or not _movable(entry, a, b, rigid, reporter):
+        others = partial(_paired_frames, entry, entries, names, reporter.document)
+        if a is None or b is None or not _movable(entry, a, b, rigid, reporter, others):
             continue
         pair = frozenset({(a.body, a.pose), (b.body, b.pose)})
         if pair in joined:
@@ -124,8 +129,10 @@ def _have_directions(entry: ClosureEntry, reporter: YamlReporter) -> bool:
     return False
 
 
-def _movable(entry: ClosureEntry, a: Anchor, b: Anchor, rigid: Mapping[str, str], reporter: YamlReporter) -> bool:
-    """EU-CLO-002, EU-CLO-003: the two frames are not one, and not fixed to one another."""
+def _movable(
+    entry: ClosureEntry, a: Anchor, b: Anchor, rigid: Mapping[str, str], reporter: YamlReporter, others: Proposals
+) -> bool:
+    """EU-CLO-002, EU-CLO-003: the two frames are not one, and not fixed to one another; ``others`` name others."""
     if a.body == b.body and a.pose == b.pose:
         same = not a.frame or not b.frame or a.frame == b.frame
         what = f"a frame on '{a.body}'" if not a.frame else f"'{a.frame}'"
@@ -143,7 +150,23 @@ def _movable(entry: ClosureEntry, a: Anchor, b: Anchor, rigid: Mapping[str, str]
             "closure-same-body",
             f"closure '{entry.name}' connects two frames of one rigid body, {which}",
             entry.pointer,
-            "connect frames that can move relative to each other",
+            "which frame is on the other side of the cut?",
+            others,
         )
         return False
     return True
+
+
+def _paired_frames(
+    entry: ClosureEntry, entries: Sequence[ClosureEntry], names: FrameNames, document: YamlDocument
+) -> Iterator[Fix]:
+    """Fixes that name a frame that no closure uses, whose name differs from the other's in the side: 1 or 2, a or b."""
+    used = {frame.target for each in entries for frame in each.frames}
+    for kept, changed in (entry.frames, entry.frames[::-1]):
+        parts = _PART.findall(kept.target)
+        for name in names.known() if isinstance(changed, NamedFrame) else ():
+            pairs = zip(parts, _PART.findall(name), strict=False)
+            if name not in used and [{*pair} for pair in pairs if pair[0] != pair[1]] in _SIDES:
+                what = f"'{name}', which no closure uses"
+                edits = (document.edit(changed.pointer, scalar(name)),)
+                yield Fix(f"name {what}, in place of '{changed.target}'", edits, f"did you mean {what}?")

@@ -71,7 +71,7 @@ def check_ranges(urdf: Urdf, joints: Mapping[str, Joint], diagnostics: Diagnosti
         and made.type.is_ranged
         and made.lacks_range
     ]
-    hint = "state 'lower' and 'upper', or use type 'continuous' if there are no limits"
+    hint = "which 'lower' and 'upper' does it have? A joint of type 'continuous' has none"
     report_of_joints("urdf-no-range", found, "the position limits 0 and 0", "limit", hint, urdf, diagnostics)
 
 
