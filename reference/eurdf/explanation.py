@@ -102,9 +102,9 @@ def explain(
 ) -> Explanation:
     """Explain why loops are open, motions uncontrolled and actuators dependent, and which values are implausible.
 
-    These are the diagnostics of `eurdf.check`, by subject; and, of a robot that can be built, how it moves. Of standard
-    input and pipes, which can be read only once, and of a robot that was loaded, it is only one of the two: the
-    diagnostics, and how it moves with the diagnostics that it has.
+    These are the diagnostics of `eurdf.check`, by subject; and, of a robot that can be built, how it moves. Standard
+    input and pipes can be read only once, so that how their robots move is left out. Of a robot that was loaded, the
+    diagnostics are those that it has, without advice.
 
     The arguments are those of `eurdf.load`; all but the first have no effect on a robot that was loaded.
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from functools import cache, partial
 from inspect import currentframe, signature
 from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
@@ -41,8 +42,15 @@ SOURCES = (str, bytes, os.PathLike, Mapping)
 # Mesh files by the text of the URDF that names them: where they are, the meshes by path, and what is wrong with some.
 _MeshFiles = dict[bytes, tuple[FoundFiles, dict[str, Mesh], Diagnostics]]
 
+# Characters that all trials of fixes read, at most: those of a hundred trials of a humanoid.
+_MOST_READ_AGAIN = 20_000_000
+
 _Rest = ParamSpec("_Rest")
 _Result = TypeVar("_Result")
+
+
+class _TooMuch(Exception):  # noqa: N818 - never seen outside
+    """Ends the trials of fixes."""
 
 
 def load(
@@ -223,9 +231,14 @@ def check_texts(texts: Mapping[str, str], path: RobotSource, urdf: RobotSource |
     mesh_files: _MeshFiles = {}
 
     known = {**texts}
+    left = _MOST_READ_AGAIN
 
     @cache
     def evidence_with(code: str, *fixes: Fix) -> Evidence:
+        nonlocal left
+        left -= sum(map(len, known.values()))
+        if left < 0:
+            raise _TooMuch
         trial = read_robot(path, urdf, **options, texts={**known, **Fix.together(fixes).texts()})
         return Evidence(trial.diagnostics.counts()) if is_of_the_text(code) else _findings(trial, mesh_files, find)
 
@@ -240,7 +253,8 @@ def check_texts(texts: Mapping[str, str], path: RobotSource, urdf: RobotSource |
     evidence = _findings(read, mesh_files, find)
     likeliest = [found.proposals[0] for found in read.diagnostics if found.proposals]
     if not (is_stream(path) or (urdf is not None and is_stream(urdf))):  # which can be read only once
-        read.diagnostics.tried(is_right)
+        with suppress(_TooMuch):  # what has not been tried stays a question
+            read.diagnostics.tried(is_right)
     is_sound = read.linked is not None and read.yaml is not None and not read.diagnostics.error_count
     return Report(read.path, tuple(read.diagnostics), saving(read.mechanism) if is_sound else ())
 

@@ -111,3 +111,15 @@ def test_nothing_is_written_if_one_file_has_changed(folder: Path) -> None:
     with pytest.raises(CannotRun, match=r"changed 'arm/robot\.urdf' in the meantime"):
         done.write()
     assert file.read_text() == WRONG
+
+
+def test_joint_listed_twice_may_be_another_one(folder: Path, run: Run) -> None:
+    joints = [joint_element(f"{side}_hinge", "continuous", "base", f"{side}_arm") for side in ("left", "right")]
+    urdf = robot_element(link_element("base"), body("left_arm"), body("right_arm"), *joints)
+    file = arm(folder / "arm", RIGHT.replace("[shoulder]", "[left_hinge, left_hinge]"), urdf)
+    before = file.read_text()
+    assert run("check", "arm", "--fix")[0] == 1
+    assert file.read_text() == before
+    file.write_text(before.replace("left_hinge, left_hinge", "left_hinge, right_hinge, left_hinge"))
+    assert run("check", "arm", "--fix")[0] == 0
+    assert "[left_hinge, right_hinge]" in file.read_text()

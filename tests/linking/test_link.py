@@ -109,7 +109,7 @@ ERRORS = [
     ("urdf-mesh-missing", URDF, '<box size="0.2 0.04 0.04"/>', '<mesh filename="package://a/b.stl"/>', "ROS_PACKAGE_PATH"),
     ("urdf-texture-missing", URDF, '<material name="grey"/>', '<material name="wood"><texture filename="wood.png"/></material>', "ROS_PACKAGE_PATH"),
     ("urdf-texture-missing", URDF, '<material name="grey"/>', '<material name="wood"><texture/></material>', "link 'crank' names no file (add filename"),
-    ("urdf-unknown-element", URDF, '<material name="grey"/>', '<material name="wood"><texture filenam="a"/></material>', "write 'filename'"),
+    ("urdf-unknown-element", URDF, '<material name="grey"/>', '<material name="wood"><texture filenam="a"/></material>', "did you mean 'filename'?"),
     ("urdf-unknown-material", URDF, '<material name="grey"/>', '<material name="gray"/>', "write 'grey'"),
     # names
     ("unknown-frame", YAML, "[rod_tip, rocker_top]", "[rod_tip, rocker_tpo]", "write 'rocker_top'"),

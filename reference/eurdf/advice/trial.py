@@ -6,7 +6,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from eurdf.diagnostics import REGISTRY, Phase
+from eurdf.diagnostics import REGISTRY, Phase, Severity
 
 if TYPE_CHECKING:
     from eurdf.kinematics.analysis import Analysis
@@ -23,10 +23,7 @@ _LOCAL = frozenset(
 
 #: Codes of elements and attributes of a URDF, which the other elements say nothing of.
 _OF_ELEMENTS = frozenset(
-    {
-        *("xml-syntax", "urdf-joint-type", "urdf-unknown-element", "urdf-geometry"),
-        *("urdf-missing-attribute", "urdf-missing-element"),
-    }
+    {"xml-syntax", "urdf-joint-type", "urdf-geometry", "urdf-missing-attribute", "urdf-missing-element"}
 )
 
 #: Phases that look at one file.
@@ -34,8 +31,9 @@ _FILES = (Phase.YAML, Phase.SCHEMA, Phase.URDF)
 
 
 def is_of_the_text(code: str) -> bool:
-    """Whether the text of one file alone decides what is wrong: what such an error hides says nothing of it."""
-    return REGISTRY[code].phase in (Phase.YAML, Phase.SCHEMA) or code in _OF_ELEMENTS
+    """Whether it is an error that the text of one file alone decides: what it hides says nothing of it."""
+    rule = REGISTRY[code]
+    return rule.severity is Severity.ERROR and (rule.phase in (Phase.YAML, Phase.SCHEMA) or code in _OF_ELEMENTS)
 
 
 @dataclass(frozen=True)

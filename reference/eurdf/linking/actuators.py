@@ -7,7 +7,9 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from eurdf.format.fixes import removed, renumbered, swapped
+from eurdf.diagnostics import Fix, renamings
+from eurdf.diagnostics.wording import similar
+from eurdf.format.fixes import named, removed, renumbered, swapped
 from eurdf.format.joint_model import Geared
 from eurdf.linking.joints import Joints
 from eurdf.linking.merging import MASSLESS
@@ -20,8 +22,9 @@ def link_actuators(entries: Sequence[Geared], joints: Joints) -> tuple[str, ...]
     """Check every actuator against the joints as the description makes them; returns the names, in file order."""
     reporter = joints.reporter
     stated = {entry.joint for entry in entries}
+    others = [joint for joint in joints.by_name.values() if joint.name not in stated]
     listed: dict[str, None] = {}
-    named: dict[str, str] = {}  # by name of an actuator, its joint
+    joint_of: dict[str, str] = {}  # by name of an actuator
     for entry in entries:
         name = entry.joint
         pointer = _pointer_of_name(entry, reporter.document)
@@ -43,13 +46,12 @@ def link_actuators(entries: Sequence[Geared], joints: Joints) -> tuple[str, ...]
             message = f"joint '{name}' was split into two joints by version 1"
             reporter.report("unknown-actuator", message, pointer, f"actuate '{first}' or '{second}'")
         elif joint is None:
-            free = (other for other in joints.by_name.values() if other.name not in stated)
-            moving = (other.name for other in free if not other.type.is_fixed)
+            moving = (other.name for other in others if not other.type.is_fixed)
             message = f"actuator '{name}' is not a joint of the robot"
             joints.report_name("unknown-actuator", message, pointer, name, moving)
         elif name in listed:
-            is_plain = pointer == entry.pointer
-            fixes = partial(removed, reporter.document, pointer, f"the second '{name}'") if is_plain else ()
+            free = [other.name for other in others if not other.type.is_fixed and other.mimic is None]
+            fixes = partial(_of_repeated, reporter.document, entry, pointer, free)
             message = f"joint '{name}' is actuated twice"
             reporter.report("actuator-duplicate", message, pointer, "which of them is another joint?", fixes)
         elif joint.type.is_fixed:
@@ -62,10 +64,17 @@ def link_actuators(entries: Sequence[Geared], joints: Joints) -> tuple[str, ...]
                 pointer,
                 f"'{joint.mimic.joint}', which it follows, is the joint to actuate",
             )
-        elif _has_motor(entry, named, reporter):
+        elif _has_motor(entry, joint_of, reporter):
             listed[name] = None
-            named[entry.name or name] = name
+            joint_of[entry.name or name] = name
     return tuple(listed)
+
+
+def _of_repeated(document: YamlDocument, entry: Geared, pointer: Pointer, free: Sequence[str]) -> list[Fix]:
+    """Proposals for a joint that is actuated twice: actuate it once, or a joint with a similar name that is not yet."""
+    once = removed(document, pointer, f"the second '{entry.joint}'") if pointer == entry.pointer else ()
+    others = renamings(similar(entry.joint, free), partial(named, document, pointer, False))
+    return [*(replace(fix, rivals=True) for fix in once), *others]
 
 
 def _has_motor(entry: Geared, named: Mapping[str, str], reporter: YamlReporter) -> bool:

@@ -38,6 +38,8 @@ _TOO_DEEP_TO_SCAN = "exceeded maximum nesting depth"
 _CORE_TAGS = ("!!str", "!!int", "!!float", "!!bool", "!!null", "!!map", "!!seq")
 #: After the end of a document: white space, comments and further ends.
 _BETWEEN_DOCUMENTS = re.compile(r"(?:\s|#[^\r\n]*|\.\.\.(?=\s))*")
+#: After a key: a colon, and a value that begins on the same line.
+_VALUE_BESIDE = re.compile(r"[ \t]*:[ \t]+[^\s#|>&!*]")
 _KINDS = {dict: "a mapping", list: "a list", str: "a string", bool: "a boolean", type(None): "empty"}
 
 
@@ -366,7 +368,8 @@ class _NodeReader:
         lines, text = self._source.lines, self._source.text
         line, _ = lines.position(key[0])
         span = lines.span(line)
-        if span is None or lines.line(line) != lines.line(first) or text[span[0] : key[0]].strip():
+        has_value = _VALUE_BESIDE.match(text, key[1] or key[0]) is not None
+        if span is None or lines.line(line) != lines.line(first) or text[span[0] : key[0]].strip() or not has_value:
             return ()
         return (Fix(f"remove line {line}", (self._source.edit(span[0] - 1, span[1], ""),)),)
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from functools import partial
 
+from eurdf.diagnostics import Fix
 from eurdf.format.conventions import is_too_small, lower_limit, too_small, upper_limit
 from eurdf.format.urdf.data import Limit, UrdfJoint
 from eurdf.format.urdf.elements import RATES, RESERVED, URDF_JOINT_TYPES, UrdfReader, named
@@ -110,8 +111,19 @@ def _limit(
         _report_negative(reader, element, **{key: getattr(limit, key) for key in _LIMIT_1_2})
     if limit.lower > limit.upper and (kind.is_ranged or reader.version >= "1.2"):
         message = f"joint '{name}': lower limit {limit.lower:g} is above upper limit {limit.upper:g}"
-        reader.report("urdf-reversed-limits", message, element, "lower", "swap the two limits")
+        hint = "are they in the wrong order, or is a sign wrong?"
+        reader.report(
+            "urdf-reversed-limits", message, element, "lower", hint, partial(_swapped, reader, element, limit)
+        )
     return limit
+
+
+def _swapped(reader: UrdfReader, element: Element, limit: Limit) -> list[Fix]:
+    """The proposal to exchange limits, the lower one above 0 and the upper one below; else a sign may be wrong."""
+    if not limit.lower > 0.0 > limit.upper:
+        return []
+    write, lower, upper = reader.reporter.document.restated, element.get("lower", ""), element.get("upper", "")
+    return [Fix("swap the two limits", (*write(element, "lower", upper), *write(element, "upper", lower)))]
 
 
 def _limit_1_0(reader: UrdfReader, element: Element) -> Limit | None:
