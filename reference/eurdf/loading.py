@@ -42,8 +42,8 @@ SOURCES = (str, bytes, os.PathLike, Mapping)
 # Mesh files by the text of the URDF that names them: where they are, the meshes by path, and what is wrong with some.
 _MeshFiles = dict[bytes, tuple[FoundFiles, dict[str, Mesh], Diagnostics]]
 
-# Characters that all trials of fixes read, at most: those of a hundred trials of a humanoid.
-_MOST_READ_AGAIN = 20_000_000
+# Characters that all trials of fixes read, at most: those of about fifty trials of a humanoid.
+_MOST_READ_AGAIN = 5_000_000
 
 _Rest = ParamSpec("_Rest")
 _Result = TypeVar("_Result")
