@@ -25,6 +25,7 @@ TAKE_NAMES = {
     "assemble": lambda given: eurdf.assemble(four_bar(), np.array([0.0, 1.0, 0.0, 0.0, 1.0]), hold=given).q,
     "lock": lambda given: eurdf.lock(four_bar(), given).locked_joints,
     "check": lambda given: len(eurdf.check("four_bar", package_dirs=given).diagnostics),
+    "explain": lambda given: len(eurdf.explain("four_bar", package_dirs=given).topics),
     "migrate": lambda given: len(eurdf.migrate("four_bar", package_dirs=given).text),
     "load": lambda given: eurdf.load("four_bar", package_dirs=given).model.nq,
     "export": lambda given: eurdf.export("four_bar", "mjcf", package_dirs=given).coordinates.nq,

@@ -16,6 +16,7 @@ from eurdf.diagnostics import Diagnostic as Diagnostic
 from eurdf.diagnostics.report import Report as Report
 from eurdf.errors import EurdfError as EurdfError
 from eurdf.errors import InvalidRobot as InvalidRobot
+from eurdf.explanation import explain as explain
 from eurdf.loading import check as check
 from eurdf.loading import load as load
 from eurdf.mechanism.mechanism import Mechanism as Mechanism

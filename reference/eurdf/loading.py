@@ -8,15 +8,16 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
+from contextlib import suppress
+from functools import cache, partial
 from inspect import currentframe, signature
-from typing import TYPE_CHECKING, Concatenate, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
 
 from eurdf.advice.angles import advise_on_angles
 from eurdf.advice.lengths import advise_on_lengths
 from eurdf.advice.loops import closure_diagnostics
 from eurdf.advice.quaternions import advise_on_quaternions
-from eurdf.advice.trial import Evidence
+from eurdf.advice.trial import Evidence, is_of_the_text
 from eurdf.diagnostics import Diagnostic, Diagnostics, Fix, Severity, quoted
 from eurdf.diagnostics.report import Report
 from eurdf.errors import InvalidRobot
@@ -28,18 +29,28 @@ from eurdf.mechanism.mechanism import Root
 from eurdf.mesh_files.kinds import KINDS, suffix_of
 from eurdf.pinocchio.arguments import accepting
 from eurdf.pinocchio.meshes import Mesh, read_meshes
-from eurdf.reading.robot_source import RobotSource
+from eurdf.reading.robot_source import RobotSource, is_stream
 from eurdf.writing.simplification import saving
 
 if TYPE_CHECKING:
     from eurdf.kinematics.analysis import Analysis
     from eurdf.pinocchio.robot import Robot
 
-# A tuple: a union would be made in each call.
-_SOURCES = (str, bytes, os.PathLike, Mapping)
+#: The types of a `RobotSource`, as a tuple: a union would be made in each call.
+SOURCES = (str, bytes, os.PathLike, Mapping)
+
+# Mesh files by the text of the URDF that names them: where they are, the meshes by path, and what is wrong with some.
+_MeshFiles = dict[bytes, tuple[FoundFiles, dict[str, Mesh], Diagnostics]]
+
+# Characters that all trials of fixes read, at most: those of about fifty trials of a humanoid.
+_MOST_READ_AGAIN = 5_000_000
 
 _Rest = ParamSpec("_Rest")
 _Result = TypeVar("_Result")
+
+
+class _TooMuch(Exception):  # noqa: N818 - never seen outside
+    """Ends the trials of fixes."""
 
 
 def load(
@@ -161,7 +172,7 @@ def _diagnostics(read: ReadRobot, of_meshes: Sequence[Diagnostic], loops: bool, 
 
 def as_robot(given: Robot | RobotSource, *, geometry: bool = False) -> Robot:
     """The robot that a caller gave, or the one that `load` makes of the path, text or name that was given."""
-    return load(given, geometry=geometry) if isinstance(given, _SOURCES) else given
+    return load(given, geometry=geometry) if isinstance(given, SOURCES) else given
 
 
 def of_any_robot(
@@ -204,8 +215,8 @@ def check(
         RobotNotFound, CannotExpand, MissingExtra: See `load`.
         ValueError: `confined` and `allow_outside` are both True.
     """
-    reading = partial(
-        read_robot,
+    return check_texts(
+        {},
         path,
         urdf,
         package_dirs=package_dirs,
@@ -213,30 +224,57 @@ def check(
         confined=confined,
         allow_outside=allow_outside,
     )
-    read = reading()
-    evidence = _findings(read, package_dirs, confined, allow_outside)
+
+
+def check_texts(texts: Mapping[str, str], path: RobotSource, urdf: RobotSource | None = None, **options: Any) -> Report:
+    """The result of `check`, with texts in place of those of files: see `read_robot`."""
+    find = {name: value for name, value in options.items() if name != "xacro_args"}
+    mesh_files: _MeshFiles = {}
+
+    known = {**texts}
+    left = _MOST_READ_AGAIN
+
+    @cache
+    def evidence_with(code: str, *fixes: Fix) -> Evidence:
+        nonlocal left
+        left -= sum(map(len, known.values()))
+        if left < 0:
+            raise _TooMuch
+        trial = read_robot(path, urdf, **options, texts={**known, **Fix.together(fixes).texts()})
+        return Evidence(trial.diagnostics.counts()) if is_of_the_text(code) else _findings(trial, mesh_files, find)
 
     def is_right(found: Diagnostic, fix: Fix) -> bool:
-        trial = reading(texts=fix.texts())
-        after = _findings(trial, package_dirs, confined, allow_outside)
-        return after.is_as_good_as(evidence, found.code)
+        after = evidence_with(found.code, fix)
+        if after.is_as_good_as(evidence, found.code) and not after.is_enough_for(found.code):
+            # An error that is left hides what is wrong with this fix: try it with the likeliest fixes of all.
+            after = evidence_with(found.code, fix, *likeliest)
+        return after.is_enough_for(found.code) and after.is_as_good_as(evidence, found.code)
 
-    read.diagnostics.tried(is_right)
+    read = read_robot(path, urdf, **options, texts=known)
+    evidence = _findings(read, mesh_files, find)
+    likeliest = [found.proposals[0] for found in read.diagnostics if found.proposals]
+    if not (is_stream(path) or (urdf is not None and is_stream(urdf))):  # which can be read only once
+        with suppress(_TooMuch):  # what has not been tried stays a question
+            read.diagnostics.tried(is_right)
     is_sound = read.linked is not None and read.yaml is not None and not read.diagnostics.error_count
     return Report(read.path, tuple(read.diagnostics), saving(read.mechanism) if is_sound else ())
 
 
-def _findings(
-    read: ReadRobot, package_dirs: Sequence[str | os.PathLike[str]], confined: bool, allow_outside: bool
-) -> Evidence:
-    """Add what is found after reading to the diagnostics of a robot; what it says of itself with them."""
+def _findings(read: ReadRobot, mesh_files: _MeshFiles, find: Mapping[str, Any]) -> Evidence:
+    """Add what is found after reading to the diagnostics of a robot; what it says of itself with them.
+
+    Mesh files are found as ``find`` says, and not read again for the same text of a URDF.
+    """
     diagnostics = read.diagnostics
     refused = diagnostics.refused  # without meshes, which the kinematics does not need
     meshes: dict[str, Mesh] = {}
     analysis: Analysis | None = None
     if read.tree is not None:
-        files = find_meshes(read.urdf, package_dirs, confined=confined, allow_outside=allow_outside)
-        by_path, unreadable = _read_mesh_files(read.urdf, files)
+        text = read.urdf.document.source.data
+        if text not in mesh_files:
+            files = find_meshes(read.urdf, **find)
+            mesh_files[text] = files, *_read_mesh_files(read.urdf, files)
+        files, by_path, unreadable = mesh_files[text]
         meshes = {uri: by_path[path] for uri, path in files.paths.items() if path in by_path}
         for found in (*files.diagnostics, *unreadable):
             diagnostics.add(found)
@@ -249,7 +287,7 @@ def _findings(
         warn_of_ignored_mimics(read.mechanism, read.urdf, diagnostics)
         advise_on_angles(read, diagnostics)
         advise_on_lengths(read, meshes, diagnostics)
-    return Evidence(diagnostics.counts(), analysis)
+    return Evidence(diagnostics.counts(), not diagnostics.error_count, analysis)
 
 
 def _check_loops(read: ReadRobot) -> Analysis | None:

@@ -1,5 +1,6 @@
 """The public names, each with the module that defines it."""
 
+from eurdf.explanation import Explanation as Explanation
 from eurdf.kinematics.analysis import Analysis as Analysis
 from eurdf.kinematics.assembly import Assembly as Assembly
 from eurdf.kinematics.calibration import Calibration as Calibration

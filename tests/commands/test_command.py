@@ -10,7 +10,19 @@ import pytest
 from eurdf.commands.main import COMMANDS, main
 
 #: The commands that link a robot, and those that read a URDF alone.
-OF_ROBOTS = ("check", "info", "view", "picture", "assemble", "export", "transmission", "serial", "migrate", "simplify")
+OF_ROBOTS = (
+    "check",
+    "explain",
+    "info",
+    "view",
+    "picture",
+    "assemble",
+    "export",
+    "transmission",
+    "serial",
+    "migrate",
+    "simplify",
+)
 OF_URDFS = ("generate", "schema")
 
 
@@ -61,4 +73,9 @@ def test_shared_options_have_the_same_help(capsys: pytest.CaptureFixture[str], m
         assert len({option(text, name) for text in texts}) == 1
     paths = [option(text, "PATH") for text in of_robots]
     assert all(path.startswith(paths[1]) for path in paths)
-    assert set(COMMANDS) == {*OF_ROBOTS, *OF_URDFS, "import", "robots", "certify"}
+    assert set(COMMANDS) == {*OF_ROBOTS, *OF_URDFS, "import", "robots", "certify", "completion"}
+
+
+@pytest.mark.parametrize("command", sorted({*COMMANDS} - {"certify", "completion"}))
+def test_results_are_also_written_as_json(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert option(help_of(command, capsys), "--json")

@@ -47,7 +47,7 @@ def test_files_are_written_to_a_folder_named_after_the_robot(folder: Path, capsy
 
 @pytest.mark.parametrize(("name", "to"), [("kangaroo_leg", "mjcf"), ("excavator", "urdf")])
 def test_json_lists_every_loss_with_its_place(capsys: pytest.CaptureFixture[str], name: str, to: str) -> None:
-    assert main(["export", name, "--to", to, "--format", "json"]) == 0
+    assert main(["export", name, "--to", to, "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     jsonschema.Draft202012Validator(output_schemas()["export.schema.json"]).validate(found)
     assert (found["format"], found["refused"]) == (to, None)
@@ -62,7 +62,7 @@ def test_json_lists_every_loss_with_its_place(capsys: pytest.CaptureFixture[str]
 
 
 def test_strict_refuses_losses(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["export", "four_bar", "--to", "mjcf", "--strict", "--format", "json"]) == 1
+    assert main(["export", "four_bar", "--to", "mjcf", "--strict", "--json"]) == 1
     found = json.loads(capsys.readouterr().out)
     jsonschema.Draft202012Validator(output_schemas()["export.schema.json"]).validate(found)
     assert (found["files"], found["refused"]) == ([], "nothing was written: --strict refuses losses")

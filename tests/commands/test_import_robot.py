@@ -86,7 +86,7 @@ def test_files_are_written_and_losses_shown(here: Path, capsys: pytest.CaptureFi
 
 
 def test_json_lists_every_loss_with_its_place(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["import", "four_bar.xml", "-o", "out", "--format", "json"]) == 0
+    assert main(["import", "four_bar.xml", "-o", "out", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     jsonschema.Draft202012Validator(output_schemas()["import.schema.json"]).validate(found)
     losses = eurdf.import_robot("four_bar.xml").losses
@@ -96,7 +96,7 @@ def test_json_lists_every_loss_with_its_place(capsys: pytest.CaptureFixture[str]
     places = [each["file"] for each in found["losses"]]
     assert set(places) == {"four_bar.xml"}  # as given
     assert found["opened"] == [{"name": "pin", "position": pytest.approx(0.01), "angle": 0.0}]
-    assert main(["import", "four_bar.xml", "-o", "other", "--format", "json", "--strict"]) == 1
+    assert main(["import", "four_bar.xml", "-o", "other", "--json", "--strict"]) == 1
     refused = json.loads(capsys.readouterr().out)
     jsonschema.Draft202012Validator(output_schemas()["import.schema.json"]).validate(refused)
     assert "it has losses" in refused["refused"]
@@ -163,7 +163,7 @@ def test_robot_with_errors_is_written_and_they_are_shown(here: Path, capsys: pyt
     assert [(each.code, each.line) for each in found.errors] == [(each.code, each.line) for each in checked]
     assert {each.file for each in found.errors} == {"robot.urdf"}
 
-    assert main(["import", "r.sdf", "-o", "other", "--format", "json"]) == 1
+    assert main(["import", "r.sdf", "-o", "other", "--json"]) == 1
     info = json.loads(capsys.readouterr().out)
     jsonschema.Draft202012Validator(output_schemas()["import.schema.json"]).validate(info)
     assert [each["file"] for each in info["diagnostics"]] == ["other/robot.urdf"] * 2

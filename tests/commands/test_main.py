@@ -14,7 +14,7 @@ import jsonschema
 import pytest
 
 import eurdf
-from eurdf.commands.main import main
+from eurdf.commands.main import COMMANDS, main
 from eurdf.commands.output import output_schemas
 from eurdf.commands.selection import select
 from eurdf.diagnostics import Diagnostic, Place
@@ -67,8 +67,8 @@ def test_error_is_shown_with_place_and_exits_1(folder: Path, run: Run) -> None:
     assert code == 1
     assert out.startswith("arm/robot.yaml:2:13: error: ")
     assert "    2 | actuators: [sholder]\n      |             ^^^^^^^\n" in out
-    assert "did you mean 'shoulder'?" in out
-    assert out.endswith("arm: 1 error\n")
+    assert "= fix: write 'shoulder'" in out
+    assert out.endswith("arm: 1 error; --fix applies 1 fix\n")
     assert err == ""
 
 
@@ -80,7 +80,7 @@ def test_every_robot_below_a_folder_is_checked(folder: Path, run: Run) -> None:
     assert code == 1
     assert [line for line in out.splitlines() if line.startswith("robots/") and " error: " not in line] == [
         "robots/a: valid",
-        "robots/b: 1 error",
+        "robots/b: 1 error; --fix applies 1 fix",
         "robots/deep/c: valid",
     ]
     assert out.endswith("3 robots: 2 passed, 1 failed (1 error)\n")
@@ -103,14 +103,14 @@ def test_warning_fails_only_strict_check(folder: Path, run: Run, monkeypatch: py
     finds(monkeypatch, "near-miss-key")
     assert run("check", ".")[0] == 0
     assert run("check", ".", "--strict")[0] == 1
-    assert json.loads(run("check", ".", "--format", "json")[1])["ok"]
-    assert not json.loads(run("check", ".", "--format", "json", "--strict")[1])["ok"]
+    assert json.loads(run("check", ".", "--json")[1])["ok"]
+    assert not json.loads(run("check", ".", "--json", "--strict")[1])["ok"]
 
 
 def test_check_json_matches_published_schema(folder: Path, run: Run) -> None:
     robot(folder / "a")
     robot(folder / "b", ACTUATES_NOTHING)
-    code, out, _ = run("check", "a", "b", "--format", "json")
+    code, out, _ = run("check", "a", "b", "--json")
     document = json.loads(out)
     jsonschema.Draft202012Validator(output_schemas()["diagnostics-report.schema.json"]).validate(document)
     assert code == 1
@@ -132,9 +132,73 @@ def test_check_sarif_names_the_place(folder: Path, run: Run) -> None:
 @pytest.mark.parametrize("format_", ["text", "json", "sarif"])
 def test_missing_path_exits_2_with_message(folder: Path, run: Run, format_: str) -> None:
     code, out, err = run("check", "nowhere", "--format", format_)
-    assert (code, out) == (2, "")
+    assert code == 2
     assert "'nowhere'" in err
     assert err.count("\n") == 1
+    assert out == "" or format_ == "json"
+
+
+@pytest.mark.parametrize(
+    "argv",
+    [
+        "check nowhere --json",
+        "info four_bar --json --jsn",
+        "nothing --json",
+        "export four_bar --to mujoco --json",
+        "transmission four_bar --joints nobody --json",
+    ],
+)
+def test_error_is_also_a_json_object(argv: str, capsys: pytest.CaptureFixture[str]) -> None:
+    try:
+        code: object = main(argv.split())
+    except SystemExit as exit_:
+        code = exit_.code
+    out, err = capsys.readouterr()
+    found = json.loads(out)
+    jsonschema.Draft202012Validator(output_schemas()["error.schema.json"]).validate(found)
+    assert code == 2
+    assert found["error"] in err
+
+
+@pytest.mark.parametrize(
+    ("argv", "meant"),
+    [
+        ("chek four_bar", "did you mean 'check'?"),
+        ("nothing", "`eurdf help` lists the commands"),
+        ("help improt", "did you mean 'import'?"),
+        ("info four_bar --jsn", "eurdf info: unrecognized arguments: --jsn; did you mean '--json'?"),
+        ("info four_bar --root=fixd", "did you mean 'fixed'?"),
+        ("export four_bar --to MuJoCo", "did you mean 'mjcf'?"),
+        ("export four_bar --to isaac-sim", "did you mean 'usd'?"),
+        ("export four_bar --to rviz", "the formats are: mjcf, "),
+        ("import a.sdf -o b --from gazebo", "did you mean 'sdf'?"),
+    ],
+)
+def test_wrong_word_names_the_meant_one(argv: str, meant: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as exit_:
+        main(argv.split())
+    assert exit_.value.code == 2
+    assert meant in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("argv", [["schema", "-o"], ["view", "four_bar", "-o"]])
+def test_written_file_is_named_as_json(folder: Path, run: Run, argv: list[str]) -> None:
+    code, out, err = run(*argv, "file", "--json")
+    found = json.loads(out)
+    jsonschema.Draft202012Validator(output_schemas()["written.schema.json"]).validate(found)
+    assert (code, found, err) == (0, {"files": ["file"], "url": None}, "wrote 'file'\n")
+    assert (folder / "file").is_file()
+
+
+def test_quiet_command_writes_results_and_errors_only(folder: Path, run: Run) -> None:
+    robot(folder / "arm")
+    assert run("check", "arm", "-q") == (0, "", "")
+    assert run("schema", "-q", "-o", "s.json") == (0, "", "")
+    assert run("--quiet", "schema", "-o", "s.json")[2] == "eurdf: 's.json' already exists; --force replaces it\n"
+    assert run("info", "arm", "-q")[1].startswith("arm ")
+    robot(folder / "arm", ACTUATES_NOTHING)
+    assert run("check", "arm", "-q")[1].startswith("arm/robot.yaml:2:13: error: ")
+    assert "\narm: 1 error" in run("check", "arm")[1]
 
 
 @pytest.mark.parametrize("path", ["x" * 5000, "a\0b", "a\x1b[31mb", ""])
@@ -153,7 +217,7 @@ def test_folder_without_robot_exits_2(folder: Path, run: Run) -> None:
 
 
 @pytest.mark.parametrize(
-    "argv", [[], ["chek"], ["check"], ["check", "a", "--format", "xml"], ["info"], ["schema", "--version", "3"]]
+    "argv", [["chek"], ["check"], ["check", "a", "--format", "xml"], ["info"], ["schema", "--version", "3"]]
 )
 def test_bad_usage_exits_2(argv: list[str]) -> None:
     with pytest.raises(SystemExit) as exit_:
@@ -218,7 +282,7 @@ def test_empty_folder_is_error_unless_allowed(folder: Path, run: Run) -> None:
     (folder / "mkdocs.yml").write_text("site_name: A site\n", encoding="utf-8")
     assert run("check", ".")[0] == 1  # the one YAML file of a folder is its description
     assert run("check", "--allow-none", ".") == (0, ".: no robot\n", "")
-    assert json.loads(run("check", "--allow-none", ".", "--format", "json")[1])["robots"] == []
+    assert json.loads(run("check", "--allow-none", ".", "--json")[1])["robots"] == []
     robot(folder / "arm")
     assert run("check", "--allow-none", ".")[1] == "./arm: valid\n"
     assert run("check", "--allow-none", "nowhere")[0] == 2
@@ -244,7 +308,7 @@ def test_folders_without_robot_among_others_are_skipped(folder: Path, run: Run) 
     )
     assert "robots/arm/: valid" in out
     assert "robots/group/leg: valid" in out
-    report = json.loads(run("check", *paths, "--format", "json")[1])
+    report = json.loads(run("check", *paths, "--json")[1])
     jsonschema.validate(report, output_schemas()["diagnostics-report.schema.json"])
     assert report["skipped"] == ["robots/meshes/", "robots/quality/", "robots/xacros/"]
     assert run("check", "robots/arm", "robots/quality")[0] == 0
@@ -328,6 +392,15 @@ def test_info_is_plain_ascii_without_terminal(folder: Path, run: Run) -> None:
     assert ["uncontrolled", "0"] in [line[:2] for line in words]
 
 
+def test_info_shows_warnings_before_its_tables(folder: Path, run: Run) -> None:
+    robot(folder, urdf=URDF.replace("</robot>", '<loop name="l"/></robot>'))
+    out = run("info", ".")[1]
+    title, first, *_ = out.splitlines()
+    assert title.endswith(", 1 warning")
+    assert "warning: " in first
+    assert out.index("warning: ") < out.index("mobility")
+
+
 def test_info_escapes_markup_and_controls(folder: Path, run: Run) -> None:
     name = "[red]up&#27;per[/red]"
     robot(folder, urdf=URDF.replace("upper", "[red]upper[/red]").replace('name="arm"', 'name="&#x202e;[b]arm"'))
@@ -361,8 +434,10 @@ def test_info_of_several_robots_asks_for_one(folder: Path, run: Run) -> None:
 def test_help_lists_all_commands_and_version() -> None:
     result = in_a_process("--help")
     assert result.returncode == 0
-    for command in ("check", "info", "schema"):
+    for command in COMMANDS:
         assert f"\n    {command} " in result.stdout
+    assert in_a_process().stdout == in_a_process("help").stdout == result.stdout
+    assert in_a_process("help", "info").stdout == in_a_process("info", "--help").stdout
     assert in_a_process("--version").stdout == f"eurdf {eurdf.__version__}\n"
 
 
@@ -486,9 +561,24 @@ def test_terminal_output_has_colours_and_no_wrapping(folder: Path) -> None:
     _, seen = on_a_terminal(["-m", "eurdf", "check", "."])
     assert "\x1b[1;31merror\x1b[0m" in seen
     assert "│" in seen
+    assert "\x1b[1;31m" not in on_a_terminal(["-m", "eurdf", "check", ".", "--no-color"])[1]
     piped = in_a_process("check", ".").stdout
     assert "\x1b" not in piped
     assert "│" not in piped
+
+
+@pytest.mark.parametrize(("seconds", "quiet", "seen"), [(1.5, [], True), (0.0, [], False), (1.5, ["-q"], False)])
+def test_terminal_says_what_takes_long(folder: Path, seconds: float, quiet: list[str], seen: bool) -> None:
+    robot(folder / "arm")
+    code = (
+        "import sys, time, eurdf\nfrom eurdf.commands.main import main\n"
+        "load, seconds = eurdf.load, float(sys.argv.pop())\n"
+        "def late(*given, **options):\n    time.sleep(seconds)\n    return load(*given, **options)\n"
+        "eurdf.load = late\nsys.exit(main(sys.argv[1:]))"
+    )
+    exit_code, text = on_a_terminal(["-c", code, "info", "arm", *quiet, str(seconds)])
+    assert exit_code == 0
+    assert ("analysing the loops" in text) == seen
 
 
 def test_terminal_shows_progress_of_many_robots(folder: Path) -> None:

@@ -51,12 +51,12 @@ def test_missing_collection_is_refused(run: Run, monkeypatch: pytest.MonkeyPatch
     assert run("robots") == (2, "", "eurdf: the collection of robots is not installed\n")
 
 
-def test_descriptions_are_dropped_in_narrow_terminal(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_columns_are_dropped_before_names_are_broken(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("FORCE_COLOR", "1")
-    monkeypatch.setenv("COLUMNS", "80")
-    _, out, _ = run("robots")
-    assert "27" in out
-    assert "Agility" not in out
-    monkeypatch.setenv("COLUMNS", "200")
-    _, out, _ = run("robots")
-    assert "Agility" in out
+    for columns, dropped in (("60", "closures, nc,"), ("80", "nc, root, description"), ("200", "")):
+        monkeypatch.setenv("COLUMNS", columns)
+        _, out, _ = run("--no-color", "robots")
+        assert all(name in out for name in eurdf.collection_names())
+        assert "mobility" in out
+        assert ("Agility" in out) == (columns == "200")
+        assert (f"a wider terminal also shows: {dropped}" in out) == (columns != "200")

@@ -27,6 +27,8 @@ def test_serial_robot_is_written_and_shown(tmp_path: Path, capsys: pytest.Captur
     assert model.effortLimit.tolist() == stated["torque"]
     assert main(command) == 2
     assert "--force replaces it" in capsys.readouterr().err
+    assert main([*command, "--force", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == stated
 
 
 @pytest.mark.parametrize(

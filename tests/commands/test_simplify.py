@@ -24,7 +24,7 @@ def test_command_writes_nothing_over_files(tmp_path: Path, capsys: pytest.Captur
     capsys.readouterr()
     assert main(["simplify", "talos_leg", "-o", out]) == 2
     assert "--force replaces it" in capsys.readouterr().err
-    assert main(["simplify", "talos_leg", "-o", out, "--force", "--format", "json"]) == 0
+    assert main(["simplify", "talos_leg", "-o", out, "--force", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     jsonschema.Draft202012Validator(output_schemas()["simplify.schema.json"]).validate(found)
     assert found["before"] == {"nv": 13, "nc": 6}

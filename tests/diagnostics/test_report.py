@@ -177,6 +177,7 @@ def test_json_contains_all_fields() -> None:
                         "clause": "EU-FRM-001",
                         "message": "closure 'knee' names the frame 'rod_tpi', which does not exist",
                         "hint": "did you mean 'rod_tip'?",
+                        "fix": None,
                         "file": "robot.yaml",
                         "line": 3,
                         "column": 46,

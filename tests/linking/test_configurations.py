@@ -54,6 +54,17 @@ def test_message_says_what_to_write_of_joints_left_out(tmp_path: Path) -> None:
     assert eurdf.check(path).diagnostics == ()
 
 
+@pytest.mark.parametrize(
+    ("value", "hint"), [(57.3, "57.3 degrees are 1.00007 rad"), (-4, "-4 degrees"), (400, "400 degrees")]
+)
+def test_angle_beyond_its_limits_may_be_in_degrees(tmp_path: Path, value: float, hint: str) -> None:
+    (found,) = eurdf.check(written(tmp_path, STAR, f"configurations: {{ready: {{a: {value}}}}}\n")).diagnostics
+    assert found.code == "configuration-limits"
+    assert found.hint is not None
+    assert found.hint.startswith("is it in degrees? ")
+    assert hint in found.hint
+
+
 def test_limit_zero_of_left_handed_screw_is_not_negative(tmp_path: Path) -> None:
     yaml = "joints: {c: {type: helical, pitch: -1}}\nconfigurations: {ready: {c: 1}}\n"
     (found,) = eurdf.check(written(tmp_path, STAR.replace('lower="-2"', 'lower="0"'), yaml)).diagnostics

@@ -134,7 +134,7 @@ SCHEMA = [
         "configurations:\n  assembled:\n    motor: 0.1\n    ready: {motor: 0}\n",
         "if 'ready' is another configuration, indent it like 'assembled'",
     ),
-    ("closures:\n  name: a\n  type: 3d\n", "begin each item with '- '"),
+    ("closures:\n  name: a\n  type: 3d\n", "begin the item with '- '"),
 ]
 
 

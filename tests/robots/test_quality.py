@@ -384,7 +384,7 @@ def test_command_writes_same_as_json(copy, capsys):
 def test_unbuildable_robot_reports_only_its_reason(copy):
     folder = copy("four_bar")
     replace(folder / "robot.yaml", "[motor_crank]", "[motor_krank]")
-    assert "did you mean 'motor_crank'" in eurdf.check(folder).diagnostics[0].hint
+    assert "write 'motor_crank'" in eurdf.check(folder).diagnostics[0].hint
     assert "motor_krank" in only_error(folder, "sound")
 
 

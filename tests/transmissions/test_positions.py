@@ -69,6 +69,7 @@ def test_joints_beyond_their_limits_are_named() -> None:
         ),
         (eurdf.transmissions.actuator_values, {"free_pitch": 0.1}, "add 'free_roll' to the joints"),
         (eurdf.transmissions.actuator_values, {"universal_rod_a": 0.1}, "has 2 coordinates"),
+        (eurdf.transmissions.actuator_values, [-0.3, 0.1], "joints has no names; it must be a mapping of names"),
         (
             eurdf.transmissions.joint_values,
             {"free_pitch": 0.1},

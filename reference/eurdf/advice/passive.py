@@ -8,6 +8,7 @@ import numpy as np
 import pinocchio as pin
 
 from eurdf.array import Matrix, Vector
+from eurdf.kinematics.analysis import Analysis
 from eurdf.kinematics.loop import joints_of_loops
 from eurdf.kinematics.loop_analysis import LoopAnalysis, Motion, sparse_basis
 from eurdf.kinematics.scale import characteristic_length
@@ -52,6 +53,12 @@ class PassiveMotions:
         """
         motions = self._unsprung(loop.motions)
         return [motion for motion in motions if not _turns_about_one_line(self._twists(motion), self._length)]
+
+    def all_needing_actuators(self, analysis: Analysis) -> list[Motion]:
+        """The uncontrolled motions of a robot, in its loops and outside of them, except those that need no actuator."""
+        in_loops = sum(len(loop.motions) for loop in analysis.loops)
+        found = [motion for loop in analysis.loops for motion in self.needing_actuators(loop)]
+        return [*found, *filter(self.needs_actuator, analysis.motions[in_loops:])]
 
     def needs_actuator(self, motion: Motion) -> bool:
         """Whether a motion outside of the loops is neither against a spring nor one of the root or a wheel."""

@@ -6,8 +6,34 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from eurdf.diagnostics import REGISTRY, Phase, Severity
+
 if TYPE_CHECKING:
     from eurdf.kinematics.analysis import Analysis
+
+
+#: Codes of what a value says by itself, whatever the rest of the robot is: an error hides them, but no fix causes them.
+_LOCAL = frozenset(
+    {
+        *("x-angle-in-degrees", "x-length-in-millimetres", "x-tiny-robot", "x-quaternion-order"),
+        *("x-massless-link", "x-mimic-ignored", "x-no-actuator", "closure-type-unknown", "urdf-no-range"),
+    }
+)
+
+
+#: Codes of elements and attributes of a URDF, which the other elements say nothing of.
+_OF_ELEMENTS = frozenset(
+    {"xml-syntax", "urdf-joint-type", "urdf-geometry", "urdf-missing-attribute", "urdf-missing-element"}
+)
+
+#: Phases that look at one file.
+_FILES = (Phase.YAML, Phase.SCHEMA, Phase.URDF)
+
+
+def is_of_the_text(code: str) -> bool:
+    """Whether it is an error that the text of one file alone decides: what it hides says nothing of it."""
+    rule = REGISTRY[code]
+    return rule.severity is Severity.ERROR and (rule.phase in (Phase.YAML, Phase.SCHEMA) or code in _OF_ELEMENTS)
 
 
 @dataclass(frozen=True)
@@ -16,19 +42,28 @@ class Evidence:
 
     Attributes:
         counts: The number of diagnostics of each code.
+        is_whole: Whether it has no error, which would hide others.
         analysis: How it moves; None if that is not known, as of one with errors.
     """
 
     counts: Counter[str]
-    analysis: Analysis | None
+    is_whole: bool = False
+    analysis: Analysis | None = None
+
+    def is_enough_for(self, code: str) -> bool:
+        """Whether it can show that a fix of a diagnostic is right."""
+        return self.is_whole or is_of_the_text(code)
 
     def is_as_good_as(self, before: Evidence, code: str) -> bool:
         """Whether after a fix of one diagnostic, whose code is given, the robot is at least as good as before.
 
-        That diagnostic is gone, and there is no new one; no actuator has lost its independence, and the robot has not
-        fewer motions than its actuators have.
+        That diagnostic is gone, and there is no new one, except what an error hid before; no actuator has lost its
+        independence, and the robot has not fewer motions than its actuators have.
         """
-        if self.counts[code] >= before.counts[code] or self.counts - before.counts:
+        new = {each for each in self.counts if self.counts[each] > before.counts[each]}
+        if is_of_the_text(code):
+            return self.counts[code] < before.counts[code] and not any(REGISTRY[each].phase in _FILES for each in new)
+        if self.counts[code] >= before.counts[code] or not new <= (set() if before.is_whole else _LOCAL):
             return False
         if self.analysis is None:
             return before.analysis is None

@@ -29,6 +29,7 @@ class DistanceClosure(ClosureKind):
     type: ClassVar[str] = "distance"
     units: ClassVar[tuple[Unit, ...]] = ("m",)
     text: ClassVar[str] = "the origins of frames A and B are at a fixed distance, as those of the ball joints of a rod"
+    called: ClassVar[str] = "rod bar link strut rope tendon"
     summary: ClassVar[str] = "Two frames whose origins are at a fixed distance."
     length: float = key(
         "Length", "Distance between the origins of A and B, m, at least 0.0001.", least=1e-4, example=0.155

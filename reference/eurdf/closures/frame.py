@@ -21,6 +21,7 @@ class FrameClosure(ClosureKind):
     type: ClassVar[str] = "6d"
     units: ClassVar[tuple[Unit, ...]] = ("m",) * 3 + ("rad",) * 3
     text: ClassVar[str] = "their orientations also agree"
+    called: ClassVar[str] = "weld welded fixed lock rigid pose"
     since: ClassVar[Literal["1", "2.1"]] = "1"
 
     def with_orientation_free(self) -> PointClosure:

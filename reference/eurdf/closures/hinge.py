@@ -80,6 +80,7 @@ class HingeClosure(ClosureKind):
     type: ClassVar[str] = "hinge"
     units: ClassVar[tuple[Unit, ...]] = ("m",) * 3 + ("rad",) * 2
     text: ClassVar[str] = "the origin of frame B is held on that of A, and an axis of B along an axis of A"
+    called: ClassVar[str] = "pin revolute rotary rotational continuous"
     axes: tuple[Vector3, Vector3] = key(
         "Axes",
         "The axis in frame A, and the axis in frame B: vectors of any length but zero, no unit.",

@@ -172,9 +172,11 @@ class ClosureKind(Closure, ABC):
         text: What the type means, in the words of the schema.
         summary: What a closure of the type is.
         since: The first version of the format that has it.
+        called: What other formats and textbooks call the type, in small letters, with ``_`` between words.
     """
 
     text: ClassVar[str]
+    called: ClassVar[str] = ""
     summary: ClassVar[str] = "Two frames that are joined."
     since: ClassVar[Literal["1", "2.1"]] = "2.1"
 

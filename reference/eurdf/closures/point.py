@@ -20,6 +20,7 @@ class PointClosure(ClosureKind):
     type: ClassVar[str] = "3d"
     units: ClassVar[tuple[Unit, ...]] = ("m",) * 3
     text: ClassVar[str] = "the origins of frames A and B coincide"
+    called: ClassVar[str] = "ball point point_to_point connect position spherical"
     since: ClassVar[Literal["1", "2.1"]] = "1"
 
     def contacts(self) -> tuple[Contact]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from eurdf.commands.command import JSON, ROBOT, cannot_run, command, flag, option
 from eurdf.commands.output import write_result
 from eurdf.commands.selection import NEUTRAL, named_configuration
-from eurdf.commands.terminal import Table, write_notes, write_shown
+from eurdf.commands.terminal import Table, progress_bar, write_notes, write_shown
 from eurdf.errors import CannotRun
 from eurdf.json_schema import Count, NullIfInfinite
 from eurdf.mechanism.joint_types import JointType
@@ -145,7 +145,7 @@ def assemble(
         file = file_to_save_to(path, read) if write else None
     robot = build_robot(read.mechanism, geometry=False)
     start = start or (NAME if NAME in robot.configurations else NEUTRAL)
-    with cannot_run(ValueError):
+    with cannot_run(ValueError), progress_bar("closing the loops"):
         q0 = named_configuration(robot, start)
         stated = read.mechanism.configurations.get(start, {}) if start == NAME and not hold else {}
         for held in held_in_turn(robot, stated):
@@ -165,8 +165,9 @@ def assemble(
             raise CannotRun(f"{reason}; --force replaces it" if replaces else str(reason)) from None
     if json:
         write_result(info)
-    write_notes(_messages(info, assembly, beyond))
-    return 0 if (assembly.closes if file is None else is_written) else 1
+    succeeds = assembly.closes if file is None else is_written
+    write_notes(_messages(info, assembly, beyond), quiet=succeeds)
+    return 0 if succeeds else 1
 
 
 def _assemble(robot: Robot, q0: Vector, hold: list[str], limits: bool) -> Assembly:

@@ -15,10 +15,11 @@ GROUP = "eurdf.commands"
 class Certify:
     """A command whose arguments the suite parses."""
 
+    summary = "run the conformance suite on any parser, in any language"
+
     def register(self, subparsers: argparse._SubParsersAction[Any], name: str) -> None:
         """Add the command to the parser; no character makes an argument an option here."""
-        words = "run the conformance suite on any parser, in any language"
-        parser = subparsers.add_parser(name, help=words, add_help=False, prefix_chars="\0")
+        parser = subparsers.add_parser(name, add_help=False, prefix_chars="\0")
         parser.add_argument("arguments", nargs="*")
         parser.set_defaults(run=self.run)
 

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from eurdf.collection.near_paths import URDF_ENDINGS, near_path
 from eurdf.commands.selection import select_one
-from eurdf.commands.terminal import write_refusal
+from eurdf.commands.terminal import Style, write_refusal
 from eurdf.errors import CannotRun, InvalidRobot, MissingExtra
 from eurdf.reading.robot_source import is_stream, is_text
 
@@ -100,7 +100,6 @@ URDF: Any = (option("a .urdf or .xacro file, or - for standard input", "urdf", m
 
 ROOT: Any = option("default: as the description says", choices=("fixed", "floating"))
 JSON: Any = flag("write one JSON object")
-FORMAT: Any = option("format of the output", "--format", choices=("text", "json"), default="text")
 FORCE: Any = flag("replace existing files")
 FORCE_FILE: Any = flag("replace an existing file")
 FORCE_DESCRIPTION: Any = flag("replace OUT and its schema if they exist")
@@ -143,7 +142,6 @@ class Command(NamedTuple):
         """Add the command to a parser."""
         parser = subparsers.add_parser(
             name,
-            help=self.summary,
             description=self.description,
             epilog=self.epilog,
             formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -159,11 +157,12 @@ class Command(NamedTuple):
                 names = each.names or (f"--{parameter.name.replace('_', '-')}",)
                 dest = {"dest": parameter.name} if number == 0 and names[0].startswith("-") else {}
                 groups[each.group].add_argument(*names, **{**dest, **each.settings})
+        add_style(parser)
         parser.set_defaults(run=self.run)
 
     def run(self, args: argparse.Namespace) -> int:
         """Run it, and return the exit code."""
-        values = {name: value for name, value in vars(args).items() if name != "run"}
+        values = {name: value for name, value in vars(args).items() if name not in ("run", *Style._fields)}
         as_json = values.get("json", values.get("form") == "json")
         if "path" in values:
             values["path"] = select_one(values["path"])
@@ -175,6 +174,31 @@ class Command(NamedTuple):
             stream = sys.stderr if self.has_output else sys.stdout
             write_refusal(refusal.path, refusal.diagnostics, as_json, stream)
             return 1
+
+
+@dataclass(frozen=True, slots=True)
+class FailureInfo:
+    """The output of a command with --json that cannot run, or that has no result."""
+
+    error: str
+    """The reason."""
+
+
+@dataclass(frozen=True, slots=True)
+class WrittenInfo:
+    """The output of --json of 'eurdf picture', 'eurdf view' and, with -o, 'eurdf schema'."""
+
+    files: tuple[str, ...]
+    """The files that were written."""
+    url: str | None
+    """Address of the page of 'eurdf view'; null if the command serves none."""
+
+
+def add_style(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `Style`, which every command has, also before its name."""
+    texts = {("-q", "--quiet"): "write no notes, only results and errors", ("--no-color",): "write without colours"}
+    for names, text in texts.items():
+        parser.add_argument(*names, action="store_true", default=argparse.SUPPRESS, help=text)
 
 
 def command(

@@ -1,4 +1,4 @@
-"""The outputs of ``eurdf export``, ``eurdf import`` and ``eurdf simplify`` with ``--format json``."""
+"""The outputs of ``eurdf export``, ``eurdf import`` and ``eurdf simplify`` with ``--json``."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ class VerificationInfo:
 
 @dataclass(frozen=True, slots=True)
 class ExportInfo:
-    """The output of 'eurdf export --format json'."""
+    """The output of 'eurdf export --json'."""
 
     path: str
     """The robot, as given."""
@@ -137,7 +137,7 @@ class ExportInfo:
 
 @dataclass(frozen=True, slots=True)
 class ImportInfo:
-    """The output of 'eurdf import --format json'."""
+    """The output of 'eurdf import --json'."""
 
     path: str
     """The file, as given."""
@@ -156,12 +156,12 @@ class ImportInfo:
     losses: tuple[LossInfo, ...]
     """Every loss, in the order found."""
     diagnostics: tuple[dict[str, Any], ...]
-    """What 'eurdf check --format json' reports of the robot, also where --strict refuses to write it."""
+    """What 'eurdf check --json' reports of the robot, also where --strict refuses to write it."""
 
 
 @dataclass(frozen=True, slots=True)
 class SimplifyInfo:
-    """The output of 'eurdf simplify --format json'."""
+    """The output of 'eurdf simplify --json'."""
 
     LIKE: ClassVar = "eurdf.convert.simplify:Simplification"
 

@@ -34,7 +34,7 @@ def loss_lines(losses: Sequence[Loss], place_of: Callable[[Loss], Place | None])
             where = f"{visible(place.file)}:{place.line}: " if place is not None and place.line else ""
             yield [(f"    {where}'{visible(loss.name)}': {visible(loss.message)}", "")]
         if len(group) > _MOST_SHOWN:
-            yield [(f"    and {len(group) - _MOST_SHOWN} more; --format json lists all", "dim")]
+            yield [(f"    and {len(group) - _MOST_SHOWN} more; --json lists all", "dim")]
         yield [("    = hint: ", "cyan"), (first.hint, "")]
 
 

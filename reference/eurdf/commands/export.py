@@ -8,7 +8,7 @@ import sys
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from eurdf.commands.command import FORCE, FORMAT, ROBOT, command, flag, option
+from eurdf.commands.command import FORCE, JSON, ROBOT, command, flag, option
 from eurdf.commands.conversion_lines import loss_lines, verification_lines
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import writing
@@ -40,9 +40,6 @@ MuJoCo, Drake, the library of USD or Pinocchio; MuJoCo and Drake also let the ro
 """
 
 
-_FORMATS: Any = (FORMAT, option("same as --format json", "--json", action="store_const", dest="form", const="json"))
-
-
 @command(
     summary="write a robot in the format of a simulator, and show what it loses",
     description=_DESCRIPTION,
@@ -71,8 +68,8 @@ def export(
         "what actuators become in MJCF and USD; default: motor", choices=ACTUATORS, default="motor"
     ),
     closures: ClosureChoice = option(
-        "hinge: 3d closures become hinges where their bodies turn about one axis alone, for solvers that hold no ball "
-        "joint in a loop; default: stated",
+        "hinge: 3d closures become hinges where their bodies turn about one axis alone, for solvers without ball "
+        "joints in loops; default: stated",
         choices=CLOSURES,
         default="stated",
     ),
@@ -93,7 +90,7 @@ def export(
         "read the result back: compare mass, mass matrix, loops and limits with the robot, simulate 2 s where the "
         "program can, and say which loops open by more than 5 mm, or what diverges, and why"
     ),
-    form: str = _FORMATS,
+    json: bool = JSON,
 ) -> int:
     """Export, and show the losses."""
     from eurdf.linking.robot_files import read_valid
@@ -112,7 +109,8 @@ def export(
     refusal, paths, verification = "", [], None
     try:
         choices = Choices(to, configuration, actuators, closures, joints, mesh_files, strict)
-        exported = export_linked(read, choices, options["package_dirs"], allow_outside=options["allow_outside"])
+        with progress_bar(f"exporting to {to}"):
+            exported = export_linked(read, choices, options["package_dirs"], allow_outside=options["allow_outside"])
     except CannotExport as reason:
         losses = reason.losses
         refusal = "nothing was written: --strict refuses losses" if losses else f"nothing was written: {reason}"
@@ -128,7 +126,7 @@ def export(
             with progress_bar("simulating") as progress:
                 verification = exported.verify(progress=progress)
     place_of = partial(_place, read)
-    if form == "json":
+    if json:
         from eurdf.commands.conversion_info import ExportInfo, loss_infos, verification_info
 
         verified = None if verification is None else verification_info(verification)
@@ -136,7 +134,7 @@ def export(
         write_result(ExportInfo(read.path, to, tuple(paths), refusal or None, found, verified))
     else:
         write_lines(loss_lines(losses, place_of), sys.stdout)
-        write_notes([refusal] if refusal else [f"wrote '{each}'" for each in paths])
+        write_notes([refusal] if refusal else [f"wrote '{each}'" for each in paths], quiet=not refusal)
         if verification is not None:
             write_lines(verification_lines(verification), sys.stdout)
     return 1 if refusal or (verification is not None and verification.findings) else 0

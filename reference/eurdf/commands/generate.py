@@ -123,7 +123,7 @@ def generate(
     made = generation.generate(tree, convention, version, root, urdf_path, reference, closure_type)
     if made.mechanism is None:
         write_refusal(display_name(urdf), made.diagnostics, json)
-        write_notes(["nothing was written: the names contradict each other"])
+        write_notes(["nothing was written: the names contradict each other"], quiet=False)
         return 1
     warnings = [found.message for found in diagnostics if found.code == "x-xacro-warning"]
     ignored = (f"{found.message}; {found.hint}" for found in diagnostics if found.code == "urdf-closure-ignored")

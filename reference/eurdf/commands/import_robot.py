@@ -9,11 +9,11 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eurdf.commands.command import FORCE, FORMAT, OUTPUT_FOLDER, command, flag, option
+from eurdf.commands.command import FORCE, JSON, OUTPUT_FOLDER, command, flag, option
 from eurdf.commands.conversion_lines import loss_lines
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import writing
-from eurdf.commands.terminal import write_lines, write_notes, write_reports
+from eurdf.commands.terminal import progress_bar, write_lines, write_notes, write_reports
 from eurdf.diagnostics import plural
 from eurdf.reading.other_formats import IMPORTED
 
@@ -56,7 +56,7 @@ def import_robot(
     allow_outside: bool = flag("read files that are outside these folders"),
     strict: bool = flag("write nothing if a loss is not exact, or the robot has errors"),
     force: bool = FORCE,
-    form: str = FORMAT,
+    json: bool = JSON,
 ) -> int:
     """Import, and show the losses."""
     import eurdf
@@ -65,10 +65,11 @@ def import_robot(
     from eurdf.errors import CannotImport
 
     try:
-        found = eurdf.import_robot(file, format=format_, within=within, strict=strict, allow_outside=allow_outside)
+        with progress_bar("importing"):
+            found = eurdf.import_robot(file, format=format_, within=within, strict=strict, allow_outside=allow_outside)
     except CannotImport as reason:
         place_of = _places((Path(reason.path),))
-        if form == "json":
+        if json:
             reported = tuple(Report(file, reason.diagnostics).to_json()["diagnostics"])
             losses = loss_infos(reason.losses, place_of)
             write_result(ImportInfo(file, format_, (), str(reason), None, (), None, losses, reported))
@@ -76,13 +77,13 @@ def import_robot(
             write_lines(loss_lines(reason.losses, place_of), sys.stdout)
             if reason.diagnostics:
                 write_reports([Report(output, reason.diagnostics)])
-            write_notes([f"nothing was written: {reason}"])
+            write_notes([f"nothing was written: {reason}"], quiet=False)
         return 1
     place_of = _places(found.sources)
     with writing():
         paths = tuple(os.fspath(each) for each in found.write(output, force=force))
     report = eurdf.check(output)
-    if form == "json":
+    if json:
         reported = tuple(report.to_json()["diagnostics"])
         losses = loss_infos(found.losses, place_of)
         write_result(

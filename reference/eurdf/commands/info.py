@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 from eurdf.commands.command import JSON, ROBOT, ROOT, command
 from eurdf.commands.output import write_result
-from eurdf.commands.terminal import Cell, Table, write_lines, write_reports, write_shown
+from eurdf.commands.terminal import Cell, Table, progress_bar, write_lines, write_reports, write_shown
 from eurdf.reading.robot_source import display_name
 
 if TYPE_CHECKING:
     from eurdf.commands.robot_info import CouplingInfo, RobotInfo
+    from eurdf.diagnostics.report import Report
     from eurdf.mechanism.mechanism import Root
 
 Row = tuple[str, "int | str | None", str]
@@ -34,23 +35,25 @@ def info(options: dict[str, Any], path: str = ROBOT, root: Root | None = ROOT, j
     """Load, analyse and show a robot."""
     import eurdf
     from eurdf.commands.robot_info import robot_info
+    from eurdf.diagnostics.report import Report
 
-    robot = eurdf.load(path, root=root, geometry=False, check_loops=not json, **options)
-    found = robot_info(robot, eurdf.analyze(robot))
+    with progress_bar("analysing the loops"):
+        robot = eurdf.load(path, root=root, geometry=False, check_loops=not json, **options)
+        found = robot_info(robot, eurdf.analyze(robot))
     if json:
         write_result(found)
         return 0
-    _show(found)
+    report = Report(display_name(path), robot.diagnostics)
+    write_shown(_heading(found, report))
     if robot.diagnostics:
-        from eurdf.diagnostics.report import Report
-
-        write_lines([[]], sys.stdout)
-        write_reports([Report(display_name(path), robot.diagnostics)])
+        write_reports([report], verdict=False)
+    write_lines([[]], sys.stdout)
+    _show(found)
     return 0
 
 
 def _show(info: RobotInfo) -> None:
-    shown: list[Table | Sequence[Cell]] = [_heading(info), _dimensions(info)]
+    shown: list[Table | Sequence[Cell]] = [_dimensions(info)]
     if info.left_out is not None:
         shown.append([(info.left_out, "yellow")])
     for applies, table in (
@@ -68,10 +71,14 @@ def _show(info: RobotInfo) -> None:
     write_shown(*shown)
 
 
-def _heading(info: RobotInfo) -> Sequence[Cell]:
+def _heading(info: RobotInfo, report: Report) -> Sequence[Cell]:
+    from eurdf.diagnostics.text import counts
+
     format_name = f"Extended URDF {info.version}" if info.version else "URDF"
     mass = f", {info.mass:.6g} kg" if math.isfinite(info.mass) else ""
-    return (info.name, "bold"), f"  {format_name}, {info.root} root{mass}"
+    number = counts(report)
+    style = "bold red" if report.errors else "yellow"
+    return (info.name, "bold"), f"  {format_name}, {info.root} root{mass}", (f", {number}" if number else "", style)
 
 
 def _dimensions(info: RobotInfo) -> Table:
@@ -148,7 +155,7 @@ def _closures(info: RobotInfo) -> Table:
         compliances = [f"{linear:g} m/N"] * bool(linear) + [f"{angular:g} rad/(N·m)"] * bool(angular)
         note = (f"compliance {', '.join(compliances)}" if compliances else "", "dim")
         rows.append(((closure.name, "bold"), closure.type, *frames, _number(closure.residual), note))
-    return Table("closure", "type", "frame A", "frame B", "residual", "", rows=rows, right=[4])
+    return Table("closure", "type", "frame A", "frame B", "residual", "", rows=rows, right=[4], spare=(4, 1))
 
 
 def _couplings(info: RobotInfo) -> Table:
@@ -176,7 +183,7 @@ def _loops(info: RobotInfo) -> Table:
         )
         for loops in info.loop_list
     )
-    return Table("loops of", *counts, "singularity", rows=rows, right=range(1, 8))
+    return Table("loops of", *counts, "singularity", rows=rows, right=range(1, 8), spare=(5, 2, 3, 1, 7))
 
 
 def _motions(info: RobotInfo) -> Table:
@@ -211,7 +218,7 @@ def _joints(info: RobotInfo) -> Table:
         note = ("; ".join(notes), "dim" if motor is None else "cyan")
         links = joint.parent, joint.child
         rows.append(((joint.name, "bold"), joint.type.value, *links, str(joint.nv), note))
-    return Table("joint", "type", "parent", "child", "nv", "", rows=rows, right=[4])
+    return Table("joint", "type", "parent", "child", "nv", "", rows=rows, right=[4], spare=(4, 2, 3))
 
 
 def _frames(info: RobotInfo) -> Table:

@@ -19,9 +19,11 @@ from eurdf.commands.terminal import write_json
 from eurdf.diagnostics.report import report_schema
 from eurdf.json_schema import to_json
 
-#: The results by the names of their schemas: the module and the class of each.
+#: The results by the names of their schemas: the module, of the commands if it is named alone, and the class of each.
 RESULTS = {
     "assemble": ("assemble", "AssemblyInfo"),
+    "error": ("command", "FailureInfo"),
+    "explain": ("eurdf.explanation", "Explanation"),
     "export": ("conversion_info", "ExportInfo"),
     "import": ("conversion_info", "ImportInfo"),
     "info": ("robot_info", "RobotInfo"),
@@ -29,6 +31,7 @@ RESULTS = {
     "serial": ("transmission_info", "SerialInfo"),
     "simplify": ("conversion_info", "SimplifyInfo"),
     "transmission": ("transmission_info", "TransmissionInfo"),
+    "written": ("command", "WrittenInfo"),
 }
 
 
@@ -41,7 +44,8 @@ def output_schemas() -> dict[str, dict[str, Any]]:
     """JSON Schema (2020-12) of the JSON of each command, by file name."""
     found = {"diagnostics-report.schema.json": report_schema()}
     for name, (module, result) in RESULTS.items():
-        found[f"{name}.schema.json"] = _schema(getattr(import_module(f"eurdf.commands.{module}"), result))
+        path = module if "." in module else f"eurdf.commands.{module}"
+        found[f"{name}.schema.json"] = _schema(getattr(import_module(path), result))
     return dict(sorted(found.items()))
 
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from eurdf.commands.command import FORCE_FILE, ROBOT, cannot_run, command, flag, option
+from eurdf.commands.command import FORCE_FILE, JSON, ROBOT, WrittenInfo, cannot_run, command, flag, option
+from eurdf.commands.output import write_result
 from eurdf.commands.output_file import refuse_to_replace, writing
 from eurdf.commands.selection import NEUTRAL, named_configuration
-from eurdf.commands.terminal import write_notes
+from eurdf.commands.terminal import progress_bar, write_notes
 from eurdf.errors import CannotRun
 
 _DESCRIPTION = """\
@@ -44,6 +45,7 @@ def picture(
     open_: bool = flag("show the closures open", "--open"),
     graph: bool = flag("draw the graph of links and loops as SVG"),
     force: bool = FORCE_FILE,
+    json: bool = JSON,
 ) -> int:
     """Draw."""
     if graph and (loops or open_ or configuration):
@@ -55,7 +57,7 @@ def picture(
     from eurdf.viewing.graph import save_graph
     from eurdf.writing.saved_configuration import NAME
 
-    with cannot_run(ValueError, by=f"'{path}': "):
+    with cannot_run(ValueError, by=f"'{path}': "), progress_bar("drawing"):
         robot = eurdf.load(path, **options)
         if not graph:
             if configuration in (None, NAME) and NAME not in robot.configurations:
@@ -68,5 +70,7 @@ def picture(
             save_graph(robot.mechanism, output)
         else:
             drawing.save_picture(image, output)
+    if json:
+        write_result(WrittenInfo((output,), None))
     write_notes([f"wrote '{output}'"])
     return 0

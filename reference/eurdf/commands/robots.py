@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import json
-import sys
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 from eurdf.commands.command import JSON, command
-from eurdf.commands.terminal import Table, columns, is_terminal, write_shown, write_text
+from eurdf.commands.terminal import Table, write_shown, write_text
 from eurdf.errors import CannotRun
 from eurdf.json_schema import Count
 
 #: What the command shows, in the folder of the collection: to build and analyse all robots takes many times as long.
 FILE = "collection.json"
-
-# A narrower terminal has no space for descriptions.
-_WIDE = 120
 
 #: Its dimensions.
 COUNTS = ("nv", "closures", "nc", "mobility", "actuated", "uncontrolled")
@@ -75,9 +71,9 @@ def robots(json: bool = JSON) -> int:
 
 
 def _show(text: str) -> None:
-    described = not is_terminal(sys.stdout) or columns() >= _WIDE
-    shown = [*COUNTS, "root", *(["description"] if described else [])]
+    shown = [*COUNTS, "root", "description"]
     collected = json.loads(text)["robots"]
     rows = [((robot["name"], "bold"), *(str(robot[column]) for column in shown)) for robot in collected]
+    # Without the description, it fits into 80 columns.
     numbers = range(1, len(COUNTS) + 1)
-    write_shown(Table("robot", *shown, rows=rows, right=numbers, whole=range(len(COUNTS) + 2) if described else ()))
+    write_shown(Table("robot", *shown, rows=rows, right=numbers, spare=(8, 3, 7, 2, 5, 6)))

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from eurdf.commands.command import OUTPUT, URDF_OPTIONS, command, flag, option, require_urdf
+from eurdf.commands.command import OUTPUT, URDF_OPTIONS, WrittenInfo, command, flag, option, require_urdf
+from eurdf.commands.output import write_result
 from eurdf.commands.output_file import write_new
 from eurdf.commands.terminal import write_notes, write_text
 from eurdf.errors import CannotRun
@@ -32,6 +33,7 @@ def schema(
     urdf: str | None = _NAMES,
     output: str | None = OUTPUT,
     force: bool = flag("replace OUT if it exists"),
+    json: bool = flag("with -o, write one JSON object; the schema is JSON without it"),
 ) -> int:
     """Write the schema."""
     from eurdf.diagnostics import Diagnostics
@@ -49,5 +51,7 @@ def schema(
         write_text(text)
     else:
         write_new(output, text, force)
+        if json:
+            write_result(WrittenInfo((output,), None))
         write_notes([f"wrote '{output}'"])
     return 0

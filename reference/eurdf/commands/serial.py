@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from eurdf.commands.command import (
     FORCE,
+    JSON,
     OUTPUT_FOLDER,
     ROBOT,
     SERIAL_JOINTS,
@@ -20,7 +21,7 @@ from eurdf.commands.command import (
     option,
 )
 from eurdf.commands.output_file import writing
-from eurdf.commands.terminal import Table, write_lines, write_notes, write_shown
+from eurdf.commands.terminal import Table, progress_bar, write_json, write_lines, write_notes, write_shown
 
 if TYPE_CHECKING:
     from eurdf.array import Matrix, Vector
@@ -76,6 +77,7 @@ def serial(
     grid: int | None = option("number of positions of each joint in the workspace", type=int, metavar="N"),
     degree: int = option("degree of the polynomials; default: 8", type=int, default=8, metavar="N"),
     force: bool = FORCE,
+    json: bool = JSON,
 ) -> int:
     """Write the serial robot, and show what it neglects."""
     import eurdf
@@ -83,12 +85,16 @@ def serial(
 
     robot = eurdf.load(path, **options)
     with cannot_run(EurdfError, ValueError):
-        twin = eurdf.transmissions.serial_twin(
-            robot, joints, None, motors=motors, limits=limits, armature=dict(armature), grid=grid, degree=degree
-        )
+        with progress_bar("computing the workspace"):
+            twin = eurdf.transmissions.serial_twin(
+                robot, joints, None, motors=motors, limits=limits, armature=dict(armature), grid=grid, degree=degree
+            )
         with writing():
             written = twin.write(output, force=force)
-    _show(twin)
+    if json:
+        write_json(twin.report())
+    else:
+        _show(twin)
     write_notes([*twin.notes, *(f"wrote '{os.fspath(each)}'" for each in written)])
     return 0
 

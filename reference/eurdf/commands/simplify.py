@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any, Literal
 
-from eurdf.commands.command import FORCE, FORMAT, ROBOT, cannot_run, command, flag, option
+from eurdf.commands.command import FORCE, JSON, ROBOT, cannot_run, command, flag, option
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import writing
-from eurdf.commands.terminal import Table, write_notes, write_shown
+from eurdf.commands.terminal import Table, progress_bar, write_notes, write_shown
 
 if TYPE_CHECKING:
     from eurdf.convert.simplify import Simplification
@@ -40,21 +40,21 @@ def simplify(
         choices=("joints", "closures"),
     ),
     force: bool = FORCE,
-    form: str = FORMAT,
+    json: bool = JSON,
 ) -> int:
     """Rewrite, and show what was saved."""
     import eurdf
     from eurdf.commands.conversion_info import SimplifyInfo
     from eurdf.errors import CannotSimplify
 
-    with cannot_run(CannotSimplify):
+    with cannot_run(CannotSimplify), progress_bar("comparing motions"):
         found = eurdf.simplify(path, expand=expand, only=only, **options)
     paths: tuple[str, ...] = ()
     notes: list[str] = []
     if output is not None:
         with writing():
             paths = tuple(os.fspath(each) for each in found.write(output, force=force))
-    if form == "json":
+    if json:
         write_result(SimplifyInfo.of(path, paths, found))
         return 0
     if found.motion is None:

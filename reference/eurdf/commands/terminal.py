@@ -8,7 +8,9 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, TextIO, TypeAlias
+from contextvars import ContextVar
+from threading import Timer
+from typing import TYPE_CHECKING, Any, NamedTuple, TextIO, TypeAlias
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -19,8 +21,27 @@ if TYPE_CHECKING:
     from eurdf.diagnostics.report import Report
     from eurdf.diagnostics.text import Line
 
+#: A wait of this many seconds is shown on a terminal.
+PATIENCE = 1.0
+
+# Columns between two columns of a table, and those that a sentence in it needs at least.
+_GAP, _SENTENCE = 3, 40
+
 # A table in a file is as wide as it needs to be.
 _UNBOUNDED = 10_000
+
+
+class Style(NamedTuple):
+    """What the user chose of the output: no notes, or no colours."""
+
+    quiet: bool = False
+    no_color: bool = False
+
+
+_PLAIN = Style()
+
+#: The style of the command that runs.
+STYLE: ContextVar[Style] = ContextVar("STYLE", default=_PLAIN)
 
 
 def is_terminal(stream: TextIO) -> bool:
@@ -71,22 +92,29 @@ def write_lines(lines: Iterable[Line], stream: TextIO) -> None:
     stream.write("".join(map(no_command, captured.get().splitlines(keepends=True))))
 
 
-def write_notes(sentences: Iterable[str]) -> None:
-    """Write to the standard error, a line each."""
+def write_notes(sentences: Iterable[str], *, quiet: bool = True) -> None:
+    """Write to the standard error, a line each; if they may be left out, not with ``--quiet``."""
     from eurdf.diagnostics.wording import no_command, visible
 
+    if quiet and STYLE.get().quiet:
+        return
     for sentence in sentences:
         sys.stderr.write(f"{no_command(visible(sentence))}\n")
 
 
-def write_reports(reports: Sequence[Report], strict: bool = False, stream: TextIO | None = None) -> None:
-    """Write diagnostics and verdicts as text, to the standard output by default."""
+def write_reports(
+    reports: Sequence[Report], strict: bool = False, stream: TextIO | None = None, *, verdict: bool = True
+) -> None:
+    """Write diagnostics, and verdicts unless they are not wanted, as text, to the standard output by default."""
     from eurdf.diagnostics.text import SOURCE_WIDTH, report_lines, summary_line, total_line
     from eurdf.diagnostics.wording import visible
 
     stream = stream or sys.stdout
     width = min(columns() - len("12345 | "), 2 * SOURCE_WIDTH) if is_terminal(stream) else SOURCE_WIDTH
     bar = "│" if has_boxes(stream) else "|"
+    if STYLE.get().quiet or not verdict:
+        write_lines((line for report in reports for line in report_lines(report, width, bar)), stream)
+        return
     for report in reports:
         write_lines([*report_lines(report, width, bar), summary_line(report, strict)], stream)
         if report.diagnostics and len(reports) > 1:
@@ -109,21 +137,32 @@ def write_refusal(path: str, diagnostics: Iterable[Diagnostic], as_json: bool, s
 
 
 @contextmanager
-def progress_bar(what: str, wanted: bool = True) -> Iterator[Callable[[float, float], None] | None]:
-    """A bar on the standard error, if that is a terminal, while the context lasts.
+def progress_bar(what: str, after: float = PATIENCE) -> Iterator[Callable[[float, float], None] | None]:
+    """A bar on the standard error, if that is a terminal, while the context lasts, from so many seconds on.
 
     Yields:
         What to call with the amount that is done and the whole; None if there is no bar.
     """
-    if not (wanted and sys.stderr.isatty() and is_terminal(sys.stderr)):
+    if not (sys.stderr.isatty() and is_terminal(sys.stderr)) or STYLE.get().quiet:
         yield None
         return
-    from rich.console import Console
     from rich.progress import Progress
 
-    with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(what)
+    bar = Progress(console=_console(sys.stderr), transient=True)
+    task = bar.add_task(what, total=None)
+    timer = Timer(after, bar.start)
+    timer.daemon = True
+    if after:
+        timer.start()
+    else:
+        bar.start()
+    try:
         yield lambda done, whole: bar.update(task, completed=done, total=whole)
+    finally:
+        timer.cancel()
+        if after:
+            timer.join()
+        bar.stop()
 
 
 def write_shown(*shown: Table | Sequence[Cell]) -> None:
@@ -158,22 +197,20 @@ class Table:
         headings: Of the columns; if all are empty, the table has none.
         rows: The cells of each row.
         right: The columns that are aligned to the right.
-        whole: The columns that a narrow terminal cuts rather than folds.
+        spare: The columns that a narrow terminal leaves out, the first of them first; it says which. Sentences are
+            folded, and where there is still no room, all else.
     """
 
     def __init__(
-        self, *headings: str, rows: Iterable[Iterable[Cell]], right: Iterable[int] = (), whole: Iterable[int] = ()
+        self, *headings: str, rows: Iterable[Iterable[Cell]], right: Iterable[int] = (), spare: Iterable[int] = ()
     ) -> None:
-        self.headings, self.rows, self.right, self.whole = headings, [[*row] for row in rows], {*right}, {*whole}
+        self.headings, self.rows, self.right, self.spare = headings, [[*row] for row in rows], {*right}, [*spare]
 
     def lines(self) -> list[str]:
         """As text in columns."""
         from eurdf.diagnostics.text import cells
 
-        rows = [[_plain([cell]) for cell in row] for row in self.rows]
-        if any(self.headings):
-            rows.insert(0, [_plain([heading]) for heading in self.headings])
-        widths = [max(map(cells, column)) for column in zip(*rows, strict=True)]
+        rows, widths = self._cells(), self._widths()
 
         def padded(column: int, text: str) -> str:
             space = " " * (widths[column] - cells(text))
@@ -181,11 +218,34 @@ class Table:
 
         return ["  ".join(padded(*each) for each in enumerate(row)) for row in rows]
 
+    def _cells(self) -> list[list[str]]:
+        """As text, with the headings if there are any."""
+        rows = [self.headings, *self.rows] if any(self.headings) else self.rows
+        return [[_plain([cell]) for cell in row] for row in rows]
+
+    def _widths(self) -> list[int]:
+        from eurdf.diagnostics.text import cells
+
+        return [max(map(cells, column)) for column in zip(*self._cells(), strict=True)]
+
+    def _shown(self, room: int) -> tuple[list[int], set[int]]:
+        """The columns for which a terminal has room, and those of them that must not be folded."""
+        folded = {number for row in self.rows for number, cell in enumerate(row) if " " in _plain([cell])}
+        widths = enumerate(self._widths())
+        needed = {n: min(width, _SENTENCE) if n in folded else width for n, width in widths if width}
+        for column in self.spare:
+            if column in needed and sum(needed.values()) + _GAP * (len(needed) - 1) > room:
+                del needed[column]
+        fits = sum(needed.values()) + _GAP * (len(needed) - 1) <= room
+        return [*needed], {*needed} - folded if fits else set()
+
     def styled(self) -> RichTable:
         """For a terminal."""
         from rich import box
         from rich.table import Table as RichTable
 
+        columns_shown, whole = self._shown(columns())
+        left_out = [heading for number, heading in enumerate(self.headings) if number not in columns_shown and heading]
         table = RichTable(
             box=box.SIMPLE_HEAD if has_boxes(sys.stdout) else None,
             border_style="dim",
@@ -193,12 +253,16 @@ class Table:
             show_edge=False,
             pad_edge=False,
             show_header=any(self.headings),
+            caption=f"a wider terminal also shows: {', '.join(left_out)}" if left_out else None,
+            caption_justify="left",
         )
-        for number, heading in enumerate(self.headings):
+        for number in columns_shown:
             justify: Any = "right" if number in self.right else "left"
-            table.add_column(_styled([heading]), overflow="fold", justify=justify, no_wrap=number in self.whole)
+            table.add_column(
+                _styled([self.headings[number]]), overflow="fold", justify=justify, no_wrap=number in whole
+            )
         for row in self.rows:
-            table.add_row(*(_styled([cell]) for cell in row))
+            table.add_row(*(_styled([row[number]]) for number in columns_shown))
         return table
 
 
@@ -227,6 +291,8 @@ def _console(stream: TextIO) -> Console:
     terminal = is_terminal(stream)
     return Console(
         force_terminal=terminal,
+        file=stream,
+        no_color=STYLE.get().no_color or None,
         width=columns() if terminal else _UNBOUNDED,
         highlight=False,
         markup=False,

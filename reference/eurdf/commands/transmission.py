@@ -6,15 +6,25 @@ import csv
 import io
 import json as json_text
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from itertools import product
 from typing import TYPE_CHECKING, Any, Literal
 
-from eurdf.commands.command import JSON, ROBOT, SERIAL_JOINTS, SERIAL_MOTORS, cannot_run, command, flag, option
+from eurdf.commands.command import (
+    JSON,
+    ROBOT,
+    SERIAL_JOINTS,
+    SERIAL_MOTORS,
+    FailureInfo,
+    cannot_run,
+    command,
+    flag,
+    option,
+)
 from eurdf.commands.output import write_result
 from eurdf.commands.output_file import refuse_to_replace, write_new, writing
-from eurdf.commands.terminal import Table, write_notes, write_shown
+from eurdf.commands.terminal import Table, progress_bar, write_notes, write_shown
 from eurdf.errors import CannotRun
 
 if TYPE_CHECKING:
@@ -96,18 +106,21 @@ def transmission(
     try:
         with cannot_run(EurdfError, ValueError, unless=(NoTransmission,)):
             q = _configuration(robot, at) if grid is None else None
-            info = _info(robot, joints, motors, q, grid)
+            with progress_bar("computing the grid") as progress:
+                info = _info(robot, joints, motors, q, grid, progress)
             if plot:
                 from eurdf.transmissions.plot import plot_workspace
                 from eurdf.transmissions.reachable_set import workspace
 
-                found = workspace(robot, joints, q, motors=motors, grid=_FIGURE if grid is None else grid)
+                with progress_bar("computing the workspace"):
+                    found = workspace(robot, joints, q, motors=motors, grid=_FIGURE if grid is None else grid)
                 with writing():
                     written.append(os.fspath(plot_workspace(found, plot)))
             if c or ros2 or python:
                 from eurdf.transmissions.prepared import prepare_transmission
 
-                prepared = prepare_transmission(robot, joints, q, motors=motors)
+                with progress_bar("preparing the map"):
+                    prepared = prepare_transmission(robot, joints, q, motors=motors)
                 real: Literal["double", "float"] = "float" if single else "double"
                 makers = (
                     (c, partial(prepared.c_source, real=real)),
@@ -121,7 +134,9 @@ def transmission(
                     for folder, source in sources:
                         written += map(os.fspath, source.write(folder, force=force))
     except NoTransmission as reason:
-        write_notes([str(reason)])
+        write_notes([str(reason)], quiet=False)
+        if json:
+            write_result(FailureInfo(str(reason)))
         return 1
     if table:
         write_new(table, csv_text(info), force)
@@ -135,7 +150,12 @@ def transmission(
 
 
 def _info(
-    robot: Robot, joint_names: Sequence[str], motor_names: Sequence[str] | None, q: Vector | None, grid: int | None
+    robot: Robot,
+    joint_names: Sequence[str],
+    motor_names: Sequence[str] | None,
+    q: Vector | None,
+    grid: int | None,
+    progress: Callable[[float, float], None] | None,
 ) -> TransmissionInfo:
     """The transmission at q, or over a grid."""
     from eurdf.commands.transmission_info import transmission_info
@@ -155,7 +175,7 @@ def _info(
     found: dict[tuple[int, ...], Vector] = dict(zip(map(tuple, reached.index.tolist()), reached.q, strict=True))
     nodes = list(product(*(range(len(axis)) for axis in reached.axes)))
     positions = [[float(axis[i]) for axis, i in zip(reached.axes, node, strict=True)] for node in nodes]
-    return transmission_info(robot, joints, motors, [found.get(node) for node in nodes], positions)
+    return transmission_info(robot, joints, motors, [found.get(node) for node in nodes], positions, progress)
 
 
 def _configuration(robot: Robot, given: str | None) -> Vector:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Annotated, ClassVar, Literal
 
@@ -112,13 +112,18 @@ def transmission_info(
     motors: Selection,
     configurations: Sequence[Vector | None],
     positions: Sequence[Sequence[float]],
+    progress: Callable[[float, float], None] | None = None,
 ) -> TransmissionInfo:
     """A transmission as ``eurdf transmission`` shows it, at closed configurations (nq,) and positions of the joints.
 
-    A configuration is None where the joints cannot be reached.
+    A configuration is None where the joints cannot be reached. What shows the progress is called after each pose.
     """
     reasons: list[str] = []
-    poses = [_pose(robot, joints, motors, q, own, reasons) for q, own in zip(configurations, positions, strict=True)]
+    poses: list[PoseInfo] = []
+    for q, own in zip(configurations, positions, strict=True):
+        poses.append(_pose(robot, joints, motors, q, own, reasons))
+        if progress is not None:
+            progress(len(poses), len(positions))
     inside = [q for q, pose in zip(configurations, poses, strict=True) if pose.limits is not None]
     return TransmissionInfo(
         name=robot.mechanism.name,

@@ -7,9 +7,10 @@ import sys
 import threading
 from typing import Any
 
-from eurdf.commands.command import FORCE_FILE, ROBOT, ROOT, cannot_run, command, flag, option
+from eurdf.commands.command import FORCE_FILE, ROBOT, ROOT, WrittenInfo, cannot_run, command, flag, option
+from eurdf.commands.output import write_result
 from eurdf.commands.output_file import refuse_to_replace, write_new
-from eurdf.commands.terminal import write_lines, write_notes
+from eurdf.commands.terminal import progress_bar, write_lines, write_notes
 from eurdf.errors import CannotRun
 
 _DESCRIPTION = """\
@@ -65,6 +66,7 @@ def view(
     no_browser: bool = flag("do not open the page"),
     output: str | None = option("write a page that needs no server to this HTML file", "-o", "--output", metavar="OUT"),
     force: bool = FORCE_FILE,
+    json: bool = flag("write one JSON object: the address, or the file"),
 ) -> int:
     """Show the page until the command is interrupted, or write it."""
     import eurdf
@@ -77,12 +79,19 @@ def view(
 
         from eurdf.viewing.live_robot import live_page
 
-        write_new(output, live_page(eurdf.load(path, **options)), force)
+        with progress_bar("writing the page"):
+            page = live_page(eurdf.load(path, **options))
+        write_new(output, page, force)
+        if json:
+            write_result(WrittenInfo((output,), None))
         write_notes([f"wrote '{output}'"])
         return 0
     with eurdf.view(path, host=host, port=port, browser=not no_browser, options=options) as viewer:
         try:
-            write_lines([[(f"{viewer.robot.mechanism.name}: ", ""), (viewer.url, "bold")]], sys.stdout)
+            if json:
+                write_result(WrittenInfo((), viewer.url))
+            else:
+                write_lines([[(f"{viewer.robot.mechanism.name}: ", ""), (viewer.url, "bold")]], sys.stdout)
             sys.stdout.flush()
             with cannot_run(ValueError, by=f"'{trajectory}': "):
                 if trajectory is not None:

@@ -23,6 +23,7 @@ from eurdf.convert.formats import (
     ClosureChoice,
     JointChoice,
     MeshFileChoice,
+    format_meant,
 )
 from eurdf.convert.hinges import with_hinges
 from eurdf.convert.losses import Effect, Loss, Losses
@@ -224,8 +225,7 @@ def _export(
 ) -> Export:
     to = choices.to
     if to not in EXPORTS:
-        hint = did_you_mean(to, EXPORTS) or f"the formats are: {', '.join(EXPORTS)}"
-        raise ValueError(f"there is no format '{to}'; {hint}")
+        raise ValueError(f"there is no format '{to}'; {format_meant(to, EXPORTS)}")
     for name, value, allowed in (
         ("actuators", choices.actuators, ACTUATORS),
         ("closures", choices.closures, CLOSURES),

@@ -15,12 +15,13 @@ from types import MappingProxyType
 import numpy as np
 
 from eurdf.array import Vector
+from eurdf.convert.formats import format_meant
 from eurdf.convert.hinges import allowed_axes, with_axes
 from eurdf.convert.import_format import ImportInput, RobotRead, import_format, loss_kinds
 from eurdf.convert.losses import Effect, Loss, Losses, dropped, exact
 from eurdf.convert.readme import licence_file, readme
 from eurdf.convert.xml_elements import places_of_names, recognized
-from eurdf.diagnostics import Diagnostic, Severity, did_you_mean
+from eurdf.diagnostics import Diagnostic, Severity
 from eurdf.diagnostics.wording import enumerated, visible
 from eurdf.errors import CannotImport, RobotNotFound
 from eurdf.format.schema import FILES, SchemaVersion, json_schema, schema_text
@@ -183,8 +184,7 @@ def import_robot(
     """
     file = _file_at(Path(path))
     if format is not None and format not in IMPORTED:
-        hint = did_you_mean(format, IMPORTED) or f"the formats are: {', '.join(IMPORTED)}"
-        raise ValueError(f"there is no format '{format}'; {hint}")
+        raise ValueError(f"there is no format '{format}'; {format_meant(format, IMPORTED)}")
     name = format or recognized(file)
     finder = FileFinder(file.absolute().parent, [] if within is None else [within], allow_outside=allow_outside)
     chosen = import_format(name)

@@ -1,7 +1,7 @@
 """Diagnostics: codes, places, messages, and how they are shown."""
 
 from eurdf.diagnostics.diagnostic import Diagnostic, Diagnostics, FileError, Hint, Place, Proposals
-from eurdf.diagnostics.fix import Edit, Fix
+from eurdf.diagnostics.fix import Edit, Fix, misspelt, renamings
 from eurdf.diagnostics.registry import REGISTRY, Phase, Rule, Severity
 from eurdf.diagnostics.wording import did_you_mean, enumerated, plural, quoted
 
@@ -20,6 +20,8 @@ __all__ = [
     "Severity",
     "did_you_mean",
     "enumerated",
+    "misspelt",
     "plural",
     "quoted",
+    "renamings",
 ]

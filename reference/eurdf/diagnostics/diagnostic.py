@@ -19,6 +19,9 @@ LISTED = 100
 #: Questions that a hint asks, at most.
 ASKED = 2
 
+#: Diagnostics whose proposals are tried, at most: each trial reads the robot again.
+TRIED = 20
+
 #: Length of a message or hint above which long names in it are shortened.
 LONGEST = 1000
 
@@ -64,7 +67,8 @@ class Diagnostic:
     Attributes:
         code: Its code in the registry.
         message: What is wrong, in one sentence; names are shortened if it is longer than `LONGEST`.
-        hint: What to do about it, or None; shortened likewise. It is an imperative if that is certain, else a question.
+        hint: What to do about it, or None; shortened likewise. It is an imperative if that is certain, else a question;
+            by default, what the proposals ask.
         fix: The edits that do it; None unless a trial showed that with them the robot is as good as it says itself.
         proposals: Fixes that have not been tried, the likeliest first.
     """
@@ -81,6 +85,7 @@ class Diagnostic:
     ) -> None:
         self.code = code
         self.message = _bounded(message)
+        hint = hint or " ".join([each.question for each in proposals if each.question][:ASKED]) or None
         self.hint = None if hint is None else _bounded(hint)
         self.fix, self.proposals = fix, proposals
         self._place = place
@@ -103,14 +108,15 @@ class Diagnostic:
     def tried(self, is_right: Callable[[Fix], bool]) -> Diagnostic:
         """The same diagnostic without proposals, with the first one that a trial finds right as its fix and hint.
 
-        If none is right, the hint stays, or asks about the first proposals that have a question.
+        If none is right, the hint stays.
         """
         if not self.proposals:
             return self
-        fix = next(filter(is_right, self.proposals), None)
-        asked = [proposal.question for proposal in self.proposals if proposal.question][:ASKED]
-        hint = fix.summary if fix else self.hint or (" ".join(asked) or None)
-        return Diagnostic(self.code, self.message, self._place, hint, fix=fix)
+        right = filter(is_right, self.proposals)
+        fix = next(right, None)
+        if fix is not None and fix.rivals and next(right, None) is not None:
+            fix = None
+        return Diagnostic(self.code, self.message, self._place, fix.summary if fix else self.hint, fix=fix)
 
     @property
     def severity(self) -> Severity:
@@ -167,8 +173,10 @@ class Diagnostic:
 class FileError(Exception):
     """Stops reading a file; carries the diagnostic that says why."""
 
-    def __init__(self, code: str, message: str, place: Place, hint: str | None = None) -> None:
-        self.diagnostic = Diagnostic(code, message, place, hint)
+    def __init__(
+        self, code: str, message: str, place: Place, hint: str | None = None, proposals: tuple[Fix, ...] = ()
+    ) -> None:
+        self.diagnostic = Diagnostic(code, message, place, hint, proposals=proposals)
         super().__init__(str(self.diagnostic))
 
 
@@ -224,8 +232,11 @@ class Diagnostics:
             yield found.followed_by(more[index]) if index in more else found
 
     def tried(self, is_right: Callable[[Diagnostic, Fix], bool]) -> None:
-        """Try the proposals of every diagnostic: see `Diagnostic.tried`."""
-        self._found = [found.tried(partial(is_right, found)) for found in self._found]
+        """Try the proposals of the diagnostics, of `TRIED` at most: see `Diagnostic.tried`."""
+        proposing = [index for index, found in enumerate(self._found) if found.proposals]
+        for index in proposing[:TRIED]:
+            found = self._found[index]
+            self._found[index] = found.tried(partial(is_right, found))
 
     def counts(self) -> Counter[str]:
         """The number of diagnostics of each code, listed or not."""

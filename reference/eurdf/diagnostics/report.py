@@ -7,8 +7,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from eurdf.diagnostics.diagnostic import Diagnostic
+from eurdf.diagnostics.fix import Fix
 from eurdf.diagnostics.registry import OWN_PREFIX, Phase, Severity
 from eurdf.diagnostics.wording import encodable
+
+_REGION = ("line", "column", "end_line", "end_column")
 
 #: Version of the JSON form; it increases by one when a field changes its meaning or is removed.
 REPORT_VERSION = 1
@@ -37,6 +40,11 @@ class Report:
     def warnings(self) -> tuple[Diagnostic, ...]:
         """The warnings."""
         return tuple(found for found in self.diagnostics if found.severity is Severity.WARNING)
+
+    @property
+    def fixes(self) -> tuple[Fix, ...]:
+        """What `eurdf check --fix` does about them."""
+        return tuple(found.fix for found in self.diagnostics if found.fix is not None)
 
     @property
     def ok(self) -> bool:
@@ -79,6 +87,7 @@ def _diagnostic_to_json(found: Diagnostic) -> dict[str, Any]:
         "clause": found.clause,
         "message": encodable(found.message),
         "hint": None if found.hint is None else encodable(found.hint),
+        "fix": None if found.fix is None else _fix_to_json(found.fix),
         "file": encodable(place.file),
         "line": place.line,
         "column": place.column,
@@ -87,10 +96,33 @@ def _diagnostic_to_json(found: Diagnostic) -> dict[str, Any]:
     }
 
 
+def _fix_to_json(fix: Fix) -> dict[str, Any]:
+    edits = []
+    for edit in fix.edits:
+        region = dict(zip(_REGION, edit.region, strict=True))
+        edits.append({"file": encodable(edit.file), **region, "text": encodable(edit.text)})
+    return {"summary": encodable(fix.summary), "edits": edits}
+
+
 def report_schema() -> dict[str, Any]:
     """The JSON Schema (2020-12) of `reports_to_json`."""
     position = {"type": ["integer", "null"], "minimum": 1}
     text, maybe_text = {"type": "string"}, {"type": ["string", "null"]}
+    place = {"type": "integer", "minimum": 1}
+    edit = _closed_object(
+        "A part of a file, and what to write in its place.",
+        file=_value(text, "Path of the file, as in the diagnostic.", "robots/four_bar/robot.yaml"),
+        line=_value(place, "Line of the first character of the part, from 1."),
+        column=_value(place, "Its column, from 1, in Unicode code points."),
+        end_line=_value(place, "Line of the character after the last one of the part."),
+        end_column=_value(place, "Its column; the part is empty if this is the first character."),
+        text=_value(text, "What to write instead.", "rod_tip"),
+    )
+    fix = _closed_object(
+        "Edits that a trial showed to be right: the diagnostic is gone, and there is no new one.",
+        summary=_value(text, "What they do, as the hint says it.", "write 'rod_tip'"),
+        edits=_value({"type": "array", "items": edit}, "Parts of files that do not overlap."),
+    )
     diagnostic = _closed_object(
         "One diagnostic.",
         code=_value(
@@ -118,6 +150,9 @@ def report_schema() -> dict[str, Any]:
             "closure 'knee' names the frame 'rod_tpi', which does not exist",
         ),
         hint=_value(maybe_text, "What to do about it; null if unknown.", "did you mean 'rod_tip'?"),
+        fix=_value(
+            {"anyOf": [fix, {"type": "null"}]}, "What 'eurdf check --fix' does about it; null if none is certain."
+        ),
         file=_value(
             text, "Path of the file, as given or relative to the working directory.", "robots/four_bar/robot.yaml"
         ),
@@ -145,7 +180,7 @@ def report_schema() -> dict[str, Any]:
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Report of a check of Extended URDF robots",
         **_closed_object(
-            "What 'eurdf check --format json' writes.",
+            "What 'eurdf check --json' writes.",
             version=_value({"const": REPORT_VERSION}, "Version of this form."),
             ok=_value({"type": "boolean"}, "Whether every robot passes."),
             robots=_value({"type": "array", "items": robot}, "One entry for each robot."),

@@ -12,6 +12,7 @@ from typing import Any
 from urllib.parse import quote
 
 from eurdf.diagnostics.diagnostic import Diagnostic, Place
+from eurdf.diagnostics.fix import Fix
 from eurdf.diagnostics.registry import REGISTRY
 from eurdf.diagnostics.report import Report
 from eurdf.diagnostics.wording import encodable
@@ -60,13 +61,34 @@ def _result(found: Diagnostic, index: int, folder: str) -> dict[str, Any]:
     if found.hint:
         hint = found.hint[0].upper() + found.hint[1:]
         text = f"{text} {hint}" if hint.endswith(("?", ".")) else f"{text} {hint}."
+    fixes = {} if found.fix is None else {"fixes": [_fix(found.fix, folder)]}
     return {
         "ruleId": found.code,
         "ruleIndex": index,
         "level": found.severity.value,
-        "message": {"text": _LINK.sub(r"\\[", _BRACE.sub(lambda brace: 2 * brace.group(), encodable(text)))},
+        "message": {"text": _text(text)},
         "locations": [_location(found.place, folder)],
+        **fixes,
     }
+
+
+def _fix(fix: Fix, folder: str) -> dict[str, Any]:
+    changes: dict[str, list[dict[str, Any]]] = {}
+    for edit in fix.edits:
+        region = dict(zip(("startLine", "startColumn", "endLine", "endColumn"), edit.region, strict=True))
+        replacement = {"deletedRegion": region, "insertedContent": {"text": encodable(edit.text)}}
+        changes.setdefault(_uri(edit.file, folder), []).append(replacement)
+    return {
+        "description": {"text": _text(fix.summary)},
+        "artifactChanges": [
+            {"artifactLocation": {"uri": uri}, "replacements": replacements} for uri, replacements in changes.items()
+        ],
+    }
+
+
+def _text(text: str) -> str:
+    """A text that a viewer shows as it is."""
+    return _LINK.sub(r"\\[", _BRACE.sub(lambda brace: 2 * brace.group(), encodable(text)))
 
 
 def _location(place: Place, folder: str) -> dict[str, Any]:

@@ -36,22 +36,24 @@ def report_lines(report: Report, width: int = SOURCE_WIDTH, bar: str = "|") -> I
 
 def summary_line(report: Report, strict: bool = False) -> Line:
     """The verdict on one robot."""
-    counts = _counts(report)
-    style = "bold red" if not report.passes(strict) else "yellow" if counts else "green"
-    return [(f"{visible(report.path)}: ", "bold"), (counts or "valid", style)]
+    found = counts(report)
+    style = "bold red" if not report.passes(strict) else "yellow" if found else "green"
+    fixes = len(report.fixes)
+    more = f"; --fix applies {plural(fixes, 'fix', 'fixes')}" if fixes else ""
+    return [(f"{visible(report.path)}: ", "bold"), (found or "valid", style), (more, "")]
 
 
 def total_line(reports: Sequence[Report], strict: bool = False) -> Line:
     """The verdict on several robots together."""
     passed = sum(report.passes(strict) for report in reports)
     failed = len(reports) - passed
-    counts = _counts(*reports)
+    found = counts(*reports)
     return [
         (f"{plural(len(reports), 'robot')}: ", "bold"),
         (f"{passed} passed", "green" if passed else ""),
         (", ", ""),
         (f"{failed} failed", "bold red" if failed else ""),
-        (f" ({counts})" if counts else "", ""),
+        (f" ({found})" if found else "", ""),
     ]
 
 
@@ -105,7 +107,7 @@ def _excerpt_lines(found: Diagnostic, width: int, bar: str) -> Iterator[Line]:
                 ]
     if found.hint:
         hint = visible(found.hint)[:_LONGEST_MESSAGE]
-        yield [(f"{'':>5} = ", "blue"), ("hint", "bold cyan"), (f": {hint}", "")]
+        yield [(f"{'':>5} = ", "blue"), ("fix" if found.fix else "hint", "bold cyan"), (f": {hint}", "")]
 
 
 def _clip(text: str, span: tuple[int, int], start: int | None, end: int | None, width: int) -> tuple[str, int, int]:
@@ -148,7 +150,8 @@ def _clip(text: str, span: tuple[int, int], start: int | None, end: int | None, 
     return shown.rstrip(), offset, max(1, sum(sizes[place : min(end - low, last)]))
 
 
-def _counts(*reports: Report) -> str:
+def counts(*reports: Report) -> str:
+    """How many errors and warnings there are; empty if none."""
     errors = sum(len(report.errors) for report in reports)
     warnings = sum(len(report.warnings) for report in reports)
     return ", ".join(plural(number, word) for number, word in ((errors, "error"), (warnings, "warning")) if number)

@@ -39,9 +39,9 @@ def quoted(names: Sequence[str], most: int = 3) -> str:
     return ", ".join(f"'{name}'" for name in names[:most]) + (", ..." if len(names) > most else "")
 
 
-def plural(number: int, noun: str) -> str:
-    """A number of things: "1 joint", "2 joints"."""
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+def plural(number: int, noun: str, nouns: str = "") -> str:
+    """A number of things: "1 joint", "2 joints"; with the plural if it is not the noun and an s."""
+    return f"{number} {noun}" if number == 1 else f"{number} {nouns or f'{noun}s'}"
 
 
 def enumerated(names: Sequence[str], most: int = 6) -> str:
@@ -53,36 +53,55 @@ def enumerated(names: Sequence[str], most: int = 6) -> str:
 
 
 def did_you_mean(wrong: str, known: Iterable[str], beside: str = "") -> str | None:
-    """The hint for a misspelt name: the most similar known name, or None if none is similar.
-
-    If several names are about equally similar, it is the one most similar to ``beside``, the element that contains the
-    wrong name: if joint 'right_knee' mimics 'hip', the hint is 'right_hip', although 'left_hip' needs fewer added
-    letters.
-
-    The time is bounded. If there are too many names, only those that share the first or second half of the wrong name
-    are compared; this includes every name that differs in one place.
-    """
+    """The hint for a misspelt name: the most similar known name, or None if none is similar; see `similar`."""
     if " - " in wrong:
         known = list(known)
         if wrong.partition(" - ")[0] in known:
             return "an item that is indented more than the one before continues it; indent each '-' of a list equally"
+    return next((f"did you mean '{name}'?" for name in similar(wrong, known, beside)), None)
+
+
+def similar(wrong: str, known: Iterable[str], beside: str = "") -> list[str]:
+    """The known names that are about equally similar to a misspelt one, the most similar first; empty if none is.
+
+    If there are several, the first is the one most similar to ``beside``, the element that contains the wrong name: if
+    joint 'right_knee' mimics 'hip', it is 'right_hip', although 'left_hip' needs fewer added letters.
+
+    The time is bounded. If there are too many names, only those that share the first or second half of the wrong name
+    are compared; this includes every name that differs in one place.
+    """
     size = len(wrong)
     # By difflib's ratio, a name shorter than 3/7 of another cannot be similar to it.
     candidates = [name for name in known if 3 * len(name) <= 7 * size and 3 * size <= 7 * len(name)]
     folded = wrong.casefold()
-    nearest = next((name for name in candidates if name.casefold() == folded), None)
-    if nearest is None:
-        most = COMPARED // max(size * size, 1)
-        if len(candidates) > most:
-            half = size // 2
-            first, second = wrong[:half], wrong[size - half :]
-            candidates = [name for name in candidates if name.startswith(first) or name.endswith(second)][:most]
-        close = difflib.get_close_matches(wrong, candidates, n=_CLOSE)
-        nearest = next(iter(close), None)
-        if beside and nearest is not None:
-            least = _ratio(wrong, nearest) - _ABOUT
-            nearest = max((name for name in close if _ratio(wrong, name) >= least), key=partial(_ratio, beside))
-    return None if nearest is None else f"did you mean '{nearest}'?"
+    alike = next((name for name in candidates if name.casefold() == folded), None)
+    if alike is not None:
+        return [alike]
+    most = COMPARED // max(size * size, 1)
+    if len(candidates) > most:
+        half = size // 2
+        first, second = wrong[:half], wrong[size - half :]
+        candidates = [name for name in candidates if name.startswith(first) or name.endswith(second)][:most]
+    close = difflib.get_close_matches(wrong, dict.fromkeys(candidates), n=_CLOSE)
+    close = [name for name in close if _ratio(wrong, name) >= _ratio(wrong, close[0]) - _ABOUT]
+    return sorted(close, key=partial(_ratio, beside), reverse=True) if beside else close
+
+
+def edits(one: str, other: str) -> int:
+    """Number of insertions, deletions and swaps of adjacent characters that turn one name into another."""
+    before: list[int] = []
+    row = list(range(len(other) + 1))
+    for i, a in enumerate(one, 1):
+        above, row = row, [i]
+        for j, b in enumerate(other, 1):
+            least = min(above[j], row[j - 1]) + 1
+            if a == b:
+                least = min(least, above[j - 1])
+            if before and j > 1 and a == other[j - 2] and one[i - 2] == b:
+                least = min(least, before[j - 2] + 1)
+            row.append(least)
+        before = above
+    return row[-1]
 
 
 def meant(wrong: object, known: Iterable[str]) -> str:

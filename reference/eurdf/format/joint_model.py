@@ -16,6 +16,7 @@ from eurdf.format.value_types import (
     NUMBER,
     URDF_JOINT_NAME,
     VECTOR,
+    Check,
     Choice,
     ListOf,
     Never,
@@ -42,6 +43,13 @@ class OneOrList(OneOf):
 
 class TwoAxes(OneOf):
     """Two axes: two of the letters x, y and z, or two vectors; read as vectors."""
+
+    def check(self, value: Any, at: Pointer, file: Check) -> None:
+        """Letters in a list are one error."""
+        if type(value) is list and value and all(type(item) is str and item.lower() in AXES for item in value):
+            file.report(at, "wrong-type", f"must be {self.expected}", value)
+        else:
+            super().check(value, at, file)
 
     def read(self, value: Any, at: Pointer) -> tuple[Vector3, ...]:
         return tuple(AXES[letter] for letter in value) if isinstance(value, str) else super().read(value, at)

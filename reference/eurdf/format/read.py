@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import partial
 from typing import Literal
 
-from eurdf.diagnostics import Diagnostics
+from eurdf.diagnostics import Diagnostics, Hint, Proposals
 from eurdf.format.closure_model import ClosureEntry, NamedFrame
 from eurdf.format.conventions import (
     VERSION2_0,
@@ -16,6 +17,7 @@ from eurdf.format.conventions import (
     may_have_own_keys,
     own_data,
 )
+from eurdf.format.fixes import added, removed, renamed, restated
 from eurdf.format.joint_model import Fixed, Geared, JointEntry, Spherical, Universal
 from eurdf.format.model import DESCRIPTION, VERSION1, VERSION2, Description, Version1, violations
 from eurdf.format.wording import described, near, quoted
@@ -129,16 +131,18 @@ def _warn_of_near_misses(reporter: YamlReporter) -> None:
     for key in reporter.document.data:
         if key in _KEYS1 or is_own_key(key):
             continue
+        hint: Hint = None
+        proposals: Proposals = ()
         if key != "metadata" and key in _KEYS2:  # ``metadata`` is likely the user's own
             version = _first_version_with(key)
             message = f"'{key}' is a key of version {version}; in this file of version 1 it is your own data"
             hint = f'a file of version {version} begins with {VERSION_KEY}: "{version}" and has no key of version 1'
         elif meant := near(key, (*_KEYS1, VERSION_KEY)):
             message = f"{quoted(key)} is similar to '{meant}', but is read as your own data"
-            hint = f"did you mean '{meant}'?"
+            proposals = partial(renamed, reporter.document, (key,), meant, key=True)
         else:
             continue
-        reporter.report("near-miss-key", message, (key,), hint, key=True)
+        reporter.report("near-miss-key", message, (key,), hint, proposals, key=True)
 
 
 # -- the version of a file --------------------------------------------------------------------------------------------
@@ -159,7 +163,8 @@ def _version(reporter: YamlReporter) -> Version | None:
     misspelt = next((key for key in data if not is_own_key(key) and near(key, [VERSION_KEY])), None)
     if misspelt is not None:
         message = f"the file has the key {quoted(misspelt)}, but not '{VERSION_KEY}', which states its version"
-        reporter.report("missing-key", message, (misspelt,), f"did you mean '{VERSION_KEY}'?", key=True)
+        proposals = renamed(reporter.document, (misspelt,), VERSION_KEY, key=True)
+        reporter.report("missing-key", message, (misspelt,), None, proposals, key=True)
         return None
     version2_key = _first(data, _KEYS2)
     if version2_key is None:
@@ -169,7 +174,8 @@ def _version(reporter: YamlReporter) -> Version | None:
     hint = f'begin the file with {VERSION_KEY}: "{version}"'
     if found := of_mapping(data):
         message, hint = f"the file lacks '{VERSION_KEY}': it is {found.title}", found.hint
-    reporter.report("missing-key", message, (version2_key,), hint, key=True)
+    proposals = added(reporter.document, (), VERSION_KEY, version)
+    reporter.report("missing-key", message, (version2_key,), hint, proposals, key=True)
     return None
 
 
@@ -192,16 +198,21 @@ def _written_version(reporter: YamlReporter) -> Literal["2.0", "2.1"] | None:
         return VERSION2_0 if value == VERSION2_0 else VERSION2_1
     if value in ("1", "1.0"):
         message = f"'{VERSION_KEY}' cannot be {described(value)}: a file of version 1 does not state its version"
-        reporter.report("unsupported-version", message, pointer, f"leave '{VERSION_KEY}' out")
+        proposals = removed(reporter.document, pointer, f"'{VERSION_KEY}'")
+        reporter.report("unsupported-version", message, pointer, f"leave '{VERSION_KEY}' out", proposals)
         return None
     if isinstance(value, str):
         message = f"version {described(value)} of Extended URDF is not known"
         hint = f"the known versions are {VERSION2_0} and {VERSION2_1}: {hint}"
-        reporter.report("unsupported-version", message, pointer, hint)
+        known = {"2": VERSION2_0, VERSION2_0: VERSION2_0, VERSION2_1: VERSION2_1}.get(value.strip().lstrip("vV"))
+        proposals = () if known is None else (restated(reporter.document, pointer, known, f"write {VERSION_KEY}:"),)
+        reporter.report("unsupported-version", message, pointer, hint, proposals)
         return None
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
     shown = f"the number {value}" if is_number else described(value)
     if shown in ("the number 1", "the number 1.0"):
         hint = f"leave '{VERSION_KEY}' out: a file of version 1 does not state its version"
-    reporter.report("wrong-type", f"'{VERSION_KEY}' must be text, not {shown}", pointer, hint)
+    is_known = value in (2, float(VERSION2_1))
+    proposals = (restated(reporter.document, pointer, meant, f"write {VERSION_KEY}:"),) if is_known else ()
+    reporter.report("wrong-type", f"'{VERSION_KEY}' must be text, not {shown}", pointer, hint, proposals)
     return meant

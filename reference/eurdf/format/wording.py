@@ -7,6 +7,8 @@ from collections.abc import Iterable
 from string import ascii_lowercase, ascii_uppercase
 from typing import Any
 
+from eurdf.diagnostics.wording import edits
+
 #: Known names of fewer characters may be one edit away, others two.
 SHORT = 5
 
@@ -48,23 +50,6 @@ def _is_near(name: str, known: str) -> bool:
     if abs(len(name) - len(known)) > most or len({*name} ^ {*known}) > most:
         return False  # a quick check: an edit changes the length, and the set of characters, by one at most
     return edits(name, known) <= most
-
-
-def edits(one: str, other: str) -> int:
-    """Number of insertions, deletions and swaps of adjacent characters that turn one name into another."""
-    before: list[int] = []
-    row = list(range(len(other) + 1))
-    for i, a in enumerate(one, 1):
-        above, row = row, [i]
-        for j, b in enumerate(other, 1):
-            least = min(above[j], row[j - 1]) + 1
-            if a == b:
-                least = min(least, above[j - 1])
-            if before and j > 1 and a == other[j - 2] and one[i - 2] == b:
-                least = min(least, before[j - 2] + 1)
-            row.append(least)
-        before = above
-    return row[-1]
 
 
 def likeliest_key(key: str, keys: Iterable[str]) -> str | None:

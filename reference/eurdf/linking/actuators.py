@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
+from eurdf.diagnostics import Fix, renamings
+from eurdf.diagnostics.wording import similar
+from eurdf.format.fixes import named, removed, renumbered, swapped
 from eurdf.format.joint_model import Geared
 from eurdf.linking.joints import Joints
 from eurdf.linking.merging import MASSLESS
@@ -14,11 +18,13 @@ from eurdf.reading.yaml_node import Pointer
 from eurdf.reading.yaml_reader import YamlDocument, YamlReporter
 
 
-def link_actuators(entries: Iterable[Geared], joints: Joints) -> tuple[str, ...]:
+def link_actuators(entries: Sequence[Geared], joints: Joints) -> tuple[str, ...]:
     """Check every actuator against the joints as the description makes them; returns the names, in file order."""
     reporter = joints.reporter
+    stated = {entry.joint for entry in entries}
+    others = [joint for joint in joints.by_name.values() if joint.name not in stated]
     listed: dict[str, None] = {}
-    named: dict[str, str] = {}  # by name of an actuator, its joint
+    joint_of: dict[str, str] = {}  # by name of an actuator
     for entry in entries:
         name = entry.joint
         pointer = _pointer_of_name(entry, reporter.document)
@@ -40,10 +46,14 @@ def link_actuators(entries: Iterable[Geared], joints: Joints) -> tuple[str, ...]
             message = f"joint '{name}' was split into two joints by version 1"
             reporter.report("unknown-actuator", message, pointer, f"actuate '{first}' or '{second}'")
         elif joint is None:
-            hint = joints.meant(name, (other.name for other in joints.by_name.values() if not other.type.is_fixed))
-            reporter.report("unknown-actuator", f"actuator '{name}' is not a joint of the robot", pointer, hint)
+            moving = (other.name for other in others if not other.type.is_fixed)
+            message = f"actuator '{name}' is not a joint of the robot"
+            joints.report_name("unknown-actuator", message, pointer, name, moving)
         elif name in listed:
-            reporter.report("actuator-duplicate", f"joint '{name}' is actuated twice", pointer, "remove one")
+            free = [other.name for other in others if not other.type.is_fixed and other.mimic is None]
+            fixes = partial(_of_repeated, reporter.document, entry, pointer, free)
+            message = f"joint '{name}' is actuated twice"
+            reporter.report("actuator-duplicate", message, pointer, "which of them is another joint?", fixes)
         elif joint.type.is_fixed:
             hint = "remove it, or actuate a joint that moves"
             reporter.report("actuator-immobile", f"joint '{name}' is fixed and cannot be actuated", pointer, hint)
@@ -52,12 +62,19 @@ def link_actuators(entries: Iterable[Geared], joints: Joints) -> tuple[str, ...]
                 "actuator-mimic",
                 f"joint '{name}' mimics '{joint.mimic.joint}' and cannot be actuated",
                 pointer,
-                f"actuate '{joint.mimic.joint}', or free '{name}' with mimic: false, which is of version 2.1",
+                f"'{joint.mimic.joint}', which it follows, is the joint to actuate",
             )
-        elif _has_motor(entry, named, reporter):
+        elif _has_motor(entry, joint_of, reporter):
             listed[name] = None
-            named[entry.name or name] = name
+            joint_of[entry.name or name] = name
     return tuple(listed)
+
+
+def _of_repeated(document: YamlDocument, entry: Geared, pointer: Pointer, free: Sequence[str]) -> list[Fix]:
+    """Proposals for a joint that is actuated twice: actuate it once, or a joint with a similar name that is not yet."""
+    once = removed(document, pointer, f"the second '{entry.joint}'") if pointer == entry.pointer else ()
+    others = renamings(similar(entry.joint, free), partial(named, document, pointer, False))
+    return [*(replace(fix, rivals=True) for fix in once), *others]
 
 
 def _has_motor(entry: Geared, named: Mapping[str, str], reporter: YamlReporter) -> bool:
@@ -70,6 +87,7 @@ def _has_motor(entry: Geared, named: Mapping[str, str], reporter: YamlReporter) 
             f"there is already an actuator '{name}', of joint '{named[name]}'",
             pointer,
             "give every actuator a unique name; an actuator without a name has that of its joint",
+            () if entry.name is None else partial(renumbered, reporter.document, pointer, name, named),
         )
         return False
     if entry.control is not None and entry.control[0] > entry.control[1]:
@@ -78,7 +96,8 @@ def _has_motor(entry: Geared, named: Mapping[str, str], reporter: YamlReporter) 
             "actuator-control-reversed",
             f"the lower bound {lower:g} of the control range of actuator '{name}' is above the upper bound {upper:g}",
             (*entry.pointer, "control"),
-            "swap the two bounds",
+            "are they in the wrong order, or is a sign wrong?",
+            swapped(reporter.document, (*entry.pointer, "control", 0), (*entry.pointer, "control", 1)),
         )
         return False
     return True

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
-from eurdf.diagnostics import Hint, did_you_mean
+from eurdf.format.fixes import removed, restated
 from eurdf.format.yaml_text import Value, flow
 from eurdf.linking.joints import Joints
 from eurdf.mechanism.joint import LIMIT_TOLERANCE, Joint
@@ -15,6 +15,9 @@ from eurdf.reading.yaml_reader import YamlReporter
 
 #: A quaternion in a file may be off unit length by this much; it is normalised when read (EU-CFG-003).
 QUATERNION_TOLERANCE = 1e-6
+
+# A quaternion whose length is off by this much was rounded, as [0, 0, 0.7, 0.7].
+_ROUNDED = 0.02
 
 # Maximum number of joints in a message.
 _MOST_TOLD = 4
@@ -57,7 +60,7 @@ def link_configurations(
         for name, values in written.items():
             if name in joints.faulty:
                 continue
-            joint = _joint(name, named, joints.merged, configuration, joints.reporter)
+            joint = _joint(name, named, joints, configuration, written)
             all_known &= joint is not None
             coordinates = None if joint is None else _coordinates(joint, values, configuration, joints.reporter)
             if coordinates is not None:
@@ -70,26 +73,31 @@ def link_configurations(
 
 
 def _joint(
-    name: str, joints: Mapping[str, Joint], merged: Mapping[str, str], configuration: str, reporter: YamlReporter
+    name: str, named: Mapping[str, Joint], joints: Joints, configuration: str, written: Mapping[str, tuple[float, ...]]
 ) -> Joint | None:
     """EU-CFG-001: a configuration names joints that have coordinates of their own."""
-    joint = joints.get(name)
+    joint = named.get(name)
     if joint is not None and not joint.type.is_fixed and joint.mimic is None:
         return joint
-    hint: Hint = None
+    pointer, hint = ("configurations", configuration, name), None
+    subject = f"'{name}' in configuration '{configuration}'"
     if joint is None:
-        why = "is not a joint of the robot"
-        free = (other.name for other in joints.values() if not other.type.is_fixed and not other.mimic)
-        hint = partial(did_you_mean, name, free)
-    elif name in merged:
-        why = f"was merged into the spherical joint '{merged[name]}'"
-        hint = f"give the coordinates of '{merged[name]}', a quaternion x, y, z, w"
-    elif joint.mimic is not None:
-        why = f"mimics '{joint.mimic.joint}' and has no coordinate of its own"
+        free = (other.name for other in named.values() if not other.type.is_fixed and not other.mimic)
+        message = f"{subject} is not a joint of the robot"
+        joints.report_name("configuration-joint", message, pointer, name, free, key=True)
+        return None
+    meant: float | None = 0.0  # where the joint is in this configuration anyway
+    if name in joints.merged:
+        why, meant = f"was merged into the spherical joint '{joints.merged[name]}'", None
+        hint = f"give the coordinates of '{joints.merged[name]}', a quaternion x, y, z, w"
+    elif (mimic := joint.mimic) is not None:
+        why = f"mimics '{mimic.joint}' and has no coordinate of its own"
+        meant = mimic.multiplier * written.get(mimic.joint, (0.0,))[0] + mimic.offset
     else:
         why = "is fixed and has no coordinate"
-    message = f"'{name}' in configuration '{configuration}' {why}"
-    reporter.report("configuration-joint", message, ("configurations", configuration, name), hint, key=True)
+    is_redundant = meant is not None and all(abs(value - meant) <= LIMIT_TOLERANCE for value in written[name])
+    fixes = partial(removed, joints.reporter.document, pointer, f"'{name}'") if is_redundant else ()
+    joints.reporter.report("configuration-joint", f"{subject} {why}", pointer, hint, fixes, key=True)
     return None
 
 
@@ -144,7 +152,8 @@ def _coordinates(
 ) -> tuple[float, ...] | None:
     """EU-CFG-002 to -004, EU-CFG-006: the coordinates of a joint; None, and a diagnostic, where they are invalid."""
     names, start = joint.type.coordinates, joint.type.quaternion
-    hint = None
+    hint: str | None = None
+    exact: Value = None  # what was meant, where only its last digits are wrong
     if len(values) != len(names):
         code = "configuration-length"
         message = (
@@ -157,6 +166,8 @@ def _coordinates(
         if abs(norm - 1.0) <= QUATERNION_TOLERANCE:
             return (*values[:start], *(value / norm for value in quaternion))
         unit = [round(value / norm, 6) for value in quaternion] if norm > 1e-9 else [0, 0, 0, 1]
+        if abs(norm - 1.0) <= _ROUNDED:
+            exact = [*values[:start], *(round(value / norm, 9) for value in quaternion)]
         code = "configuration-quaternion"
         message = (
             f"the quaternion of joint '{joint.name}' in configuration '{configuration}' has length {norm:.9g}, not 1"
@@ -169,7 +180,16 @@ def _coordinates(
             f"{found.coordinate} {found.value:.12g} of joint '{joint.name}' in configuration '{configuration}' is "
             f"outside its limits {found.lower:.12g} to {found.upper:.12g}"
         )
+        angle = math.radians(found.value)
+        fits = within_limits(angle, found.lower, found.upper)
+        if found.unit == "rad" and abs(found.value) > (math.pi if fits else math.tau):
+            hint = f"is it in degrees? {found.value:g} degrees are {angle:.6g} rad"
+        nearest = min(max(found.value, found.lower), found.upper)
+        if len(values) == 1 and abs(nearest - found.value) <= QUATERNION_TOLERANCE:
+            exact = nearest
     else:
         return values
-    reporter.report(code, message, ("configurations", configuration, joint.name), hint)
+    pointer = ("configurations", configuration, joint.name)
+    fixes = () if exact is None else (restated(reporter.document, pointer, exact),)
+    reporter.report(code, message, pointer, hint, fixes)
     return None

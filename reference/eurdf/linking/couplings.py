@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
+from functools import partial
 
 from eurdf.diagnostics import Hint
 from eurdf.format.closure_model import CouplingEntry
+from eurdf.format.fixes import renumbered
 from eurdf.linking.joints import Joints
 from eurdf.mechanism.constraint import Coupling
 from eurdf.mechanism.joint import drivers
@@ -15,11 +17,12 @@ from eurdf.reading.yaml_node import Pointer
 _EQUAL = 1e-9
 
 
-def link_couplings(entries: Iterable[CouplingEntry], closures: Iterable[str], joints: Joints) -> tuple[Coupling, ...]:
+def link_couplings(entries: Sequence[CouplingEntry], closures: Sequence[str], joints: Joints) -> tuple[Coupling, ...]:
     """Look the joints of every coupling up, and check that no coupling states what another one does."""
-    report = joints.reporter.report
+    report, document = joints.reporter.report, joints.reporter.document
     couplings: list[Coupling] = []
     taken: dict[str, str] = dict.fromkeys(closures, "closure")
+    names = {*taken, *(entry.name for entry in entries)}
     for entry in entries:
         if entry.name in taken:
             report(
@@ -27,6 +30,7 @@ def link_couplings(entries: Iterable[CouplingEntry], closures: Iterable[str], jo
                 f"there is already a {taken[entry.name]} '{entry.name}'",
                 (*entry.pointer, "name"),
                 "give every closure and coupling a unique name",
+                partial(renumbered, document, (*entry.pointer, "name"), entry.name, names),
             )
             continue
         taken[entry.name] = "coupling"
@@ -42,7 +46,7 @@ def link_couplings(entries: Iterable[CouplingEntry], closures: Iterable[str], jo
                 "coupling-duplicate",
                 f"coupling '{entry.name}' is a multiple of coupling '{twin.name}'",
                 entry.pointer,
-                "remove one of them",
+                "which of them relates other joints?",
             )
             continue
         couplings.append(Coupling(entry.name, tuple(entry.joints.items()), entry.offset))
@@ -56,8 +60,8 @@ def _can_be_coupled(name: str, pointer: Pointer, joints: Joints) -> bool:
     hint: Hint
     if joint is None and name not in merged:
         others = (other.name for other in joints.by_name.values() if other.type.nv == 1 and other.mimic is None)
-        hint = joints.meant(name, others)
-        report("unknown-coupled-joint", f"'{name}' is not a joint of the robot", pointer, hint, key=True)
+        message = f"'{name}' is not a joint of the robot"
+        joints.report_name("unknown-coupled-joint", message, pointer, name, others, key=True)
         return False
     if joint is None or name in merged:
         why, hint = f"it was merged into the spherical joint '{merged[name]}'", "couple joints that are not merged"

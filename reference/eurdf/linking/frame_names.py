@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from functools import partial
 from itertools import chain
 
-from eurdf.diagnostics import did_you_mean
+from eurdf.diagnostics import Fix
 from eurdf.format.closure_model import Frame as FrameEntry
 from eurdf.format.closure_model import FrameReference, NamedFrame
+from eurdf.format.fixes import report_name, restated
 from eurdf.linking.joints import Joints
 from eurdf.mechanism.body import Anchor, Frame
 from eurdf.mechanism.pose import Pose
@@ -54,6 +56,10 @@ class FrameNames:
             return None
         return Anchor(body, Pose.from_xyz_rpy(reference.xyz, reference.rpy))
 
+    def known(self) -> Iterable[str]:
+        """All names of frames."""
+        return dict.fromkeys(chain(self._frames, self._urdf.links, self._urdf.joints, self._joints))
+
     def _known(self, name: str) -> bool:
         return name in self._urdf.links or name in self._urdf.joints or name in self._joints
 
@@ -76,15 +82,20 @@ class FrameNames:
                     f"'{name}' is both a link and a joint, and the child of the joint is another link, '{child}'",
                     reference.pointer,
                     f"write {{link: {name}}} or {{joint: {name}}}",
+                    partial(self._either, name, reference.pointer),
                 )
                 return None
             return Anchor(name, frame=name)
         if child is not None:
             return Anchor(child, frame=name)
         if name not in self._made.faulty:
-            known = chain(self._frames, self._urdf.links, self._urdf.joints, self._joints)
-            self._report_unknown(name, "link, joint or frame", reference.pointer, known)
+            self._report_unknown(name, "link, joint or frame", reference.pointer, self.known())
         return None
+
+    def _either(self, name: str, pointer: Pointer) -> list[Fix]:
+        """Proposals for an ambiguous name: each of its two meanings."""
+        document = self._made.reporter.document
+        return [replace(restated(document, pointer, {kind: name}), rivals=True) for kind in ("link", "joint")]
 
     def _body(self, reference: FrameReference) -> str | None:
         name, pointer = reference.target, (*reference.pointer, reference.kind)
@@ -99,5 +110,5 @@ class FrameNames:
         return child
 
     def _report_unknown(self, name: str, what: str, pointer: Pointer, known: Iterable[str]) -> None:
-        hint = partial(did_you_mean, name, known)
-        self._made.reporter.report("unknown-frame", f"'{name}' is not a {what} of the robot", pointer, hint)
+        message = f"'{name}' is not a {what} of the robot"
+        report_name(self._made.reporter, "unknown-frame", message, pointer, name, known)

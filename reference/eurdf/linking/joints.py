@@ -7,10 +7,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 
-from eurdf.diagnostics import Diagnostics, Hint, did_you_mean, plural, quoted
+from eurdf.diagnostics import Diagnostics, Fix, plural, quoted
+from eurdf.format.fixes import named, report_name
 from eurdf.format.urdf.data import Limit, Urdf, UrdfJoint
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint, JointProperties, is_no_range
+from eurdf.reading.yaml_node import Pointer
 from eurdf.reading.yaml_reader import YamlReporter
 
 _NONE = JointProperties()
@@ -69,7 +71,7 @@ def check_ranges(urdf: Urdf, joints: Mapping[str, Joint], diagnostics: Diagnosti
         and made.type.is_ranged
         and made.lacks_range
     ]
-    hint = "state 'lower' and 'upper', or use type 'continuous' if there are no limits"
+    hint = "which 'lower' and 'upper' does it have? A joint of type 'continuous' has none"
     report_of_joints("urdf-no-range", found, "the position limits 0 and 0", "limit", hint, urdf, diagnostics)
 
 
@@ -108,8 +110,16 @@ class Joints:
     armature_given: set[str] = field(default_factory=set)
     faulty: set[str] = field(default_factory=set)
 
-    def meant(self, name: str, candidates: Iterable[str]) -> Hint:
-        """The hint about a name that is no joint's, although it should be one of the candidates'."""
-        if name in self.urdf.links:
-            return f"'{name}' is a link; name the joint that moves it"
-        return partial(did_you_mean, name, candidates)
+    def report_name(
+        self, code: str, message: str, pointer: Pointer, name: str, candidates: Iterable[str], *, key: bool = False
+    ) -> None:
+        """Report a name that is no joint's, although it should be one of the candidates'."""
+        if name not in self.urdf.links:
+            report_name(self.reporter, code, message, pointer, name, candidates, key=key)
+            return
+        candidates = set(candidates)
+        movers = [each.name for each in self.by_name.values() if each.child == name and each.name in candidates]
+        summary = f"'{name}' is a link: write '{{}}', the joint that moves it"
+        write = partial(named, self.reporter.document, pointer, key)
+        fixes = [Fix(summary.format(mover), write(mover)) for mover in movers]
+        self.reporter.report(code, message, pointer, f"'{name}' is a link; which joint moves it?", fixes, key=key)

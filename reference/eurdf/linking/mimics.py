@@ -7,6 +7,7 @@ from types import MappingProxyType
 
 from eurdf.diagnostics import Diagnostics
 from eurdf.format.conventions import HINT, LARGEST, is_too_small, too_large, too_small
+from eurdf.format.fixes import removed
 from eurdf.format.joint_model import JointEntry
 from eurdf.format.urdf.data import Urdf
 from eurdf.linking.joints import report_of_joints
@@ -30,7 +31,9 @@ def freed_joints(entries: Iterable[JointEntry], urdf: Urdf, reporter: YamlReport
         if not mimicking and all(name in urdf.joints for name in named):
             what = f"joint '{entry.name}' mimics no other" if not entry.merges else "none of the merged joints is one"
             message = f"'mimic: false' frees a mimic joint, but {what}"
-            reporter.report("joint-not-mimic", message, (*entry.pointer, "mimic"), "remove 'mimic'")
+            pointer = (*entry.pointer, "mimic")
+            fixes = removed(reporter.document, pointer, "'mimic'")
+            reporter.report("joint-not-mimic", message, pointer, "which joint mimics another?", fixes)
         freed |= mimicking
     return freed
 

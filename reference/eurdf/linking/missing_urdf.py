@@ -5,9 +5,12 @@ from __future__ import annotations
 import difflib
 import os
 import shlex
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
-from eurdf.diagnostics import Diagnostics
+from eurdf.diagnostics import Diagnostics, Fix
+from eurdf.format.fixes import added, restated
 from eurdf.format.model import Description
 from eurdf.format.yaml_text import scalar
 from eurdf.reading.xacro import is_xacro
@@ -20,11 +23,17 @@ def report_missing_urdf(path: Path, description: Description, diagnostics: Diagn
     message = f"the URDF '{description.urdf}' does not exist"
     if description.version != "1" and "urdf" not in document.data:
         message += "; it is the default if there is no key 'urdf'"
-    diagnostics.report("urdf-not-found", message, document.place(("urdf",)), _urdf_hint(path, home, description))
+    hint, only = _urdf_hint(path, home, description)
+    fixes: Sequence[Fix] = ()
+    if only is not None:
+        stated = "urdf" in document.data
+        fixes = [restated(document, ("urdf",), only)] if stated else added(document, (), "urdf", only)
+    fixes = [replace(fix, summary=hint) for fix in fixes]
+    diagnostics.report("urdf-not-found", message, document.place(("urdf",)), hint, fixes)
 
 
-def _urdf_hint(path: Path, home: Path, description: Description) -> str:
-    """A hint with the paths of nearby URDFs from the description."""
+def _urdf_hint(path: Path, home: Path, description: Description) -> tuple[str, str | None]:
+    """A hint with the paths of nearby URDFs from the description, and the one that it may name if there is no other."""
     near = _files_near(path, home, ".urdf") or _files_near(path, home, ".xacro")
     likely = near[0] if len(near) == 1 else None
     if len(near) > 1:
@@ -41,11 +50,11 @@ def _urdf_hint(path: Path, home: Path, description: Description) -> str:
     else:
         fix = f"write urdf: {scalar(meant)}"
     if likely:
-        return f"there is '{likely}': {fix}"
+        return f"there is '{likely}': {fix}", likely if len(near) == 1 and description.version != "1" else None
     if not near:
-        return f"there is no URDF nearby: {fix}"
+        return f"there is no URDF nearby: {fix}", None
     shown = ", ".join(f"'{other}'" for other in near[:4]) + (f" and {len(near) - 4} more" if len(near) > 4 else "")
-    return f"there are {shown}: {fix}, or use another of these files"
+    return f"there are {shown}: {fix}, or use another of these files", None
 
 
 def _files_near(path: Path, home: Path, suffix: str) -> list[str]:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
+from itertools import permutations
 from typing import NamedTuple
 
-from eurdf.diagnostics import Hint
+from eurdf.diagnostics import Fix, Hint
 from eurdf.format.closure_model import AXES
 from eurdf.format.conventions import HINT, is_too_small, too_small
+from eurdf.format.fixes import removed, restated, swapped
 from eurdf.format.joint_model import JointEntry
 from eurdf.linking.joints import Joints
 from eurdf.linking.merging import PARALLEL, NotMergeable, check_chain, find_chains, merge
@@ -71,9 +73,17 @@ class _Replacement(NamedTuple):
     closure_links: Collection[str]
     version: str
 
-    def report(self, code: str, message: str, *keys: str | int, hint: Hint = None, key: bool = False) -> None:
+    def report(
+        self,
+        code: str,
+        message: str,
+        *keys: str | int,
+        hint: Hint = None,
+        proposals: Sequence[Fix] = (),
+        key: bool = False,
+    ) -> None:
         """Report at the entry, or at what it has under the keys."""
-        self.joints.reporter.report(code, message, (*self.entry.pointer, *keys), hint, key=key)
+        self.joints.reporter.report(code, message, (*self.entry.pointer, *keys), hint, proposals, key=key)
 
     def apply(self) -> None:
         entry = self.entry
@@ -94,9 +104,8 @@ class _Replacement(NamedTuple):
         """EU-JNT-001: a joint that the description names is in the URDF."""
         joint = self.joints.by_name.get(name) if name in self.joints.urdf.joints else None
         if joint is None:
-            message, hint = f"'{name}' is not a joint of the robot", self.joints.meant(name, self.joints.urdf.joints)
-            key = not keys and self.entry.pointer[-1:] == (name,)
-            self.report("unknown-joint", message, *keys, hint=hint, key=key)
+            message, at = f"'{name}' is not a joint of the robot", (*self.entry.pointer, *keys)
+            self.joints.report_name("unknown-joint", message, at, name, self.joints.urdf.joints, key=at[-1:] == (name,))
         return joint
 
     def mimics(self, joint: Joint, *keys: str | int) -> bool:
@@ -154,7 +163,10 @@ class _Replacement(NamedTuple):
             *inner, ball = merge(check_chain((first, second, third), joints.urdf, self.closure_links), entry.name)
         except NotMergeable as why:
             names = ", ".join(f"'{name}'" for name in entry.merges)
-            self.report(why.code, f"{names} cannot be merged: {why.message}", "merges")
+            document, pointer = joints.reporter.document, (*entry.pointer, "merges")
+            orders = list(permutations(entry.merges))[1:] if why.code == "merge-not-chain" else []
+            proposals = [restated(document, pointer, order) for order in orders]
+            self.report(why.code, f"{names} cannot be merged: {why.message}", "merges", proposals=proposals)
             return None
         joints.by_name.update({joint.name: joint for joint in inner})
         del joints.by_name[third.name]
@@ -275,7 +287,11 @@ class _Replacement(NamedTuple):
             return joint
         if joint.type.is_fixed:
             keys = next(iter(stated))
-            self.report("joint-property", f"fixed joint '{joint.name}' cannot have the property '{keys[-1]}'", *keys)
+            message = f"fixed joint '{joint.name}' cannot have the property '{keys[-1]}'"
+            document, at = self.joints.reporter.document, entry.pointer
+            alone = list(stated) == [keys] and entry.type is None
+            fixes = removed(document, at if alone else (*at, *keys), f"'{entry.name if alone else keys[-1]}'")
+            self.report("joint-property", message, *keys, proposals=fixes)
             return None
         changes: dict[str, tuple[float, ...]] = {}
         for keys, numbers in stated.items():
@@ -307,6 +323,9 @@ class _Replacement(NamedTuple):
             if lower > upper:
                 key = "lower" if "lower" in changes else "upper"
                 left_out = {"lower", "upper"} - set(changes)
+                at = (*entry.pointer, "limits")
+                document = self.joints.reporter.document
+                proposals = () if left_out else swapped(document, (*at, "lower"), (*at, "upper"))
                 self.report(
                     "joint-limits-reversed",
                     f"joint '{joint.name}': lower limit {lower:g} is above upper limit {upper:g}",
@@ -314,7 +333,8 @@ class _Replacement(NamedTuple):
                     key,
                     hint=f"the {left_out.pop()} limit comes from the URDF; state both limits"
                     if left_out
-                    else "swap the two limits",
+                    else "are they in the wrong order, or is a sign wrong?",
+                    proposals=proposals,
                 )
                 return None
         return joint.with_properties(properties)

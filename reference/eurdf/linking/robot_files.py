@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any, Literal, NamedTuple, TypeVar
 
 from eurdf.collection import RobotFiles, find_robot
@@ -110,7 +109,7 @@ def read_robot(
     confined: bool = False,
     allow_outside: bool = False,
     inertias: bool = True,
-    texts: Mapping[str, str] = MappingProxyType({}),
+    texts: dict[str, str] | None = None,
 ) -> ReadRobot:
     """Read and link the files of a robot, and check its inertias.
 
@@ -128,7 +127,7 @@ def read_robot(
         confined: Whether a URDF that the description names must be in the folder of the description.
         allow_outside: Whether meshes may be anywhere, for `find_meshes`: no mesh is looked for here.
         inertias: Whether to check the inertias of a robot that can be linked. If not, `inertia_diagnostics` does.
-        texts: Texts in place of those of files, by path as diagnostics have it; of texts that were given, by name.
+        texts: Texts in place of those of files, by path as diagnostics have it, or by name; what is read is added.
 
     Raises:
         RobotNotFound: Where there are no such files.
@@ -138,7 +137,7 @@ def read_robot(
     """
     if confined and allow_outside:
         raise ValueError("confined and allow_outside exclude each other; choose one of them")
-    diagnostics = Diagnostics()
+    diagnostics, texts = Diagnostics(), {} if texts is None else texts
     name = display_name(path)
     try:
         files = RobotFiles(*(_open(file, texts) for file in find_robot(path, urdf)))
@@ -148,13 +147,13 @@ def read_robot(
         return ReadRobot(name, diagnostics)
     if files.description is None:
         assert given is not None
-        read, description = partial(_own_source, given, confined), None
+        read, description = partial(_own_source, given, confined, texts), None
         mimic_errors: _MimicErrors = "refused" if mimic else "kept"
     else:
-        document = _read_description(files.description, diagnostics, confined)
+        document = _read_description(files.description, diagnostics, confined, texts)
         description = None if document is None else read_description(document, diagnostics)
         if given is not None:
-            read = partial(_own_source, given)
+            read = partial(_own_source, given, texts=texts)
         else:
             own = files.description
             folder = own.folder if isinstance(own, Source) else own.parent
@@ -310,16 +309,18 @@ def _named_urdf(folder: Path, description: Description | None, document: YamlDoc
         return folder / "robot.urdf"
 
 
-def _read_description(path: Path | Source, diagnostics: Diagnostics, confined: bool) -> YamlDocument | None:
+def _read_description(
+    path: Path | Source, diagnostics: Diagnostics, confined: bool, texts: dict[str, str]
+) -> YamlDocument | None:
     try:
-        return read_yaml(_own_source(path, confined))
+        return read_yaml(_own_source(path, confined, texts))
     except FileError as error:
         diagnostics.add(error.diagnostic)
         return None
 
 
-def _own_source(path: Path | Source, confined: bool = False) -> Source:
-    """The text of a file of the robot that the caller named, or found in a folder.
+def _own_source(path: Path | Source, confined: bool = False, texts: dict[str, str] | None = None) -> Source:
+    """The text of a file of the robot that the caller named, or found in a folder, which is added to those read.
 
     `FileError` if it cannot be read; or if files are confined to their folder, and it is a link to one elsewhere.
     """
@@ -329,26 +330,31 @@ def _own_source(path: Path | Source, confined: bool = False) -> Source:
     if confined and not is_inside:
         message = f"'{path}' is a link to a file in another folder, and files are confined to their folder"
         raise FileError("file-unreadable", message, Place(os.fspath(path)))
-    return read_source(path, is_quoted=is_inside)
+    return _read({} if texts is None else texts, path, is_inside)
+
+
+def _read(texts: dict[str, str], path: Path, is_quoted: bool) -> Source:
+    source = read_source(path, is_quoted=is_quoted)
+    texts[source.file] = source.text
+    return source
 
 
 def _open(file: Path | Source | None, texts: Mapping[str, str]) -> Path | Source | None:
-    """A file, or what was read already, or else the text that stands in its place."""
+    """A file, or what was read already, or else the text in its place."""
     if file is None:
         return None
     name = file.file if isinstance(file, Source) else os.fspath(file)
-    if name not in texts:
+    if (text := texts.get(name)) is None:
         return file
-    text = texts[name]
     if isinstance(file, Source):
         return replace(file, text=text, data=text.encode())
     return Source(name, text, text.encode(), is_quoted=_is_inside(file, file.parent))
 
 
-def _named_source(path: Path, is_quoted: bool, texts: Mapping[str, str]) -> Source:
-    """The text of the URDF that a description names, or the one that stands in its place."""
+def _named_source(path: Path, is_quoted: bool, texts: dict[str, str]) -> Source:
+    """The text of the URDF that a description names, or the one in its place."""
     found = _open(path, texts)
-    return replace(found, is_quoted=is_quoted) if isinstance(found, Source) else read_source(path, is_quoted=is_quoted)
+    return replace(found, is_quoted=is_quoted) if isinstance(found, Source) else _read(texts, path, is_quoted)
 
 
 def _is_inside(path: Path, folder: Path) -> bool:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from functools import partial
 from typing import NamedTuple
 
 from lxml import etree
 
-from eurdf.diagnostics import Diagnostics, FileError, Hint, Place
+from eurdf.diagnostics import Diagnostics, Edit, FileError, Hint, Place, Proposals, misspelt
 from eurdf.reading.source import FILE_LIMIT, Source, short, too_large
 from eurdf.reading.xml_syntax import ATTRIBUTE, DEPTH_LIMIT, HARMLESS_ERRORS, refused, syntax_error
 
@@ -27,6 +28,8 @@ _DECLARED_ENCODING = re.compile(r"""<\?xml\s[^>]*?\sencoding\s*=\s*(["'])(.*?)\1
 
 #: Some of what may precede a DOCTYPE: a match keeps memory for each repetition, so it has a limited number of them.
 _BEFORE_DOCTYPE = re.compile(r"(?:[ \t\r\n]+|<\?.*?\?>|<!--.*?-->){1,1000}", re.DOTALL)
+
+_ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", '"': "&quot;", "'": "&apos;"})
 
 #: In a well-formed file without DOCTYPE: ``<`` and a name begin an element, the rest is skipped.
 _MARKUP = re.compile(r"<(?:!--.*?-->|!\[CDATA\[.*?\]\]>|\?.*?\?>|/|([^\s/>]+))", re.DOTALL)
@@ -71,6 +74,32 @@ class XmlDocument:
                 return found.span(2 if found[2] is not None else 3)
             end = found.end()
         return start, after_name
+
+    def restated(self, element: etree._Element, attribute: str, value: str) -> tuple[Edit]:
+        """The edit that gives an attribute another value."""
+        return (self.source.edit(*self.span(element, attribute), value.translate(_ESCAPES)),)
+
+    def renamed(self, element: etree._Element, attribute: str, name: str) -> tuple[Edit]:
+        """The edit that gives an attribute another name."""
+        value, _ = self.span(element, attribute)
+        start = self.source.text.rindex(attribute, 0, value)
+        return (self.source.edit(start, start + len(attribute), name),)
+
+    def retagged(self, element: etree._Element, tag: str) -> tuple[Edit, ...]:
+        """The edits that give an element, which contains none like it, another tag."""
+        start, end = self.span(element)
+        old = self.source.text[start + 1 : end]
+        edits = [self.source.edit(start + 1, end, tag)]
+        close = self.source.text.find(f"</{old}", end)
+        if close >= 0 and not self._is_empty(end):
+            edits.append(self.source.edit(close + 2, close + 2 + len(old), tag))
+        return tuple(edits)
+
+    def _is_empty(self, end: int) -> bool:
+        """Whether an element whose name ends there has only one tag."""
+        while found := ATTRIBUTE.match(self.source.text, end):
+            end = found.end()
+        return self.source.text[end:].lstrip().startswith("/>")
 
     def _of_root(self) -> tuple[str, tuple[int, int]]:
         """Its pointer and its tag, without those of all others: of a file that is too large, only this is wanted."""
@@ -119,10 +148,23 @@ class XmlReporter(NamedTuple):
     diagnostics: Diagnostics
 
     def report(
-        self, code: str, message: str, element: Element, attribute: str | None = None, hint: Hint = None
+        self,
+        code: str,
+        message: str,
+        element: Element,
+        attribute: str | None = None,
+        hint: Hint = None,
+        proposals: Proposals = (),
     ) -> None:
         """Report at an element, or at one of its attributes: see `Diagnostics.report` and `XmlDocument.place`."""
-        self.diagnostics.report(code, message, partial(self.document.place, element, attribute), hint)
+        self.diagnostics.report(code, message, partial(self.document.place, element, attribute), hint, proposals)
+
+    def report_name(
+        self, code: str, message: str, element: Element, attribute: str, known: Iterable[str], beside: str = ""
+    ) -> None:
+        """Report that an attribute has a name that is none of those known; for ``beside`` see `similar`."""
+        write = partial(self.document.restated, element, attribute)
+        self.report(code, message, element, attribute, *misspelt(element.get(attribute, ""), known, write, beside))
 
 
 def read_xml(source: Source) -> XmlDocument:

@@ -7,7 +7,7 @@ from typing import Any
 from xml.parsers import expat
 from xml.parsers.expat import errors
 
-from eurdf.diagnostics import FileError
+from eurdf.diagnostics import FileError, Fix
 from eurdf.reading.other_formats import NAMESPACES, of_text
 from eurdf.reading.source import Source, short
 
@@ -152,9 +152,14 @@ def _not_closed(source: Source, problem: str, at: int, name: str, opened: int) -
         return FileError("xml-syntax", f"<{short(name)}> is never closed", place, f"close it with </{short(name)}>")
     closing = _name_at(source.text, at)
     line, _ = source.position(opened)
+    start = opened + 1
+    fixes = (
+        Fix(f"write <{closing[0]}> on line {line}", (source.edit(start, start + len(name), closing[0]),), rivals=True),
+        Fix(f"write </{name}>", (source.edit(at, closing.end(), name),), rivals=True),
+    )
     name = short(name)
     message = f"</{short(closing[0])}> does not match the open <{name}> of line {line}; </{name}> is expected"
-    return FileError("xml-syntax", message, source.place(at - 2, closing.end()))
+    return FileError("xml-syntax", message, source.place(at - 2, closing.end()), None, fixes)
 
 
 def _explain(text: str, problem: str, at: int) -> tuple[int, int, str, str | None]:

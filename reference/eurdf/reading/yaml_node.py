@@ -43,6 +43,11 @@ class YamlCollection:
         self.size = size
         self.height = 1
 
+    @property
+    def is_flow(self) -> bool:
+        """Whether it is in braces or brackets, once it has been read."""
+        return self.span[1] is not None
+
     def add(self, value: Any, node: Node) -> None:
         """Add the next value; in a mapping, its key comes first."""
         if self.is_mapping:
@@ -66,6 +71,22 @@ class Alias:
 
 #: For a scalar, or an alias of one, only its place is kept.
 Node = Span | YamlCollection | Alias
+
+
+def start_of(node: Node) -> int:
+    """Index of the first character of a node."""
+    return node[0] if isinstance(node, tuple) else node.span[0]
+
+
+def end_of(node: Node) -> int:
+    """Index of the character after the last one of a node; of a block, that of its last entry."""
+    end = node[1] if isinstance(node, tuple) else node.span[1]
+    if end is not None:
+        return end
+    assert isinstance(node, YamlCollection)
+    last, inner = list(node.nodes.items())[-1]
+    _, key_end = node.keys.get(last, (0, 0))
+    return max(end_of(inner), key_end or 0)
 
 
 def json_pointer(steps: Sequence[str | int]) -> str:

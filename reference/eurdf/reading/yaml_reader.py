@@ -9,19 +9,19 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from functools import partial
-from math import isfinite
+from math import copysign, isfinite, isnan
 from typing import Any, NamedTuple
 
 from yaml import CSafeLoader
 from yaml.error import MarkedYAMLError, YAMLError
 from yaml.events import AliasEvent, Event, MappingStartEvent, ScalarEvent, SequenceStartEvent, StreamEndEvent
 
-from eurdf.diagnostics import Diagnostics, FileError, Hint, Place
+from eurdf.diagnostics import Diagnostics, Edit, FileError, Fix, Hint, Place, Proposals
 from eurdf.reading.core_schema import TAG_PREFIX, resolve, resolve_tagged
 from eurdf.reading.other_formats import of_text, other_format
 from eurdf.reading.source import FILE_LIMIT, Source, short, too_large
 from eurdf.reading.yaml_node import Alias, Node, Pointer, Span, YamlCollection, json_pointer
-from eurdf.reading.yaml_syntax import stray_mark, syntax_error, unusual_name
+from eurdf.reading.yaml_syntax import stray_mark, syntax_error, unusual_name, version_fix
 
 #: Maximum depth of nested mappings and lists, aliases expanded.
 DEPTH_LIMIT = 64
@@ -38,6 +38,8 @@ _TOO_DEEP_TO_SCAN = "exceeded maximum nesting depth"
 _CORE_TAGS = ("!!str", "!!int", "!!float", "!!bool", "!!null", "!!map", "!!seq")
 #: After the end of a document: white space, comments and further ends.
 _BETWEEN_DOCUMENTS = re.compile(r"(?:\s|#[^\r\n]*|\.\.\.(?=\s))*")
+#: After a key: a colon, and a value that begins on the same line.
+_VALUE_BESIDE = re.compile(r"[ \t]*:[ \t]+[^\s#|>&!*]")
 _KINDS = {dict: "a mapping", list: "a list", str: "a string", bool: "a boolean", type(None): "empty"}
 
 
@@ -80,6 +82,11 @@ class YamlDocument:
         """Place of a value, or of its key; for the arguments see `span`."""
         return self.source.place(*self.span(pointer, key), json_pointer(pointer))
 
+    def edit(self, pointer: Sequence[str | int], text: str, key: bool = False) -> Edit:
+        """An edit that writes a text in the place of a value on one line, or of its key."""
+        start, end = self.span(pointer, key)
+        return self.source.edit(start, start if end is None else end, text)
+
 
 class YamlReporter(NamedTuple):
     """Adds diagnostics on a YAML file."""
@@ -87,9 +94,18 @@ class YamlReporter(NamedTuple):
     document: YamlDocument
     diagnostics: Diagnostics
 
-    def report(self, code: str, message: str, pointer: Pointer, hint: Hint = None, *, key: bool = False) -> None:
+    def report(
+        self,
+        code: str,
+        message: str,
+        pointer: Pointer,
+        hint: Hint = None,
+        proposals: Proposals = (),
+        *,
+        key: bool = False,
+    ) -> None:
         """Report at a value, or at its key: see `Diagnostics.report` and `YamlDocument.place`."""
-        self.diagnostics.report(code, message, partial(self.document.place, pointer, key), hint)
+        self.diagnostics.report(code, message, partial(self.document.place, pointer, key), hint, proposals)
 
 
 def read_yaml(source: Source) -> YamlDocument:
@@ -179,7 +195,7 @@ class _NodeReader:
         if document.version is not None and document.version != (1, 2):
             version = ".".join(map(str, document.version))
             message = f"the %YAML directive states version {version}; it must be 1.2"
-            raise self._error("yaml-version", message, document, "remove the directive")
+            raise self._error("yaml-version", message, document, "remove the directive", version_fix(self._source))
         top_level, next_event = self._file.data, self._next_event
         while not top_level:
             event = next_event()
@@ -234,8 +250,15 @@ class _NodeReader:
             return
         if type(value) is float and not isfinite(value):
             what = "is not a finite number" if "n" in text.lower() else "is too large for a number"
-            raise self._error("yaml-not-finite", f"{_quote(text)} {what}", event)
+            unlimited = self._source.edit(*span, f"{copysign(1e308, value):.1e}")
+            fix = Fix(f"write {unlimited.text} for no limit", (unlimited,))
+            fixes = () if isnan(value) or not self._is_limit() else (fix,)
+            raise self._error("yaml-not-finite", f"{_quote(text)} {what}", event, None, fixes)
         around.add(value, span)
+
+    def _is_limit(self) -> bool:
+        """Whether the next value is a limit of a joint, which limits nothing if it is large enough (EU-FIL-006)."""
+        return any(each.key == "limits" for each in self._open[1:-1] if each.is_mapping)
 
     def _begin(self, event: Any, data: dict[str, Any] | list[Any], tag: str) -> None:
         start, end = _span(event)
@@ -312,12 +335,14 @@ class _NodeReader:
             text = event.value if isinstance(event, ScalarEvent) else ""
             what = ("a key is null" if text else "a key is empty") if value is None else f"a key is {_kind(value)}"
             hint = f'quote it: "{text}"' if text == short(text) != "" else None
-            raise self._error("yaml-key-not-string", f"{what}; it must be a string", event, hint)
+            fixes = () if hint is None else (Fix(hint, (self._source.edit(*span, f'"{text}"'),)),)
+            raise self._error("yaml-key-not-string", f"{what}; it must be a string", event, hint, fixes)
         if value in mapping.keys:
             line, _ = self._source.position(mapping.keys[value][0])
             mapping.key, mapping.awaits_key = value, False  # for the pointer
             message = f"the key {_quote(value)} occurs twice in one mapping"
-            raise self._error("yaml-duplicate-key", message, event, f"it first occurs on line {line}")
+            hint = f"it first occurs on line {line}"
+            raise self._error("yaml-duplicate-key", message, event, hint, self._repeated(span, line))
         mapping.key, mapping.awaits_key = value, False
         mapping.keys[value] = span
 
@@ -334,7 +359,19 @@ class _NodeReader:
                 raise FileError("yaml-several-documents", message, self._source.place(between.end())) from None
             raise
         if type(after) is not StreamEndEvent:
-            raise self._error("yaml-several-documents", message, after)
+            start, end = _span(after)
+            fixes = (Fix("remove '---'", (self._source.edit(start, end, ""),)),)
+            raise self._error("yaml-several-documents", message, after, None, fixes if end - start == 3 else ())
+
+    def _repeated(self, key: Span, first: int) -> tuple[Fix, ...]:
+        """The removal of a line that begins with a key, and is the same as the first one that does."""
+        lines, text = self._source.lines, self._source.text
+        line, _ = lines.position(key[0])
+        span = lines.span(line)
+        has_value = _VALUE_BESIDE.match(text, key[1] or key[0]) is not None
+        if span is None or lines.line(line) != lines.line(first) or text[span[0] : key[0]].strip() or not has_value:
+            return ()
+        return (Fix(f"remove line {line}", (self._source.edit(span[0] - 1, span[1], ""),)),)
 
     def _tag_error(self, event: Any, what: str) -> FileError:
         shown = event.tag.replace(TAG_PREFIX, "!!", 1)
@@ -342,14 +379,16 @@ class _NodeReader:
             return self._error("yaml-unknown-tag", f"{what} does not match the tag '{shown}'", event)
         return self._error("yaml-unknown-tag", f"the tag {_quote(shown)} is unknown", event, "remove it")
 
-    def _error(self, code: str, message: str, event: Event, hint: str | None = None) -> FileError:
+    def _error(
+        self, code: str, message: str, event: Event, hint: str | None = None, fixes: tuple[Fix, ...] = ()
+    ) -> FileError:
         steps: list[str | int] = []
         for collection in self._open[1:]:
             if not collection.is_mapping:
                 steps.append(len(collection.data))
             elif not collection.awaits_key:
                 steps.append(collection.key)
-        return FileError(code, message, self._source.place(*_span(event), json_pointer(steps)), hint)
+        return FileError(code, message, self._source.place(*_span(event), json_pointer(steps)), hint, fixes)
 
 
 def _span(event: Any) -> tuple[int, int]:

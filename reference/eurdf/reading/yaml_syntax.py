@@ -10,7 +10,7 @@ import yaml
 from yaml import CSafeLoader
 from yaml.error import MarkedYAMLError, YAMLError
 
-from eurdf.diagnostics import FileError, Place
+from eurdf.diagnostics import FileError, Fix, Place
 from eurdf.reading.indentation import first_line_hint, indentation_hint
 from eurdf.reading.source import Source
 
@@ -19,6 +19,9 @@ from eurdf.reading.source import Source
 _NOT_PRINTABLE = re.compile("[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 _MARK = "\ufeff"
+
+#: Lines that are indented with tabs, at most, of which a fix changes all.
+_MOST_TABS = 1000
 
 
 class _Meaning(NamedTuple):
@@ -102,7 +105,14 @@ def stray_mark(source: Source, data: bytes) -> FileError | None:
         return None
     message = "a byte order mark, U+FEFF, is allowed only at the start of the file and in quotes"
     hint = 'remove it, or write "\\ufeff" in double quotes'
-    return FileError("yaml-syntax", message, source.place(index, index + 1), hint)
+    fix = Fix("remove it", (source.edit(index, index + 1, ""),))
+    return FileError("yaml-syntax", message, source.place(index, index + 1), hint, (fix,))
+
+
+def version_fix(source: Source) -> tuple[Fix, ...]:
+    """The proposal to state version 1.2, which is how the file is read."""
+    found = re.search(r"^%YAML[ \t]+(\d+\.\d+)", source.text, re.MULTILINE)
+    return () if found is None else (Fix("write %YAML 1.2", (source.edit(*found.span(1), "1.2"),)),)
 
 
 def syntax_error(source: Source, error: YAMLError | UnicodeDecodeError) -> FileError:
@@ -135,7 +145,26 @@ def syntax_error(source: Source, error: YAMLError | UnicodeDecodeError) -> FileE
         if error.problem == _TOO_DEEP:
             message = "this key is not aligned with those before it"
     start = context if meaning.late else problem
-    return FileError(meaning.code, message, source.place(start, min(start + 1, len(text))), advice)
+    fixes = version_fix(source) if meaning.code == "yaml-version" else _syntax_fixes(source, meaning, start)
+    return FileError(meaning.code, message, source.place(start, min(start + 1, len(text))), advice, fixes)
+
+
+def _syntax_fixes(source: Source, meaning: _Meaning, at: int) -> tuple[Fix, ...]:
+    """Spaces where a tab indents, or after a colon that lacks one."""
+    line, _ = source.position(at)
+    start, end = source.lines.span(line) or (at, at)
+    text = source.text[start:end]
+    if meaning is _TAB:
+        tabs = list(re.finditer(r"^ *\t[ \t]*", source.text, re.MULTILINE))[:_MOST_TABS]
+        summary = "indent with {} spaces, not tabs"
+        return tuple(
+            Fix(summary.format(width), tuple(source.edit(*each.span(), each[0].expandtabs(width)) for each in tabs))
+            for width in (2, 4, 8)
+        )
+    if found := re.match(r"\s*(?:- )?[\w-]+(:)[^\s:]", text):
+        colon = start + found.end(1)
+        return (Fix("write a space after the ':'", (source.edit(colon, colon, " "),)),)
+    return ()
 
 
 def _about_indentation(source: Source, said: str, problem: int) -> str | None:

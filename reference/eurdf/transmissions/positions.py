@@ -118,6 +118,8 @@ def joint_values(
 
 def _single(robot: Robot, values: Mapping[str, float], argument: str) -> Selection:
     """The joints that values are given for, each with one coordinate."""
+    if not isinstance(values, Mapping):
+        raise ValueError(f"{argument} has no names; it must be a mapping of names to positions")
     chosen = selection(robot, tuple(values), argument)
     several = next((name for name in chosen.joints if robot.slots[name].nv > 1), None)
     if several is not None:

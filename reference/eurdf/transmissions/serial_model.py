@@ -171,7 +171,7 @@ def serial_twin(
     ranges: Mapping[str, Sequence[float]] | None = None,
     degree: int = 8,
 ) -> SerialTwin:
-    """The serial robot that stands for one whose joints are moved through rods.
+    """The serial equivalent of a robot whose joints are moved through rods.
 
     The bodies of the linkage are left out, and their masses are lumped onto the bodies that carry them, as they are at
     q. The armature of a joint is the diagonal of M_J less the inertia of the twin, at least 0, so that no mass counts

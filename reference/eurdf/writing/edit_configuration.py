@@ -10,7 +10,7 @@ from typing import Any
 from eurdf.diagnostics.lines import BREAK
 from eurdf.format.model import VERSION2
 from eurdf.format.yaml_text import Value, flow, lines_of
-from eurdf.reading.yaml_node import Node, Span, YamlCollection
+from eurdf.reading.yaml_node import YamlCollection, end_of, start_of
 from eurdf.reading.yaml_reader import YamlDocument, plain_data
 
 
@@ -29,19 +29,19 @@ def with_configuration(document: YamlDocument, name: str, coordinates: Mapping[s
         NotEditable: The result does not read back as it should, such as where an anchor is involved.
     """
     value: dict[str, Value] = {joint: _plain(values) for joint, values in coordinates.items()}
-    text = _Edit(document).stated(name, value)
+    text = _ChangedText(document).stated(name, value)
     if not _reads_back(text, document.data, name, value):
         raise NotEditable(f"configuration '{name}' cannot be written without changing other parts of the file")
     return text
 
 
-class _Edit:
+class _ChangedText:
     """One text and the changes to it."""
 
     def __init__(self, document: YamlDocument) -> None:
         self._text = document.source.text
         self._root = document.root
-        self._as_json = _is_flow(document.root)
+        self._as_json = document.root.is_flow
         found = BREAK.search(self._text)
         self._break = found.group() if found else "\n"
         self._changes: list[tuple[int, int, str]] = []
@@ -72,14 +72,14 @@ class _Edit:
             self._fill(configurations, name, value)
             return
         if not isinstance(old, YamlCollection):  # an alias of a configuration
-            self._change(_start(old), _end(old), self._flow(value))
+            self._change(start_of(old), end_of(old), self._flow(value))
             return
         for joint, coordinates in value.items():
             if joint in old.nodes and not _same(old.data[joint], coordinates):
-                start = _start(old.nodes[joint])
+                start = start_of(old.nodes[joint])
                 # The items of a list may be below their key, which nothing else may.
                 deeper = "  " if self._indent(start) is not None and self._text[start] == "-" else ""
-                self._change(start, _end(old.nodes[joint]), deeper + self._flow(coordinates))
+                self._change(start, end_of(old.nodes[joint]), deeper + self._flow(coordinates))
         new = {joint: coordinates for joint, coordinates in value.items() if joint not in old.nodes}
         if new:
             self._add(old, list(old.nodes)[-1], new)
@@ -87,9 +87,9 @@ class _Edit:
     def _add(self, mapping: YamlCollection, last: str | int, entries: Mapping[str, Value]) -> None:
         """Add entries behind one that a mapping has."""
         key_start, key_end = mapping.keys[last]
-        end = max(_end(mapping.nodes[last]), key_end or 0)
+        end = max(end_of(mapping.nodes[last]), key_end or 0)
         indent = self._indent(key_start)
-        if _is_flow(mapping):
+        if mapping.is_flow:
             # On a line of its own where that one is.
             separator = ", " if indent is None else f",{self._break}{indent}"
             text = "".join(f"{separator}{self._flow({key: value})[1:-1]}" for key, value in entries.items())
@@ -106,9 +106,9 @@ class _Edit:
     def _fill(self, around: YamlCollection, key: str, value: Mapping[str, Value]) -> None:
         """Give an empty mapping its entries: between its braces, or in lines below its key."""
         lines = _lines(key, value)[1:]
-        start, end = _start(around.nodes[key]), _end(around.nodes[key])
+        start, end = start_of(around.nodes[key]), end_of(around.nodes[key])
         indent = self._indent(around.keys[key][0])
-        if not lines or _is_flow(around) or indent is None:
+        if not lines or around.is_flow or indent is None:
             self._change(start, end, self._flow(value))
             return
         while self._text[start - 1] == " ":  # behind the colon
@@ -174,26 +174,3 @@ def _reads_back(text: str, before: Mapping[str, Any], name: str, value: Mapping[
 def _canonical(value: object) -> str:
     """Plain data as text: 1, 1.0 and true differ in it, the order of keys does not."""
     return json.dumps(value, sort_keys=True)
-
-
-def _is_flow(mapping: YamlCollection) -> bool:
-    return mapping.span[1] is not None
-
-
-def _span(node: Node) -> Span:
-    return node if isinstance(node, tuple) else node.span
-
-
-def _start(node: Node) -> int:
-    return _span(node)[0]
-
-
-def _end(node: Node) -> int:
-    """Behind the last character of a node; of a block, that of its last entry."""
-    end = _span(node)[1]
-    if end is not None:
-        return end
-    assert isinstance(node, YamlCollection)
-    last, inner = list(node.nodes.items())[-1]
-    _, key_end = node.keys.get(last, (0, 0))
-    return max(_end(inner), key_end or 0)

@@ -7,7 +7,8 @@ from collections.abc import Iterable, Mapping
 from functools import partial
 from typing import NamedTuple
 
-from eurdf.diagnostics import did_you_mean
+from eurdf.diagnostics import Fix, renamings
+from eurdf.diagnostics.wording import similar
 from eurdf.format.conventions import HINT, LARGEST, too_large
 from eurdf.format.wording import near
 from eurdf.mechanism.joint_types import JointType
@@ -79,11 +80,8 @@ def named(element: Element) -> str:
     return f"<{tag}>" + ("" if owner is None else f" of {owner.tag!s} '{owner.get('name')}'")
 
 
-def _how_to_add(element: Element, attribute: str) -> str | None:
-    """The hint for a missing attribute: another one to rename, or the version that requires it."""
-    near = did_you_mean(attribute, [str(key) for key in element.keys()])  # noqa: SIM118 - an lxml element
-    if near:
-        return near.replace("did you mean", "rename").replace("?", "")
+def _how_to_add(attribute: str) -> str | None:
+    """The hint for a missing attribute: the version that requires it."""
     if attribute in ("lower", "upper"):
         return "from URDF 1.2, the limit of a revolute or prismatic joint states both 'lower' and 'upper'"
     return None
@@ -225,7 +223,16 @@ class UrdfReader:
     def missing_attribute(self, element: Element, attribute: str) -> None:
         """EU-URD-005: report that an element lacks a required attribute."""
         message = f"{named(element)} has no attribute '{attribute}'"
-        self.report("urdf-missing-attribute", message, element, None, partial(_how_to_add, element, attribute))
+        proposals = partial(self.renamings_to, element, attribute)
+        self.report("urdf-missing-attribute", message, element, None, _how_to_add(attribute), proposals)
+
+    def renamings_to(self, element: Element, attribute: str) -> list[Fix]:
+        """Proposals to give similar attributes of an element another name."""
+        write = self.reporter.document.renamed
+        return [
+            Fix(f"rename '{name}' to '{attribute}'", write(element, name, attribute), f"is '{name}' '{attribute}'?")
+            for name in similar(attribute, map(str, element.keys()))
+        ]
 
     def name(self, element: Element, attribute: str = "name") -> str | None:
         """EU-URD-005, EU-URD-008: the name of an element that requires one; it is not empty."""
@@ -268,8 +275,10 @@ class UrdfReader:
         kind = URDF_JOINT_TYPES.get(parent.get("type", "")) if parent.tag == "joint" else None
         if kind is not None and kind.is_ranged:
             optional = tuple(other for other in optional if other != "limit")
-        if hint := self.near_miss(tag, optional):
-            self.report("urdf-unknown-element", f"<{parent.tag}> has an unknown element <{tag}>", child, hint=hint)
+        if meant := self.near_miss(tag, optional):
+            write = partial(self.reporter.document.retagged, child)
+            message = f"<{parent.tag}> has an unknown element <{tag}>"
+            self.report("urdf-unknown-element", message, child, proposals=partial(renamings, [meant], write))
 
     def attributes(self, element: Element, optional: tuple[str, ...] | None = None) -> bool:
         """EU-URD-026: whether an unknown attribute has a name near that of an optional one, which is warned of."""
@@ -277,28 +286,38 @@ class UrdfReader:
         known, optional = _KNOWN_ATTRIBUTES[tag], optional or _KNOWN[tag].attributes
         is_misspelt = False
         for attribute in map(str, element.keys()):
-            if attribute not in known and (hint := self.near_miss(attribute, optional)):
+            if attribute not in known and (meant := self.near_miss(attribute, optional)):
+                write = partial(self.reporter.document.renamed, element, attribute)
                 message = f"{named(element)} has an unknown attribute '{attribute}'"
-                self.report("urdf-unknown-element", message, element, hint=hint)
+                self.report("urdf-unknown-element", message, element, proposals=partial(renamings, [meant], write))
                 is_misspelt = True
         return is_misspelt
 
     def near_miss(self, name: str, optional: tuple[str, ...]) -> str | None:
-        """The hint for an unknown name without a prefix. Cached, since the same few are in every joint of a file."""
+        """The name that is near an unknown one without a prefix. Cached: the same few are in every joint of a file."""
         if (name, optional) in self._strange:
             return self._strange[name, optional]
         meant = None if "}" in name else near(name, optional)
-        hint = meant and f"did you mean '{meant}'?"
         if len(self._strange) < _MOST_STRANGE:
-            self._strange[name, optional] = hint
-        return hint
+            self._strange[name, optional] = meant
+        return meant
 
     def need(self, parent: Element, found: Mapping[str, Element], tag: str) -> Element | None:
         """EU-URD-004: an element has its required child elements."""
         element = found.get(tag)
         if element is None:
-            self.report("urdf-missing-element", f"{named(parent)} has no <{tag}>", parent)
+            message, proposals = f"{named(parent)} has no <{tag}>", partial(self.retaggings_to, parent, tag)
+            self.report("urdf-missing-element", message, parent, proposals=proposals)
         return element
+
+    def retaggings_to(self, parent: Element, tag: str) -> list[Fix]:
+        """Proposals to give a child another tag that has one like it."""
+        document, children = self.reporter.document, {str(child.tag): child for child in parent}
+        alike = similar(tag, children.keys() - _KNOWN_CHILDREN[str(parent.tag)])
+        question = "did you mean <{}> where there is <{}>?"
+        return [
+            Fix(f"write <{tag}>", document.retagged(children[each], tag), question.format(tag, each)) for each in alike
+        ]
 
     def origin(self, element: Element | None) -> Pose:
         """The pose of an ``origin``; the identity if there is none or it has an error (EU-FRM-006)."""

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import partial
 
-from eurdf.diagnostics import did_you_mean
+from eurdf.diagnostics import Fix
 from eurdf.format.conventions import is_too_small, lower_limit, too_small, upper_limit
 from eurdf.format.urdf.data import Limit, UrdfJoint
 from eurdf.format.urdf.elements import RATES, RESERVED, URDF_JOINT_TYPES, UrdfReader, named
@@ -60,10 +61,12 @@ def _type(reader: UrdfReader, element: Element) -> JointType | None:
         return None
     kind = URDF_JOINT_TYPES.get(text)
     if kind is None:
-        hint = did_you_mean(text, URDF_JOINT_TYPES)
+        message = f"'{text}' is not a joint type of URDF"
         if text in ("spherical", "ball", "universal", "cylindrical", "helical", "screw"):
             hint = "write 'revolute' or 'continuous' here, and the type under 'joints' in the YAML file"
-        reader.report("urdf-joint-type", f"'{text}' is not a joint type of URDF", element, "type", hint)
+            reader.report("urdf-joint-type", message, element, "type", hint)
+        else:
+            reader.reporter.report_name("urdf-joint-type", message, element, "type", URDF_JOINT_TYPES)
     return kind
 
 
@@ -97,7 +100,9 @@ def _limit(
     if element is None:
         if kind.is_ranged:
             hint = "use type 'continuous' for a joint that rotates without limits" if kind == "revolute" else None
-            reader.report("urdf-missing-element", f"{kind} joint '{name}' has no <limit>", joint, hint=hint)
+            proposals = partial(reader.retaggings_to, joint, "limit")
+            message = f"{kind} joint '{name}' has no <limit>"
+            reader.report("urdf-missing-element", message, joint, hint=hint, proposals=proposals)
         return None
     limit = _limit_1_2(reader, kind, element) if reader.version >= "1.2" else _limit_1_0(reader, element)
     if limit is None:
@@ -106,8 +111,19 @@ def _limit(
         _report_negative(reader, element, **{key: getattr(limit, key) for key in _LIMIT_1_2})
     if limit.lower > limit.upper and (kind.is_ranged or reader.version >= "1.2"):
         message = f"joint '{name}': lower limit {limit.lower:g} is above upper limit {limit.upper:g}"
-        reader.report("urdf-reversed-limits", message, element, "lower", "swap the two limits")
+        hint = "are they in the wrong order, or is a sign wrong?"
+        reader.report(
+            "urdf-reversed-limits", message, element, "lower", hint, partial(_swapped, reader, element, limit)
+        )
     return limit
+
+
+def _swapped(reader: UrdfReader, element: Element, limit: Limit) -> list[Fix]:
+    """The proposal to exchange limits, the lower one above 0 and the upper one below; else a sign may be wrong."""
+    if not limit.lower > 0.0 > limit.upper:
+        return []
+    write, lower, upper = reader.reporter.document.restated, element.get("lower", ""), element.get("upper", "")
+    return [Fix("swap the two limits", (*write(element, "lower", upper), *write(element, "upper", lower)))]
 
 
 def _limit_1_0(reader: UrdfReader, element: Element) -> Limit | None:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Literal, cast, get_args
 
-from eurdf.diagnostics import did_you_mean
+from eurdf.diagnostics import misspelt
 from eurdf.format.urdf.data import UrdfLink
 from eurdf.format.urdf.elements import RESERVED, UrdfReader
 from eurdf.format.urdf.materials import Look, Materials
@@ -95,7 +96,8 @@ def _only_shape(reader: UrdfReader, geometry: Element) -> Element | None:
     else:
         name = written_name(other, str(other.tag))
         message = f"<{name}> is not a shape; it must be box, cylinder, sphere, capsule or mesh"
-        reader.report("urdf-geometry", message, other, hint=did_you_mean(str(other.tag), _SHAPES))
+        write = partial(reader.reporter.document.retagged, other)
+        reader.report("urdf-geometry", message, other, None, *misspelt(str(other.tag), _SHAPES, write))
     return None
 
 

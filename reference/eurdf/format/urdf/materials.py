@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from functools import partial
 
-from eurdf.diagnostics import did_you_mean
 from eurdf.format.urdf.elements import WHITE, UrdfReader, named
 from eurdf.reading.xml_reader import Element
 
@@ -38,9 +37,11 @@ class Materials:
                 if self._nameless:  # the material without a name may be the one meant
                     return None, ""
                 message = f"material '{name}' is not defined" if name else f"{named(element)} has no name and no color"
-                self._reader.report(
-                    "urdf-unknown-material", message, element, "name", partial(did_you_mean, name, self._known)
-                )
+                if name:
+                    self._reader.reporter.report_name("urdf-unknown-material", message, element, "name", self._known)
+                else:
+                    proposals = partial(self._reader.renamings_to, element, "name")
+                    self._reader.report("urdf-unknown-material", message, element, "name", proposals=proposals)
                 return None, ""
             return self._known[name]
         own = self._look(element)

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import partial
 from itertools import dropwhile
 
-from eurdf.diagnostics import did_you_mean
 from eurdf.format.urdf.data import UrdfJoint
 from eurdf.format.urdf.elements import UrdfReader
 from eurdf.mechanism.joint import Mimic
@@ -31,18 +29,15 @@ def _leader(reader: UrdfReader, joint: UrdfJoint, mimic: Mimic, joints: _Joints,
     """EU-URD-021: the leader of a mimic joint exists."""
     leader = joints.get(mimic.joint)
     if leader is None:
-        reader.mimic_reporter.report(
+        reader.mimic_reporter.report_name(
             "urdf-mimic-unknown",
             f"joint '{joint.name}' mimics '{mimic.joint}', which does not exist",
             element,
             "joint",
-            partial(_near, joint.name, mimic.joint, joints),
+            joints.keys() - {joint.name},
+            joint.name,
         )
     return leader
-
-
-def _near(name: str, unknown: str, joints: _Joints) -> str | None:
-    return did_you_mean(unknown, joints.keys() - {name}, name)
 
 
 def _can_mimic(reader: UrdfReader, joint: UrdfJoint, leader: UrdfJoint, element: Element) -> bool:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import partial
 from typing import TypeVar
 
-from eurdf.diagnostics import did_you_mean, quoted
+from eurdf.diagnostics import quoted
 from eurdf.format.urdf.data import Urdf, UrdfJoint, UrdfLink
 from eurdf.format.urdf.elements import UrdfReader
 from eurdf.format.urdf.mimics import check_mimics, cycle_of
@@ -61,12 +60,13 @@ def _check_links_of_joints(reader: UrdfReader, joints: Sequence[UrdfJoint], link
             continue
         for tag, name in (("parent", joint.parent), ("child", joint.child)):
             if name not in links:
-                reader.report(
+                reader.reporter.report_name(
                     "urdf-unknown-link",
                     f"the {tag} link '{name}' of joint '{joint.name}' does not exist",
                     next(joint.element.iterchildren(tag)),
                     "link",
-                    partial(did_you_mean, name, links, joint.name),
+                    links,
+                    joint.name,
                 )
 
 
