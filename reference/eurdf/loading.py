@@ -15,7 +15,9 @@ from typing import TYPE_CHECKING, Concatenate, ParamSpec, TypeVar
 from eurdf.advice.angles import advise_on_angles
 from eurdf.advice.lengths import advise_on_lengths
 from eurdf.advice.loops import closure_diagnostics
+from eurdf.advice.plausibility import advise_on_plausibility
 from eurdf.advice.quaternions import advise_on_quaternions
+from eurdf.advice.symmetry import advise_on_symmetry
 from eurdf.advice.trial import Evidence
 from eurdf.diagnostics import Diagnostic, Diagnostics, Fix, Severity, quoted
 from eurdf.diagnostics.report import Report
@@ -239,6 +241,7 @@ def _findings(
         meshes = {uri: by_path[path] for uri, path in files.paths.items() if path in by_path}
         for found in (*files.diagnostics, *unreadable):
             diagnostics.add(found)
+    before = len(diagnostics)
     if read.linked is not None and not refused:
         if read.yaml is not None:
             if read.mechanism.constraints:
@@ -248,6 +251,9 @@ def _findings(
         warn_of_ignored_mimics(read.mechanism, read.urdf, diagnostics)
         advise_on_angles(read, diagnostics)
         advise_on_lengths(read, meshes, diagnostics)
+        advise_on_plausibility(read, diagnostics)
+        if len(diagnostics) == before and not diagnostics.error_count:  # else the cause may be reported already
+            advise_on_symmetry(read, diagnostics)
     return Evidence(diagnostics.counts(), analysis)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import sys
 from typing import Any
 
@@ -23,10 +24,22 @@ Of several paths, a folder without a robot is skipped, and named on the standard
 error if no other path is left, and if a folder has several URDFs and no description.
 
 A warning whose code begins with x- is advice: the file conforms, but is probably not what you intended.
+--ignore leaves it out.
 """
 
 # Show progress from this number of robots on.
 _MANY = 4
+
+
+def _advice(code: str) -> str:
+    """A code of advice: errors, and warnings that a clause demands, are not ignored."""
+    from eurdf.diagnostics.registry import OWN_PREFIX, REGISTRY
+    from eurdf.diagnostics.wording import meant
+
+    advice = [known for known in REGISTRY if known.startswith(OWN_PREFIX)]
+    if code not in advice:
+        raise argparse.ArgumentTypeError(f"'{code}' is no code of advice{meant(code, advice)}")
+    return code
 
 
 @command(
@@ -46,6 +59,13 @@ def check(
     form: str = option("default: text", "--format", choices=("text", "json", "sarif"), default="text"),
     strict: bool = flag("treat warnings as errors"),
     allow_none: bool = flag("succeed if a folder contains no robot (for hooks)"),
+    ignore: list[str] = option(
+        "leave out this advice, a code that begins with x- (repeatable)",
+        metavar="CODE",
+        type=_advice,
+        action="append",
+        default=[],
+    ),
 ) -> int:
     """Check, and write the diagnostics."""
     import eurdf
@@ -65,6 +85,7 @@ def check(
             reports.append(eurdf.check(robot, **options))
             if progress is not None:
                 progress(len(reports), len(robots))
+    reports = [report.without(ignore) for report in reports]
     if form == "json":
         from eurdf.diagnostics.report import reports_to_json
 

@@ -1,0 +1,188 @@
+"""Advice on inertias, drives and mimic joints whose numbers are beyond what robots have: most are in another unit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import NamedTuple
+
+from eurdf.diagnostics import Diagnostics, Place
+from eurdf.linking.inertia import MOMENT_TOLERANCE
+from eurdf.linking.robot_files import ReadRobot
+from eurdf.mechanism.joint import Joint
+
+# Densities of the ball that has the mass and the moments of a link, kg/m³: no metal has the first, and what has the
+# second is lighter than air. In a hundred published robots they are 0.3 to 10,400, except for a few placeholders.
+_DENSEST, _LIGHTEST = 2.3e4, 1.2
+
+# Links with less of the mass of the robot than this often have a placeholder as their inertia: too small, too large.
+_LITTLE = (0.01, 0.001)
+
+# A link is a point if the trace of its moments is at most this part of its mass at the reach of the robot. If so many
+# links are points, they are so on purpose.
+_POINT, _POINTS = 1e-9, 2
+
+# A radius of gyration of more than this many times the reach of the robot is one of another unit.
+_BEYOND = 2.0
+
+# No robot's joint turns so fast, rad/s, or m/s.
+_FASTEST = 500.0
+
+# A reflected inertia of more than this many times the mass of the robot at the end of its reach is one of another unit.
+_REFLECTED = 10.0
+
+# The part of the range of a mimic joint, as its leader makes it, that is at least within its own limits.
+_WITHIN = 0.5
+
+# Units of moments of inertia, kg·m²; the likeliest is the one with which the density of the link is nearest to this.
+_USUAL_DENSITY = 200.0
+_UNITS = {"kg·cm²": 1e-4, "kg·mm²": 1e-6, "g·cm²": 1e-7, "g·mm²": 1e-9}
+
+
+class _Found(NamedTuple):
+    message: str
+    place: Callable[[], Place]
+    hint: str
+
+
+def advise_on_plausibility(read: ReadRobot, diagnostics: Diagnostics) -> None:
+    """Report the first of the numbers of each kind that are not plausible, and how many more there are."""
+    reach = _reach(read)
+    for code, of_a_kind in (
+        ("x-implausible-inertia", _inertias(read, reach)),
+        ("x-implausible-drive", _without_effort(read)),
+        ("x-implausible-drive", _fast(read)),
+        ("x-implausible-drive", _geared(read, reach)),
+        ("x-implausible-mimic", _mimics(read)),
+    ):
+        found = list(of_a_kind)
+        if found:
+            more = f"; {len(found) - 1} more like it" if len(found) > 1 else ""
+            diagnostics.report(code, found[0].message + more, found[0].place, found[0].hint)
+
+
+def _reach(read: ReadRobot) -> float:
+    """The longest path from the root along the joints, with every joint stretched, m."""
+    path = {read.mechanism.bodies[0].name: 0.0}
+    for joint in read.mechanism.joints:
+        path[joint.child] = path[joint.parent] + math.hypot(*joint.placement.xyz) + math.hypot(*joint.offset.xyz)
+    return max(path.values())
+
+
+def _mass(read: ReadRobot) -> float:
+    return sum(body.inertia.mass for body in read.mechanism.bodies if body.inertia is not None)
+
+
+def _inertias(read: ReadRobot, reach: float) -> Iterator[_Found]:
+    """Inertias of a body that is denser than any metal, or larger than the robot and lighter than air.
+
+    Of all bodies of a mass m and a density, a ball has the smallest trace of the moments: 6/5 m r².
+    """
+    total = _mass(read)
+    points: list[_Found] = []
+    for body in read.mechanism.bodies:
+        inertia, link = body.inertia, read.urdf.links.get(body.name)
+        if inertia is None or link is None or link.inertial is None or inertia.mass <= _LITTLE[1] * total:
+            continue
+        moments = inertia.moments[0], inertia.moments[3], inertia.moments[5]
+        trace, place = sum(moments), partial(read.urdf.document.place, link.inertial)
+        if max(moments) > 0.5 * trace * (1.0 + MOMENT_TOLERANCE):  # which is reported by itself
+            continue
+        what, large = f"link '{body.name}' has a mass of {inertia.mass:.4g} kg", inertia.mass > _LITTLE[0] * total
+        if trace <= _POINT * inertia.mass * reach * reach:
+            if large:
+                hint = "is it a point, or are its moments of inertia missing?"
+                points.append(_Found(f"{what} and no moments of inertia", place, hint))
+            continue
+        gyration = math.sqrt(0.5 * trace / inertia.mass)
+        radius = gyration * math.sqrt(5.0 / 3.0)
+        density = inertia.mass / (4.0 / 3.0 * math.pi * radius**3)
+        if density > _DENSEST and large:
+            message = f"{what}, and moments of inertia as of a ball of {radius:.2g} m: it is denser than any metal"
+            hint = f"is the mass in kg ({inertia.mass:.4g} g are {inertia.mass / 1e3:.4g} kg), the inertia in kg·m²?"
+            yield _Found(message, place, hint)
+        elif density < _LIGHTEST and gyration > _BEYOND * reach > 0.0:
+            message = f"{what} and a radius of gyration of {gyration:.3g} m; the whole robot reaches {reach:.3g} m"
+            unit = min(_UNITS, key=lambda unit: abs(math.log(density / _UNITS[unit] ** 1.5 / _USUAL_DENSITY)))
+            yield _Found(message, place, f"are its moments in {unit}? 1 {unit} is {_UNITS[unit]:g} kg·m²")
+    if len(points) < _POINTS:
+        yield from points
+
+
+def _without_effort(read: ReadRobot) -> Iterator[_Found]:
+    for joint in read.mechanism.joints:
+        if joint.name in read.mechanism.actuators and any(effort == 0.0 for effort in joint.properties.effort):
+            message = f"actuator '{joint.name}' has the effort limit 0, so its motor can do nothing"
+            hint = f"does a motor move '{joint.name}'? If so, what is its largest torque or force?"
+            yield _Found(message, partial(_place, read, joint, "effort"), hint)
+
+
+def _fast(read: ReadRobot) -> Iterator[_Found]:
+    for joint in read.mechanism.joints:
+        speed = max(filter(math.isfinite, joint.properties.velocity), default=0.0)
+        # A power of ten stands for no limit.
+        if speed > _FASTEST and not f"{speed:e}".startswith("1.000000e"):
+            unit = "m/s" if joint.type.slides else "rad/s"
+            slower, other = (speed / 1000.0, "mm/s") if joint.type.slides else (speed * math.pi / 30.0, "rpm")
+            message = f"the velocity limit of joint '{joint.name}' is {speed:g} {unit}"
+            hint = f"is it in {other}? {speed:g} {other} are {slower:.4g} {unit}"
+            yield _Found(message, partial(_place, read, joint, "velocity"), hint)
+
+
+def _geared(read: ReadRobot, reach: float) -> Iterator[_Found]:
+    """Gears that make a joint faster than its motor, and reflected inertias beyond that of the stretched robot."""
+    total = _mass(read)
+    for joint in read.mechanism.joints:
+        has = joint.properties
+        place = partial(_place, read, joint, "armature")
+        for ratio in () if joint.type.slides else has.gear_ratio:
+            if 0.0 < abs(ratio) < 1.0:
+                message = f"the gear ratio of joint '{joint.name}' is {ratio:g}: its motor turns more slowly than it"
+                hint = f"the gear ratio is motor revolutions per joint revolution: is it {1.0 / ratio:.4g}?"
+                yield _Found(message, place, hint)
+        for armature in () if joint.type.slides else has.armature:
+            if armature > _REFLECTED * total * reach * reach > 0.0:
+                message = (
+                    f"the armature of joint '{joint.name}' is {armature:.3g} kg·m²; the whole robot at its reach, "
+                    f"{total:.3g} kg at {reach:.3g} m, has {total * reach * reach:.3g} kg·m²"
+                )
+                hint = "is the rotor's inertia in kg·m²? 1 g·cm² is 1e-7 kg·m²"
+                yield _Found(message, place, hint)
+
+
+def _mimics(read: ReadRobot) -> Iterator[_Found]:
+    """Mimic joints whose own limits exclude most of the range in which they are for the limits of their leaders."""
+    joints = {joint.name: joint for joint in read.mechanism.joints}
+    for name, mimic in read.mechanism.leaders.items():
+        leader, joint = joints.get(mimic.joint), joints[name]
+        if leader is None or len(leader.ranges) != 1 or not all(map(math.isfinite, leader.ranges[0])):
+            continue
+        least, most = sorted(mimic.multiplier * end + mimic.offset for end in leader.ranges[0])
+        lower, upper = joint.ranges[0]
+        if min(most, upper) - max(least, lower) < _WITHIN * (most - least):
+            message = (
+                f"joint '{name}' mimics '{mimic.joint}' from {least:.4g} to {most:.4g}, and its own limits are "
+                f"{lower:.4g} to {upper:.4g}"
+            )
+            hint = "is the sign of the multiplier right, and the offset in rad or m?"
+            yield _Found(message, partial(_place, read, joint, "mimic"), hint)
+
+
+def _place(read: ReadRobot, joint: Joint, what: str) -> Place:
+    """Where a property of a joint is stated: in its entry or that of its actuator, or in the URDF."""
+    if read.yaml is not None:
+        document = read.yaml.document
+        for entry in read.yaml.joints:
+            stated = {keys[-1]: keys for keys in entry.properties}
+            if entry.name == joint.name and what in stated:
+                return document.place((*entry.pointer, *stated[what]))
+        for actuator in read.yaml.actuators:
+            if actuator.joint == joint.name and what == "armature":
+                return document.place(actuator.pointer)
+    urdf = read.urdf
+    if joint.name not in urdf.joints:
+        return urdf.document.place(urdf.document.root)
+    element = urdf.joints[joint.name].element
+    inner = next(element.iterchildren("mimic" if what == "mimic" else "limit"), element)
+    return urdf.document.place(inner, what)
