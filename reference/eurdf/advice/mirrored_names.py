@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 _WORD = re.compile("left|right", re.IGNORECASE)
 
@@ -15,12 +15,15 @@ _FIRST = re.compile(r"(?<![A-Za-z])[LRlr](?=[A-Za-z])")
 
 _OTHER = {"left": "right", "right": "left", "l": "r", "r": "l"}
 
+# How many sides in a name are changed alone: of a name of many sides, not each.
+_ONE_OF = 4
+
 _Span = tuple[int, int]
 
 
-def mirrored_names(names: Collection[str]) -> dict[str, str]:
+def mirrored_names(names: Iterable[str]) -> dict[str, str]:
     """For each name of a side, the one of the other side among the names; both ways."""
-    known = set(names)
+    known = dict.fromkeys(names)  # in their order
     image = {name: next((other for other in _candidates(name) if other in known), "") for name in known}
     return {name: other for name, other in image.items() if other and image[other] == name}
 
@@ -36,8 +39,8 @@ def _candidates(name: str) -> Iterator[str]:
 
 
 def _changed(name: str, spans: Sequence[_Span]) -> Iterator[str]:
-    """The name with all of the sides in it changed, then with one of them."""
-    for chosen in (spans, *([span] for span in spans)) if spans else ():
+    """The name with all of the sides in it changed, then with one of the first."""
+    for chosen in (spans, *([span] for span in spans[:_ONE_OF])) if spans else ():
         text = name
         for start, end in sorted(chosen, reverse=True):
             side = name[start:end]

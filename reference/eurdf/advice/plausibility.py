@@ -10,7 +10,7 @@ from typing import NamedTuple
 from eurdf.diagnostics import Diagnostics, Place
 from eurdf.linking.inertia import MOMENT_TOLERANCE
 from eurdf.linking.robot_files import ReadRobot
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.mechanism import Mechanism
 
 # Densities of the ball that has the mass and the moments of a link, kg/m³: no metal has the first, and what has the
 # second is lighter than air. In a hundred published robots they are 0.3 to 10,400, except for a few placeholders.
@@ -35,12 +35,10 @@ _REFLECTED = 10.0
 # The part of the range of a mimic joint, as its leader makes it, that is at least within its own limits.
 _WITHIN = 0.5
 
-# Units of moments of inertia, kg·m²; the likeliest is the one with which the density of the link is nearest to this.
-_USUAL_DENSITY = 200.0
-_UNITS = {"kg·cm²": 1e-4, "kg·mm²": 1e-6, "g·cm²": 1e-7, "g·mm²": 1e-9}
+_OF_ACTUATORS = {"x-dependent-actuators", "x-uncontrolled-motion"}
 
 
-class _Found(NamedTuple):
+class _Implausible(NamedTuple):
     message: str
     place: Callable[[], Place]
     hint: str
@@ -48,12 +46,16 @@ class _Found(NamedTuple):
 
 def advise_on_plausibility(read: ReadRobot, diagnostics: Diagnostics) -> None:
     """Report the first of the numbers of each kind that are not plausible, and how many more there are."""
-    reach = _reach(read)
+    reach = reach_of(read.mechanism)
+    total = sum(body.inertia.mass for body in read.mechanism.bodies if body.inertia is not None)
+    # An actuator that is none may be reported already.
+    efforts = () if _OF_ACTUATORS & diagnostics.counts().keys() else _without_effort(read)
     for code, of_a_kind in (
-        ("x-implausible-inertia", _inertias(read, reach)),
-        ("x-implausible-drive", _without_effort(read)),
+        ("x-implausible-inertia", _inertias(read, total, reach)),
+        ("x-implausible-drive", efforts),
         ("x-implausible-drive", _fast(read)),
-        ("x-implausible-drive", _geared(read, reach)),
+        ("x-implausible-drive", _inverse_gears(read)),
+        ("x-implausible-drive", _heavy_rotors(read, total, reach)),
         ("x-implausible-mimic", _mimics(read)),
     ):
         found = list(of_a_kind)
@@ -62,25 +64,21 @@ def advise_on_plausibility(read: ReadRobot, diagnostics: Diagnostics) -> None:
             diagnostics.report(code, found[0].message + more, found[0].place, found[0].hint)
 
 
-def _reach(read: ReadRobot) -> float:
-    """The longest path from the root along the joints, with every joint stretched, m."""
-    path = {read.mechanism.bodies[0].name: 0.0}
-    for joint in read.mechanism.joints:
+def reach_of(mechanism: Mechanism) -> float:
+    """The longest path from the root, from joint to joint and to the centre of mass of the last link, m."""
+    path = {mechanism.bodies[0].name: 0.0}
+    for joint in mechanism.joints:
         path[joint.child] = path[joint.parent] + math.hypot(*joint.placement.xyz) + math.hypot(*joint.offset.xyz)
-    return max(path.values())
+    ends = ((body.name, body.inertia.pose.xyz) for body in mechanism.bodies if body.inertia is not None)
+    return max((*path.values(), *(path[name] + math.hypot(*centre) for name, centre in ends)))
 
 
-def _mass(read: ReadRobot) -> float:
-    return sum(body.inertia.mass for body in read.mechanism.bodies if body.inertia is not None)
-
-
-def _inertias(read: ReadRobot, reach: float) -> Iterator[_Found]:
+def _inertias(read: ReadRobot, total: float, reach: float) -> Iterator[_Implausible]:
     """Inertias of a body that is denser than any metal, or larger than the robot and lighter than air.
 
     Of all bodies of a mass m and a density, a ball has the smallest trace of the moments: 6/5 m r².
     """
-    total = _mass(read)
-    points: list[_Found] = []
+    points: list[_Implausible] = []
     for body in read.mechanism.bodies:
         inertia, link = body.inertia, read.urdf.links.get(body.name)
         if inertia is None or link is None or link.inertial is None or inertia.mass <= _LITTLE[1] * total:
@@ -89,11 +87,13 @@ def _inertias(read: ReadRobot, reach: float) -> Iterator[_Found]:
         trace, place = sum(moments), partial(read.urdf.document.place, link.inertial)
         if max(moments) > 0.5 * trace * (1.0 + MOMENT_TOLERANCE):  # which is reported by itself
             continue
+        if len(set(moments)) == 1 and _is_power_of_ten(trace / 3.0):  # which stands for unknown moments
+            continue
         what, large = f"link '{body.name}' has a mass of {inertia.mass:.4g} kg", inertia.mass > _LITTLE[0] * total
         if trace <= _POINT * inertia.mass * reach * reach:
             if large:
                 hint = "is it a point, or are its moments of inertia missing?"
-                points.append(_Found(f"{what} and no moments of inertia", place, hint))
+                points.append(_Implausible(f"{what} and no moments of inertia", place, hint))
             continue
         gyration = math.sqrt(0.5 * trace / inertia.mass)
         radius = gyration * math.sqrt(5.0 / 3.0)
@@ -101,57 +101,61 @@ def _inertias(read: ReadRobot, reach: float) -> Iterator[_Found]:
         if density > _DENSEST and large:
             message = f"{what}, and moments of inertia as of a ball of {radius:.2g} m: it is denser than any metal"
             hint = f"is the mass in kg ({inertia.mass:.4g} g are {inertia.mass / 1e3:.4g} kg), the inertia in kg·m²?"
-            yield _Found(message, place, hint)
+            yield _Implausible(message, place, hint)
         elif density < _LIGHTEST and gyration > _BEYOND * reach > 0.0:
             message = f"{what} and a radius of gyration of {gyration:.3g} m; the whole robot reaches {reach:.3g} m"
-            unit = min(_UNITS, key=lambda unit: abs(math.log(density / _UNITS[unit] ** 1.5 / _USUAL_DENSITY)))
-            yield _Found(message, place, f"are its moments in {unit}? 1 {unit} is {_UNITS[unit]:g} kg·m²")
+            hint = "are its moments in kg·m²? 1 kg·mm² is 1e-6, 1 g·cm² 1e-7, 1 g·mm² 1e-9 kg·m²"
+            yield _Implausible(message, place, hint)
     if len(points) < _POINTS:
         yield from points
 
 
-def _without_effort(read: ReadRobot) -> Iterator[_Found]:
+def _is_power_of_ten(value: float) -> bool:
+    return f"{value:e}".startswith("1.000000e")
+
+
+def _without_effort(read: ReadRobot) -> Iterator[_Implausible]:
     for joint in read.mechanism.joints:
         if joint.name in read.mechanism.actuators and any(effort == 0.0 for effort in joint.properties.effort):
             message = f"actuator '{joint.name}' has the effort limit 0, so its motor can do nothing"
             hint = f"does a motor move '{joint.name}'? If so, what is its largest torque or force?"
-            yield _Found(message, partial(_place, read, joint, "effort"), hint)
+            yield _Implausible(message, partial(place_of, read, joint.name, "effort"), hint)
 
 
-def _fast(read: ReadRobot) -> Iterator[_Found]:
+def _fast(read: ReadRobot) -> Iterator[_Implausible]:
     for joint in read.mechanism.joints:
-        speed = max(filter(math.isfinite, joint.properties.velocity), default=0.0)
-        # A power of ten stands for no limit.
-        if speed > _FASTEST and not f"{speed:e}".startswith("1.000000e"):
-            unit = "m/s" if joint.type.slides else "rad/s"
-            slower, other = (speed / 1000.0, "mm/s") if joint.type.slides else (speed * math.pi / 30.0, "rpm")
-            message = f"the velocity limit of joint '{joint.name}' is {speed:g} {unit}"
-            hint = f"is it in {other}? {speed:g} {other} are {slower:.4g} {unit}"
-            yield _Found(message, partial(_place, read, joint, "velocity"), hint)
+        for speed in joint.properties.velocity if joint.type.is_axial else ():  # a helical joint turns fast
+            # A power of ten stands for no limit.
+            if _FASTEST < speed < math.inf and not _is_power_of_ten(speed):
+                unit, other, factor = ("m/s", "mm/s", 1e-3) if joint.type.slides else ("rad/s", "rpm", math.pi / 30.0)
+                message = f"the velocity limit of joint '{joint.name}' is {speed:g} {unit}"
+                hint = f"is it in {other}? {speed:g} {other} are {speed * factor:.4g} {unit}"
+                yield _Implausible(message, partial(place_of, read, joint.name, "velocity"), hint)
 
 
-def _geared(read: ReadRobot, reach: float) -> Iterator[_Found]:
-    """Gears that make a joint faster than its motor, and reflected inertias beyond that of the stretched robot."""
-    total = _mass(read)
+def _inverse_gears(read: ReadRobot) -> Iterator[_Implausible]:
     for joint in read.mechanism.joints:
-        has = joint.properties
-        place = partial(_place, read, joint, "armature")
-        for ratio in () if joint.type.slides else has.gear_ratio:
+        for ratio in () if joint.type.slides else joint.properties.gear_ratio:
             if 0.0 < abs(ratio) < 1.0:
                 message = f"the gear ratio of joint '{joint.name}' is {ratio:g}: its motor turns more slowly than it"
                 hint = f"the gear ratio is motor revolutions per joint revolution: is it {1.0 / ratio:.4g}?"
-                yield _Found(message, place, hint)
-        for armature in () if joint.type.slides else has.armature:
-            if armature > _REFLECTED * total * reach * reach > 0.0:
+                yield _Implausible(message, partial(place_of, read, joint.name, "gear_ratio"), hint)
+
+
+def _heavy_rotors(read: ReadRobot, total: float, reach: float) -> Iterator[_Implausible]:
+    whole = total * reach * reach
+    for joint in read.mechanism.joints:
+        for armature in () if joint.type.slides else joint.properties.armature:
+            if armature > _REFLECTED * whole > 0.0:
                 message = (
                     f"the armature of joint '{joint.name}' is {armature:.3g} kg·m²; the whole robot at its reach, "
-                    f"{total:.3g} kg at {reach:.3g} m, has {total * reach * reach:.3g} kg·m²"
+                    f"{total:.3g} kg at {reach:.3g} m, has {whole:.3g} kg·m²"
                 )
                 hint = "is the rotor's inertia in kg·m²? 1 g·cm² is 1e-7 kg·m²"
-                yield _Found(message, place, hint)
+                yield _Implausible(message, partial(place_of, read, joint.name, "armature"), hint)
 
 
-def _mimics(read: ReadRobot) -> Iterator[_Found]:
+def _mimics(read: ReadRobot) -> Iterator[_Implausible]:
     """Mimic joints whose own limits exclude most of the range in which they are for the limits of their leaders."""
     joints = {joint.name: joint for joint in read.mechanism.joints}
     for name, mimic in read.mechanism.leaders.items():
@@ -166,23 +170,22 @@ def _mimics(read: ReadRobot) -> Iterator[_Found]:
                 f"{lower:.4g} to {upper:.4g}"
             )
             hint = "is the sign of the multiplier right, and the offset in rad or m?"
-            yield _Found(message, partial(_place, read, joint, "mimic"), hint)
+            yield _Implausible(message, partial(place_of, read, joint.name, "mimic"), hint)
 
 
-def _place(read: ReadRobot, joint: Joint, what: str) -> Place:
-    """Where a property of a joint is stated: in its entry or that of its actuator, or in the URDF."""
-    if read.yaml is not None:
-        document = read.yaml.document
+def place_of(read: ReadRobot, joint: str, what: str = "") -> Place:
+    """Where a joint is stated in the URDF, or a property of it: there, in its entry, or in that of its actuator."""
+    if what and read.yaml is not None:
         for entry in read.yaml.joints:
-            stated = {keys[-1]: keys for keys in entry.properties}
-            if entry.name == joint.name and what in stated:
-                return document.place((*entry.pointer, *stated[what]))
+            keys = next((keys for keys in entry.properties if keys[-1] == what), None)
+            if entry.name == joint and keys is not None:
+                return read.yaml.document.place((*entry.pointer, *keys))
         for actuator in read.yaml.actuators:
-            if actuator.joint == joint.name and what == "armature":
-                return document.place(actuator.pointer)
+            if actuator.joint == joint and what in ("armature", "gear_ratio", "rotor_inertia"):
+                return read.yaml.document.place(actuator.pointer)
     urdf = read.urdf
-    if joint.name not in urdf.joints:
+    if joint not in urdf.joints:
         return urdf.document.place(urdf.document.root)
-    element = urdf.joints[joint.name].element
-    inner = next(element.iterchildren("mimic" if what == "mimic" else "limit"), element)
-    return urdf.document.place(inner, what)
+    element = urdf.joints[joint].element
+    inner = {"mimic": "mimic", "damping": "dynamics", "friction": "dynamics"}.get(what, "limit")
+    return urdf.document.place(next(element.iterchildren(inner), element) if what else element, what or None)

@@ -11,6 +11,7 @@ from itertools import starmap
 from typing import NamedTuple
 
 from eurdf.advice.mirrored_names import mirrored_names
+from eurdf.advice.plausibility import place_of, reach_of
 from eurdf.diagnostics import Diagnostics, Place
 from eurdf.linking.robot_files import ReadRobot
 from eurdf.mechanism.constraint import Closure
@@ -25,31 +26,34 @@ _CLEAR = 3.0
 # So many values of a family agree at least.
 _AGREEING = 3
 
-
-class _Rule(NamedTuple):
-    """When values of a family are reported.
-
-    Attributes:
-        for_each: If several pairs differ, so many agree at least for each of them.
-        one: The least difference, if one pair differs.
-        several: The least difference, if several do.
-    """
-
-    for_each: int = 4
-    one: float = 0.0
-    several: float = 0.0
-
-
-# A wrong name makes two pairs differ. Inertias of published robots differ by as much because the parts do.
-_USUAL, _STRICT, _OF_INERTIA = _Rule(), _Rule(1), _Rule(4, 0.1, 0.5)
-
 # Differences of lengths are relative to at least this part of how far the robot reaches from its root.
 _SHORT = 0.02
 
 # Differences that are named.
 _NAMED = 3
 
-# Properties of joints, with their units where the joint turns and where it slides.
+
+class _Family(NamedTuple):
+    """Values that are about equally symmetric, and when a difference is reported.
+
+    Attributes:
+        name: Of the family.
+        for_each: If several pairs differ, so many agree at least for each of them.
+        one: The least difference, if one pair differs.
+        several: The least difference, if several do.
+    """
+
+    name: str
+    for_each: int = 4
+    one: float = 0.0
+    several: float = 0.0
+
+
+# A wrong name makes two pairs differ. In published robots, the inertias of a few parts differ by so much.
+_STRUCTURE, _PLACES, _NUMBERS = _Family("structure", 1), _Family("places"), _Family("numbers")
+_INERTIA = _Family("inertia", 4, 0.1, 0.5)
+
+# Numbers of joints, with their units where the joint turns and where it slides.
 _PROPERTIES = {
     "velocity": ("rad/s", "m/s"),
     "effort": ("N·m", "N"),
@@ -68,6 +72,7 @@ class _Fact:
     """A quantity of two things with mirrored names.
 
     Attributes:
+        family: What it is compared with.
         what: The quantity, and the kind of the things.
         names: Of the two things.
         values: As text, with the unit.
@@ -77,6 +82,7 @@ class _Fact:
         body: The first of the bodies in whose frames a direction is stated.
     """
 
+    family: _Family
     what: str
     names: tuple[str, str]
     values: tuple[str, str]
@@ -89,18 +95,16 @@ class _Fact:
 def advise_on_symmetry(read: ReadRobot, diagnostics: Diagnostics) -> None:
     """Report once what differs between left and right, where most values of its family agree."""
     sides = _Sides(read)
-    families = (
-        (sides.of_structure(), _STRICT),
-        (sides.of_origins(), _USUAL),
-        (sides.of_joints(), _USUAL),
-        (sides.of_bodies(), _OF_INERTIA),
-    )
-    of_families = [(list(facts), rule) for facts, rule in families] if sides.joints else []
+    if not sides.pairs:
+        return
+    families: dict[_Family, list[_Fact]] = defaultdict(list)
+    for fact in (*sides.of_bodies(), *sides.of_joints(), *sides.of_closures()):
+        families[fact.family].append(fact)
     turned = sides.turned()
     found: dict[tuple[str, tuple[str, str]], tuple[float, _Fact]] = {}
-    for facts, rule in of_families:
+    for family, facts in families.items():
         directed = [(f.mirrored, f) for f in facts if f.mirrored is not None and f.body not in turned]
-        for each in (*_unlike(directed, rule), *_unlike([(f.difference, f) for f in facts], rule)):
+        for each in (*_unlike(directed, family), *_unlike([(f.difference, f) for f in facts], family)):
             found.setdefault((each[1].what, each[1].names), each)
     if found:
         clearest = [fact for _, fact in sorted(found.values(), key=lambda each: -each[0])]
@@ -115,174 +119,153 @@ def advise_on_symmetry(read: ReadRobot, diagnostics: Diagnostics) -> None:
 
 
 class _Sides:
-    """Left and right of a robot: the pairs of names, and the facts about them, by families."""
+    """Left and right of a robot: the pairs of joints, and the facts about the pairs."""
 
     def __init__(self, read: ReadRobot) -> None:
-        self._read = read
-        mechanism = self._mechanism = read.mechanism
-        self._body = {body.name: body for body in mechanism.bodies}
-        joints = {joint.name: joint for joint in mechanism.joints}
-        self._image, self.joints = mirrored_names(self._body), mirrored_names(joints)
-        root = mechanism.bodies[0].name
-        self._pose, path = {root: IDENTITY}, {root: 0.0}  # at neutral, in the root
-        for joint in mechanism.joints:
+        self._read, self._mechanism = read, read.mechanism
+        self._body = {body.name: body for body in read.mechanism.bodies}
+        joints = {joint.name: joint for joint in read.mechanism.joints}
+        self._image, self._of_joint = mirrored_names(self._body), mirrored_names(joints)
+        self.pairs = [(joints[name], joints[other]) for name, other in self._of_joint.items() if name < other]
+        self._short = _SHORT * reach_of(read.mechanism)
+        self._pose = {read.mechanism.bodies[0].name: IDENTITY}  # at neutral, in the root
+        for joint in read.mechanism.joints if self.pairs else ():
             self._pose[joint.child] = self._pose[joint.parent] * joint.placement * joint.offset
-            path[joint.child] = path[joint.parent] + math.hypot(*joint.placement.xyz)
-        self._short = _SHORT * max(path.values())
-        # A fixed joint that carries neither a joint that moves nor a closure may be a sensor of one side.
-        carrying = {anchor.body for closure in mechanism.closures for anchor in closure.anchors}
-        moving = set()
-        for joint in reversed(mechanism.joints):
-            if not joint.type.is_fixed or joint.child in carrying:
-                carrying.add(joint.parent)
-                moving.add(joint.name)
-        self._all_pairs = [
-            (joint, joints[self.joints[joint.name]])
-            for joint in mechanism.joints
-            if joint.name < self.joints.get(joint.name, "")
-        ]
-        self._pairs = [pair for pair in self._all_pairs if pair[0].name in moving]
-        self._entries = {} if read.yaml is None else {entry.name: entry for entry in read.yaml.joints}
-        self._across = 1  # the axis of the root that left and right are mirrored along
+        self._across = 1  # the axis of the root along which left and right are mirrored: that which most points suit
         self._across = max((1, 0, 2), key=self._number_mirrored)
 
     def turned(self) -> set[str]:
         """Bodies in whose frames most points are not mirrored: they are turned against their images at neutral."""
-        points = [(one.parent, one.placement.xyz, two.parent, two.placement.xyz) for one, two in self._all_pairs]
+        points = [(one.parent, one.placement.xyz, two.parent, two.placement.xyz) for one, two in self.pairs]
         for name, other in self._image.items():
             one, two = self._body[name].inertia, self._body[other].inertia
             if name < other and one is not None and two is not None:
                 points.append((name, one.pose.xyz, other, two.pose.xyz))
         count: Counter[str] = Counter()
         for body, point, image, mirrored in points:
-            a, b = self._pose[body].rotate(point), self._pose[image].rotate(mirrored)
-            if body in self._image and math.hypot(*a) > self._short:
-                count[body] += 1 if self._off(a, b, self._across) > _CLEAR * _ROUNDING[0] else -1
+            if body in self._image and math.hypot(*point) > self._short:
+                off = self._off(self._pose[body].rotate(point), self._pose[image].rotate(mirrored))
+                count[body] += 1 if off > _CLEAR * _ROUNDING[0] else -1
         return {body for body, more in count.items() if more > 0}
 
     def of_bodies(self) -> Iterator[_Fact]:
         """Masses, centres of mass and moments of inertia."""
+        links = self._read.urdf.links
         for body in self._mechanism.bodies:
-            other = self._body.get(self._image.get(body.name, ""))
-            if other is None or other.name < body.name or body.virtual or other.virtual:
+            other = self._image.get(body.name, "")
+            if not body.name < other or not {body.name, other} <= links.keys():
                 continue
-            names, place = (body.name, other.name), partial(self._place_of_link, body.name)
-            one, two = body.inertia, other.inertia
+            link, one, two = links[body.name], body.inertia, self._body[other].inertia
+            place = partial(self._read.urdf.document.place, link.element if link.inertial is None else link.inertial)
+            fact = partial(_Fact, _INERTIA, names=(body.name, other), place=place)
             masses = [0.0 if each is None else each.mass for each in (one, two)]
-            yield _Fact("mass of link", names, _texts("{:.6g} kg", *masses), _apart(*masses), place)
-            if one is None or two is None:
-                continue
-            points = one.pose.xyz, two.pose.xyz
-            yield _Fact("centre of mass of link", names, _at(*points), self._lengths(*points), place)
-            traces = [each.moments[0] + each.moments[3] + each.moments[5] for each in (one, two)]
-            values = _texts("{0[0]:.4g}, {0[3]:.4g}, {0[5]:.4g} kg·m²", one.moments, two.moments)
-            yield _Fact("moments of inertia of link", names, values, _apart(*traces), place)
-
-    def of_structure(self) -> Iterator[_Fact]:
-        """Types and parents of joints, which of them are actuated, and closures."""
-        yield from self._of_closures()
-        actuated = set(self._mechanism.actuators)
-        for one, two in self._pairs:
-            names, place = (one.name, two.name), partial(self._place_of_joint, one.name)
-            yield _Fact("type of joint", names, (one.type, two.type), float(one.type != two.type), place)
-            parents = f"'{one.parent}'", f"'{two.parent}'"
-            same = self._image.get(one.parent, one.parent) == two.parent
-            yield _Fact("parent of joint", names, parents, float(not same), partial(self._place_in_urdf, one.name))
-            if actuated and not one.type.is_fixed:
-                a, b = ("an actuator" if name in actuated else "no actuator" for name in names)
-                yield _Fact("role of joint", names, (a, b), float(a != b), self._place_of_actuators)
-
-    def of_origins(self) -> Iterator[_Fact]:
-        """Origins and axes of joints, and frames of closures."""
-        yield from self._in_closures()
-        for one, two in self._pairs:
-            names, place = (one.name, two.name), partial(self._place_in_urdf, one.name)
-            bodies, points = (one.parent, two.parent), (one.placement.xyz, two.placement.xyz)
-            yield self._point("origin of joint", names, bodies, points, place)
-            for axes in zip(one.axes, two.axes, strict=False) if one.type == two.type else ():
-                a, b = (self._axis(joint, axis) for joint, axis in zip((one, two), axes, strict=True))
-                image = self._mirrored(a, self._across)
-                off = min(math.dist(image, b), math.dist(image, [-value for value in b]))
-                yield _Fact("axis of joint", names, _texts("{}", *map(_vector, axes)), 0.0, place, off, one.parent)
+            yield fact("mass of link", values=_texts("{:.6g} kg", *masses), difference=_apart(*masses))
+            if one is not None and two is not None:
+                points, (a, b) = (one.pose.xyz, two.pose.xyz), (one.moments, two.moments)
+                yield fact("centre of mass of link", values=_at(*points), difference=self._lengths(*points))
+                values = _texts("{0[0]:.4g}, {0[3]:.4g}, {0[5]:.4g} kg·m²", a, b)
+                traces = [each[0] + each[3] + each[5] for each in (a, b)]
+                yield fact("moments of inertia of link", values=values, difference=_apart(*traces))
 
     def of_joints(self) -> Iterator[_Fact]:
-        """Ranges, mimic joints, and what else is stated of joints."""
-        for one, two in self._pairs:
-            names, place = (one.name, two.name), partial(self._place_of_joint, one.name)
+        """Facts about joints, except the fixed ones that carry neither a joint that moves nor a closure.
+
+        Those may be sensors of one side.
+        """
+        carrying = {anchor.body for closure in self._mechanism.closures for anchor in closure.anchors}
+        for joint in reversed(self._mechanism.joints):
+            if not joint.type.is_fixed or joint.child in carrying:
+                carrying.update((joint.parent, joint.child))
+        actuated = set(self._mechanism.actuators)
+        for one, two in self.pairs:
+            if one.child not in carrying:
+                continue
+            names, place = (one.name, two.name), partial(place_of, self._read, one.name)
+            fact = partial(_Fact, _STRUCTURE, names=names, place=place)
+            yield fact("type of joint", values=(one.type, two.type), difference=float(one.type != two.type))
+            parents = f"'{one.parent}'", f"'{two.parent}'"
+            same = self._image.get(one.parent, one.parent) == two.parent
+            yield fact("parent of joint", values=parents, difference=float(not same))
+            points = one.placement.xyz, two.placement.xyz
+            yield self._point("origin of joint", names, (one.parent, two.parent), points, place)
             if one.type != two.type or one.type.is_fixed:
                 continue
-            unit = "m" if one.type.slides else "rad"
-            for c, d in zip(one.ranges, two.ranges, strict=True):
-                widths = c[1] - c[0], d[1] - d[0]  # the zero of a side may be elsewhere
-                values = _texts("{0[0]:.4g} to {0[1]:.4g} " + unit, c, d)
-                yield _Fact("range of joint", names, values, _apart(*widths), place)
-            if one.mimic is not None or two.mimic is not None:
-                a, b = (each.mimic or Mimic("", 0.0) for each in (one, two))
-                factors = _apart(abs(a.multiplier), abs(b.multiplier)), _apart(abs(a.offset), abs(b.offset))
-                difference = max(factors) if self.joints.get(a.joint, a.joint) == b.joint else 1.0
-                values = _texts("{0.multiplier:g} · '{0.joint}' + {0.offset:g}", a, b)
-                yield _Fact("<mimic> of joint", names, values, difference, place)
-            for name, units in _PROPERTIES.items():
-                of_one, of_two = getattr(one.properties, name), getattr(two.properties, name)
-                if any(of_one) or any(of_two):
-                    size = max(len(of_one), len(of_two))
-                    pairs = zip(map(abs, of_one or (0.0,) * size), map(abs, of_two or (0.0,) * size), strict=True)
-                    form = f"{{}} {units[one.type.slides]}".rstrip()
-                    values = _texts(form, *(" ".join(f"{v:g}" for v in each) or "0" for each in (of_one, of_two)))
-                    yield _Fact(f"{name.replace('_', ' ')} of joint", names, values, max(starmap(_apart, pairs)), place)
+            if actuated:
+                a, b = ("an actuator" if name in actuated else "no actuator" for name in names)
+                key = "name_mot" if self._mechanism.version == "1" else "actuators"
+                place = partial(self._read.description.document.place, (key,), True)
+                yield _Fact(_STRUCTURE, "role of joint", names, (a, b), float(a != b), place)
+            yield from self._of_pair(one, two)
 
-    def _of_closures(self) -> Iterator[_Fact]:
-        """Which closures there are, their types, and the links that they join."""
-        for one, two in self._closures():
+    def _of_pair(self, one: Joint, two: Joint) -> Iterator[_Fact]:
+        """The axes and numbers of two joints of one type, and which joints they mimic."""
+        names, slides = (one.name, two.name), one.type.slides
+        for axes in zip(one.axes, two.axes, strict=True):
+            a, b = (
+                (self._pose[joint.parent] * joint.placement).rotate(direction(axis))
+                for joint, axis in zip((one, two), axes, strict=True)
+            )
+            image = self._mirrored(a)
+            off = min(math.dist(image, b), math.dist(image, [-value for value in b]))
+            place = partial(place_of, self._read, one.name)
+            yield _Fact(_PLACES, "axis of joint", names, _texts("{}", *map(_list, axes)), 0.0, place, off, one.parent)
+        for c, d in zip(one.ranges, two.ranges, strict=True):
+            widths = c[1] - c[0], d[1] - d[0]  # the zero of a side may be elsewhere
+            values = _texts("{0[0]:.4g} to {0[1]:.4g} " + ("m" if slides else "rad"), c, d)
+            place = partial(place_of, self._read, one.name, "upper")
+            yield _Fact(_NUMBERS, "range of joint", names, values, _apart(*widths), place)
+        if one.mimic is not None or two.mimic is not None:
+            e, f = (each.mimic or Mimic("", 0.0) for each in (one, two))
+            factors = _apart(abs(e.multiplier), abs(f.multiplier)), _apart(abs(e.offset), abs(f.offset))
+            difference = max(factors) if self._of_joint.get(e.joint, e.joint) == f.joint else 1.0
+            values = _texts("{0.multiplier:g} · '{0.joint}' + {0.offset:g}", e, f)
+            place = partial(place_of, self._read, one.name, "mimic")
+            yield _Fact(_NUMBERS, "<mimic> of joint", names, values, difference, place)
+        for name, units in _PROPERTIES.items():
+            g, h = getattr(one.properties, name), getattr(two.properties, name)
+            if any(g) or any(h):
+                size = max(len(g), len(h))
+                pairs = zip(map(abs, g or (0.0,) * size), map(abs, h or (0.0,) * size), strict=True)
+                values = _texts(f"{{}} {units[slides]}", *(" ".join(f"{v:g}" for v in each) or "0" for each in (g, h)))
+                what, place = f"{name.replace('_', ' ')} of joint", partial(place_of, self._read, one.name, name)
+                yield _Fact(_NUMBERS, what, names, values, max(starmap(_apart, pairs)), place)
+
+    def of_closures(self) -> Iterator[_Fact]:
+        """Which closures there are, by name or by the links that they join, and their types, frames and lengths."""
+        closures = self._mechanism.closures
+        alike: dict[frozenset[str], list[Closure]] = defaultdict(list)
+        for closure in closures:
+            alike[frozenset(anchor.body for anchor in closure.anchors)].append(closure)
+        named = {each.name: each for each in closures}
+        image = mirrored_names(named)
+        done: set[str] = set()
+        for one in closures:
+            links = frozenset(anchor.body for anchor in one.anchors)
+            mirrored = frozenset(self._image.get(link, link) for link in links)
+            if mirrored == links or one.name in done:
+                continue
             place = partial(self._read.place_of_constraint, one.name)
-            links = _links(one)
+            same = alike.get(mirrored, [])
+            two = named.get(image.get(one.name, "")) or (same[0] if len(same) == len(alike[links]) == 1 else None)
             if two is None:
-                names = _texts("{}", *(" and ".join(sorted(each)) for each in (links, self._mirrored_links(links))))
-                yield _Fact("closure of links", names, (f"'{one.name}'", "missing"), 1.0, place)
+                if not same:
+                    names = " and ".join(sorted(links)), " and ".join(sorted(mirrored))
+                    yield _Fact(_STRUCTURE, "closure of links", names, (f"'{one.name}'", "missing"), 1.0, place)
                 continue
+            done.add(two.name)
             names = one.name, two.name
-            yield _Fact("type of closure", names, (one.type, two.type), float(one.type != two.type), place)
-            values = _texts("{}", *(" and ".join(f"'{a.body}'" for a in each.anchors) for each in (one, two)))
-            difference = float(self._mirrored_links(links) != _links(two))
-            yield _Fact("pair of links of closure", names, values, difference, place)
-
-    def _in_closures(self) -> Iterator[_Fact]:
-        """Frames and numbers of closures that join mirrored links."""
-        for one, two in self._closures():
-            if two is None or one.type != two.type or self._mirrored_links(_links(one)) != _links(two):
+            kinds = _texts("{0.type} of '{0.a.body}' and '{0.b.body}'", one, two)
+            is_same = one.type == two.type and two in same
+            yield _Fact(_STRUCTURE, "closure", names, kinds, float(not is_same), place)
+            if not is_same:
                 continue
-            names, place = (one.name, two.name), partial(self._read.place_of_constraint, one.name)
             others = two.anchors if self._image.get(one.a.body, one.a.body) == two.a.body else two.anchors[::-1]
             for a, b in zip(one.anchors, others, strict=True):
                 yield self._point("frame of closure", names, (a.body, b.body), (a.pose.xyz, b.pose.xyz), place)
             for key, value in one.own.items():
                 if isinstance(value, float):
                     values, difference = _texts("{:.6g} m", value, two.own[key]), _apart(value, two.own[key])
-                    yield _Fact(f"{key} of closure", names, values, difference, place)
-
-    def _closures(self) -> Iterator[tuple[Closure, Closure | None]]:
-        """The closures of one side with those of the other, by name or by the links that they join."""
-        closures = self._mechanism.closures
-        by_links: dict[frozenset[str], list[Closure]] = defaultdict(list)
-        for closure in closures:
-            by_links[_links(closure)].append(closure)
-        named = {each.name: each for each in closures}
-        image = mirrored_names(named)
-        done: set[str] = set()
-        for one in closures:
-            links = _links(one)
-            mirrored = self._mirrored_links(links)
-            if mirrored == links or one.name in done:
-                continue
-            alike = by_links.get(mirrored, [])
-            two = named.get(image.get(one.name, "")) or (alike[0] if len(alike) == len(by_links[links]) == 1 else None)
-            if two is not None:
-                done.add(two.name)
-            if two is not None or not alike:
-                yield one, two
-
-    def _mirrored_links(self, links: frozenset[str]) -> frozenset[str]:
-        return frozenset(self._image.get(link, link) for link in links)
+                    yield _Fact(_PLACES, f"{key} of closure", names, values, difference, place)
 
     def _point(
         self,
@@ -294,71 +277,44 @@ class _Sides:
     ) -> _Fact:
         """A fact about two points, each in the frame of its body."""
         a, b = (self._pose[body].rotate(point) for body, point in zip(bodies, points, strict=True))
-        return _Fact(what, names, _at(*points), self._lengths(a, b), place, self._off(a, b, self._across), bodies[0])
-
-    def _axis(self, joint: Joint, axis: Vector3) -> Vector3:
-        return (self._pose[joint.parent] * joint.placement).rotate(direction(axis))
-
-    def _scale(self, a: Vector3, b: Vector3) -> float:
-        return max(math.hypot(*a), math.hypot(*b), self._short) or 1.0
+        return _Fact(_PLACES, what, names, _at(*points), self._lengths(a, b), place, self._off(a, b), bodies[0])
 
     def _lengths(self, a: Vector3, b: Vector3) -> float:
         """Relative difference of the lengths of two vectors."""
         return abs(math.hypot(*a) - math.hypot(*b)) / self._scale(a, b)
 
-    def _off(self, a: Vector3, b: Vector3, across: int) -> float:
+    def _off(self, a: Vector3, b: Vector3) -> float:
         """Relative difference of a vector from the mirror image of another one."""
-        return math.dist(self._mirrored(a, across), b) / self._scale(a, b)
+        return math.dist(self._mirrored(a), b) / self._scale(a, b)
 
-    @staticmethod
-    def _mirrored(vector: Vector3, across: int) -> list[float]:
-        return [-value if index == across else value for index, value in enumerate(vector)]
+    def _scale(self, a: Vector3, b: Vector3) -> float:
+        return max(math.hypot(*a), math.hypot(*b), self._short) or 1.0
+
+    def _mirrored(self, vector: Vector3) -> list[float]:
+        return [-value if index == self._across else value for index, value in enumerate(vector)]
 
     def _number_mirrored(self, across: int) -> int:
         """How many joints are mirrored along an axis of the root."""
-        count = 0
-        for one, two in self._pairs:
+        self._across, count = across, 0
+        for one, two in self.pairs:
             a, b = (self._pose[joint.parent].rotate(joint.placement.xyz) for joint in (one, two))
-            count += abs(a[across]) > self._short and self._off(a, b, across) <= _ROUNDING[0]
+            count += abs(a[across]) > self._short and self._off(a, b) <= _ROUNDING[0]
         return count
 
-    def _place_of_link(self, name: str) -> Place:
-        link = self._read.urdf.links[name]
-        return self._read.urdf.document.place(link.element if link.inertial is None else link.inertial)
 
-    def _place_in_urdf(self, name: str) -> Place:
-        urdf = self._read.urdf
-        return urdf.document.place(urdf.joints[name].element if name in urdf.joints else urdf.document.root)
-
-    def _place_of_joint(self, name: str) -> Place:
-        if name in self._entries:
-            return self._read.description.document.place(self._entries[name].pointer, True)
-        return self._place_in_urdf(name)
-
-    def _place_of_actuators(self) -> Place:
-        key = "name_mot" if self._mechanism.version == "1" else "actuators"
-        return self._read.description.document.place((key,), True)
-
-
-def _unlike(facts: Sequence[tuple[float, _Fact]], rule: _Rule) -> list[tuple[float, _Fact]]:
+def _unlike(facts: Sequence[tuple[float, _Fact]], family: _Family) -> list[tuple[float, _Fact]]:
     """The facts whose difference, given with each, is large, where most agree."""
-    pairs = {fact.names for _, fact in facts}
+    count = len({fact.names for _, fact in facts})
     for rounding in _ROUNDING:
         different = [each for each in facts if each[0] > rounding]
-        unlike = {fact.names for _, fact in different}
-        several = len(unlike) > 1
-        if len(facts) - len(different) < _AGREEING or (
-            several and len(pairs) - len(unlike) < rule.for_each * len(unlike)
-        ):
-            continue
-        bound = max(_CLEAR * rounding, rule.several if several else rule.one)
-        # Several that are stated the same are a copy, as of a gripper, rather than a mirror image.
-        return [each for each in different if each[0] > bound and not (several and len(set(each[1].values)) == 1)]
+        unlike = len({fact.names for _, fact in different})
+        several = unlike > 1
+        enough = len(facts) - len(different) >= _AGREEING
+        if enough and (not several or count - unlike >= family.for_each * unlike):
+            bound = max(_CLEAR * rounding, family.several if several else family.one)
+            # Several that are stated the same are a copy, as of a gripper, rather than a mirror image.
+            return [each for each in different if each[0] > bound and not (several and len(set(each[1].values)) == 1)]
     return []
-
-
-def _links(closure: Closure) -> frozenset[str]:
-    return frozenset(anchor.body for anchor in closure.anchors)
 
 
 def _apart(a: float, b: float) -> float:
@@ -368,12 +324,12 @@ def _apart(a: float, b: float) -> float:
 
 
 def _texts(form: str, a: object, b: object) -> tuple[str, str]:
-    return form.format(a), form.format(b)
+    return form.format(a).rstrip(), form.format(b).rstrip()
 
 
 def _at(a: Vector3, b: Vector3) -> tuple[str, str]:
-    return _texts("at {} m", _vector(a), _vector(b))
+    return _texts("at {} m", _list(a), _list(b))
 
 
-def _vector(values: Iterable[float]) -> str:
+def _list(values: Iterable[float]) -> str:
     return "[" + ", ".join(f"{value:.6g}" for value in values) + "]"
