@@ -31,6 +31,7 @@ def mirrored_names(names: Iterable[str]) -> dict[str, str]:
 def _candidates(name: str) -> Iterator[str]:
     """The names that a name may have on the other side, the likeliest first."""
     words = [found.span() for found in _WORD.finditer(name)]
+    yield from _changed(name, words)
     letters = [found.span() for found in _LETTERS.finditer(name)]
     for last in (True, False):  # 'rl' is rear left rather than the right leg
         sides = [[at for at in range(*span) if name[at] in "lLrR"] for span in letters]

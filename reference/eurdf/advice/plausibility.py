@@ -19,9 +19,9 @@ _DENSEST, _LIGHTEST = 2.3e4, 1.2
 # Links with less of the mass of the robot than this often have a placeholder as their inertia: too small, too large.
 _LITTLE = (0.01, 0.001)
 
-# A link is a point if the trace of its moments is at most this part of its mass at the reach of the robot. If so many
-# links are points, they are so on purpose.
-_POINT, _POINTS = 1e-9, 2
+# A link is a point if the trace of its moments is at most this part of its mass at the reach of the robot. It is one on
+# purpose unless it is the only one, and so many links are none.
+_POINT, _OTHERS = 1e-9, 3
 
 # A radius of gyration of more than this many times the reach of the robot is one of another unit.
 _BEYOND = 2.0
@@ -79,6 +79,7 @@ def _inertias(read: ReadRobot, total: float, reach: float) -> Iterator[_Implausi
     Of all bodies of a mass m and a density, a ball has the smallest trace of the moments: 6/5 m r².
     """
     points: list[_Implausible] = []
+    others = 0
     for body in read.mechanism.bodies:
         inertia, link = body.inertia, read.urdf.links.get(body.name)
         if inertia is None or link is None or link.inertial is None or inertia.mass <= _LITTLE[1] * total:
@@ -95,6 +96,7 @@ def _inertias(read: ReadRobot, total: float, reach: float) -> Iterator[_Implausi
                 hint = "is it a point, or are its moments of inertia missing?"
                 points.append(_Implausible(f"{what} and no moments of inertia", place, hint))
             continue
+        others += 1
         gyration = math.sqrt(0.5 * trace / inertia.mass)
         radius = gyration * math.sqrt(5.0 / 3.0)
         density = inertia.mass / (4.0 / 3.0 * math.pi * radius**3)
@@ -106,7 +108,7 @@ def _inertias(read: ReadRobot, total: float, reach: float) -> Iterator[_Implausi
             message = f"{what} and a radius of gyration of {gyration:.3g} m; the whole robot reaches {reach:.3g} m"
             hint = "are its moments in kg·m²? 1 kg·mm² is 1e-6, 1 g·cm² 1e-7, 1 g·mm² 1e-9 kg·m²"
             yield _Implausible(message, place, hint)
-    if len(points) < _POINTS:
+    if len(points) == 1 and others >= _OTHERS:
         yield from points
 
 

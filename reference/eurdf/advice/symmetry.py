@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import starmap
@@ -28,6 +28,9 @@ _AGREEING = 3
 
 # Differences of lengths are relative to at least this part of how far the robot reaches from its root.
 _SHORT = 0.02
+
+# How a point is told.
+_POINT = "[{}] m"
 
 # Differences that are named.
 _NAMED = 3
@@ -75,7 +78,7 @@ class _Fact:
         family: What it is compared with.
         what: The quantity, and the kind of the things.
         names: Of the two things.
-        values: As text, with the unit.
+        values: Of each, with the form that makes a text of it, with the unit.
         difference: Relative difference, of what does not depend on how the frames of a side are chosen.
         place: Where the value of the first is stated.
         mirrored: Relative difference from the mirror image at neutral; None if the quantity has no direction.
@@ -85,11 +88,24 @@ class _Fact:
     family: _Family
     what: str
     names: tuple[str, str]
-    values: tuple[str, str]
+    values: tuple[str, object, object]
     difference: float
     place: Callable[[], Place]
     mirrored: float | None = None
     body: str = ""
+
+    @property
+    def is_copy(self) -> bool:
+        """Whether the values are stated the same."""
+        return self.values[1] == self.values[2]
+
+    def text(self, side: int) -> str:
+        """The value of a side."""
+        form, *values = self.values
+        value = values[side]
+        if isinstance(value, tuple) and form.startswith("["):
+            value = ", ".join(f"{each:.6g}" for each in value)
+        return form.format(value).rstrip()
 
 
 def advise_on_symmetry(read: ReadRobot, diagnostics: Diagnostics) -> None:
@@ -108,7 +124,7 @@ def advise_on_symmetry(read: ReadRobot, diagnostics: Diagnostics) -> None:
             found.setdefault((each[1].what, each[1].names), each)
     if found:
         clearest = [fact for _, fact in sorted(found.values(), key=lambda each: -each[0])]
-        told = [f"{f.what} '{f.names[0]}': {f.values[0]}, '{f.names[1]}': {f.values[1]}" for f in clearest[:_NAMED]]
+        told = [f"{f.what} '{f.names[0]}': {f.text(0)}, '{f.names[1]}': {f.text(1)}" for f in clearest[:_NAMED]]
         more = [f"{len(found) - _NAMED} more"] if len(found) > _NAMED else []
         diagnostics.report(
             "x-asymmetric",
@@ -131,8 +147,17 @@ class _Sides:
         self._pose = {read.mechanism.bodies[0].name: IDENTITY}  # at neutral, in the root
         for joint in read.mechanism.joints if self.pairs else ():
             self._pose[joint.child] = self._pose[joint.parent] * joint.placement * joint.offset
-        self._across = 1  # the axis of the root along which left and right are mirrored: that which most points suit
-        self._across = max((1, 0, 2), key=self._number_mirrored)
+        # The axis of the root along which left and right are mirrored is that which suits most origins of joints.
+        origins = [
+            (self._pose[one.parent].rotate(one.placement.xyz), self._pose[two.parent].rotate(two.placement.xyz))
+            for one, two in self.pairs
+        ]
+        number = Counter({1: 0, 0: 0, 2: 0})
+        for self._across in number:
+            number[self._across] = sum(
+                abs(a[self._across]) > self._short and self._off(a, b) <= _ROUNDING[0] for a, b in origins
+            )
+        self._across = number.most_common(1)[0][0]
 
     def turned(self) -> set[str]:
         """Bodies in whose frames most points are not mirrored: they are turned against their images at neutral."""
@@ -159,11 +184,11 @@ class _Sides:
             place = partial(self._read.urdf.document.place, link.element if link.inertial is None else link.inertial)
             fact = partial(_Fact, _INERTIA, names=(body.name, other), place=place)
             masses = [0.0 if each is None else each.mass for each in (one, two)]
-            yield fact("mass of link", values=_texts("{:.6g} kg", *masses), difference=_apart(*masses))
+            yield fact("mass of link", values=("{:.6g} kg", masses[0], masses[1]), difference=_apart(*masses))
             if one is not None and two is not None:
                 points, (a, b) = (one.pose.xyz, two.pose.xyz), (one.moments, two.moments)
-                yield fact("centre of mass of link", values=_at(*points), difference=self._lengths(*points))
-                values = _texts("{0[0]:.4g}, {0[3]:.4g}, {0[5]:.4g} kg·m²", a, b)
+                yield fact("centre of mass of link", values=(_POINT, *points), difference=self._lengths(*points))
+                values = "{0[0]:.4g}, {0[3]:.4g}, {0[5]:.4g} kg·m²", a, b
                 traces = [each[0] + each[3] + each[5] for each in (a, b)]
                 yield fact("moments of inertia of link", values=values, difference=_apart(*traces))
 
@@ -182,8 +207,8 @@ class _Sides:
                 continue
             names, place = (one.name, two.name), partial(place_of, self._read, one.name)
             fact = partial(_Fact, _STRUCTURE, names=names, place=place)
-            yield fact("type of joint", values=(one.type, two.type), difference=float(one.type != two.type))
-            parents = f"'{one.parent}'", f"'{two.parent}'"
+            yield fact("type of joint", values=("{}", one.type, two.type), difference=float(one.type != two.type))
+            parents = "'{}'", one.parent, two.parent
             same = self._image.get(one.parent, one.parent) == two.parent
             yield fact("parent of joint", values=parents, difference=float(not same))
             points = one.placement.xyz, two.placement.xyz
@@ -194,7 +219,7 @@ class _Sides:
                 a, b = ("an actuator" if name in actuated else "no actuator" for name in names)
                 key = "name_mot" if self._mechanism.version == "1" else "actuators"
                 place = partial(self._read.description.document.place, (key,), True)
-                yield _Fact(_STRUCTURE, "role of joint", names, (a, b), float(a != b), place)
+                yield _Fact(_STRUCTURE, "role of joint", names, ("{}", a, b), float(a != b), place)
             yield from self._of_pair(one, two)
 
     def _of_pair(self, one: Joint, two: Joint) -> Iterator[_Fact]:
@@ -208,17 +233,22 @@ class _Sides:
             image = self._mirrored(a)
             off = min(math.dist(image, b), math.dist(image, [-value for value in b]))
             place = partial(place_of, self._read, one.name)
-            yield _Fact(_PLACES, "axis of joint", names, _texts("{}", *map(_list, axes)), 0.0, place, off, one.parent)
+            yield _Fact(_PLACES, "axis of joint", names, ("[{}]", *axes), 0.0, place, off, one.parent)
+        if one.properties == two.properties and one.mimic is None and two.mimic is None:
+            place = partial(place_of, self._read, one.name)
+            yield _Fact(_NUMBERS, "numbers of joint", names, ("", 0, 0), 0.0, place)
+            return
+        values: tuple[str, object, object]
         for c, d in zip(one.ranges, two.ranges, strict=True):
             widths = c[1] - c[0], d[1] - d[0]  # the zero of a side may be elsewhere
-            values = _texts("{0[0]:.4g} to {0[1]:.4g} " + ("m" if slides else "rad"), c, d)
+            values = "{0[0]:.4g} to {0[1]:.4g} " + ("m" if slides else "rad"), c, d
             place = partial(place_of, self._read, one.name, "upper")
             yield _Fact(_NUMBERS, "range of joint", names, values, _apart(*widths), place)
         if one.mimic is not None or two.mimic is not None:
             e, f = (each.mimic or Mimic("", 0.0) for each in (one, two))
             factors = _apart(abs(e.multiplier), abs(f.multiplier)), _apart(abs(e.offset), abs(f.offset))
             difference = max(factors) if self._of_joint.get(e.joint, e.joint) == f.joint else 1.0
-            values = _texts("{0.multiplier:g} · '{0.joint}' + {0.offset:g}", e, f)
+            values = "{0.multiplier:g} · '{0.joint}' + {0.offset:g}", e, f
             place = partial(place_of, self._read, one.name, "mimic")
             yield _Fact(_NUMBERS, "<mimic> of joint", names, values, difference, place)
         for name, units in _PROPERTIES.items():
@@ -226,7 +256,11 @@ class _Sides:
             if any(g) or any(h):
                 size = max(len(g), len(h))
                 pairs = zip(map(abs, g or (0.0,) * size), map(abs, h or (0.0,) * size), strict=True)
-                values = _texts(f"{{}} {units[slides]}", *(" ".join(f"{v:g}" for v in each) or "0" for each in (g, h)))
+                values = (
+                    f"[{{}}] {units[slides]}" if size > 1 else f"{{0[0]:g}} {units[slides]}",
+                    g or (0.0,),
+                    h or (0.0,),
+                )
                 what, place = f"{name.replace('_', ' ')} of joint", partial(place_of, self._read, one.name, name)
                 yield _Fact(_NUMBERS, what, names, values, max(starmap(_apart, pairs)), place)
 
@@ -250,11 +284,11 @@ class _Sides:
             if two is None:
                 if not same:
                     names = " and ".join(sorted(links)), " and ".join(sorted(mirrored))
-                    yield _Fact(_STRUCTURE, "closure of links", names, (f"'{one.name}'", "missing"), 1.0, place)
+                    yield _Fact(_STRUCTURE, "closure of links", names, ("{}", f"'{one.name}'", "missing"), 1.0, place)
                 continue
             done.add(two.name)
             names = one.name, two.name
-            kinds = _texts("{0.type} of '{0.a.body}' and '{0.b.body}'", one, two)
+            kinds = "{0.type} of '{0.a.body}' and '{0.b.body}'", one, two
             is_same = one.type == two.type and two in same
             yield _Fact(_STRUCTURE, "closure", names, kinds, float(not is_same), place)
             if not is_same:
@@ -264,7 +298,7 @@ class _Sides:
                 yield self._point("frame of closure", names, (a.body, b.body), (a.pose.xyz, b.pose.xyz), place)
             for key, value in one.own.items():
                 if isinstance(value, float):
-                    values, difference = _texts("{:.6g} m", value, two.own[key]), _apart(value, two.own[key])
+                    values, difference = ("{:.6g} m", value, two.own[key]), _apart(value, two.own[key])
                     yield _Fact(_PLACES, f"{key} of closure", names, values, difference, place)
 
     def _point(
@@ -277,7 +311,7 @@ class _Sides:
     ) -> _Fact:
         """A fact about two points, each in the frame of its body."""
         a, b = (self._pose[body].rotate(point) for body, point in zip(bodies, points, strict=True))
-        return _Fact(_PLACES, what, names, _at(*points), self._lengths(a, b), place, self._off(a, b), bodies[0])
+        return _Fact(_PLACES, what, names, (_POINT, *points), self._lengths(a, b), place, self._off(a, b), bodies[0])
 
     def _lengths(self, a: Vector3, b: Vector3) -> float:
         """Relative difference of the lengths of two vectors."""
@@ -293,14 +327,6 @@ class _Sides:
     def _mirrored(self, vector: Vector3) -> list[float]:
         return [-value if index == self._across else value for index, value in enumerate(vector)]
 
-    def _number_mirrored(self, across: int) -> int:
-        """How many joints are mirrored along an axis of the root."""
-        self._across, count = across, 0
-        for one, two in self.pairs:
-            a, b = (self._pose[joint.parent].rotate(joint.placement.xyz) for joint in (one, two))
-            count += abs(a[across]) > self._short and self._off(a, b) <= _ROUNDING[0]
-        return count
-
 
 def _unlike(facts: Sequence[tuple[float, _Fact]], family: _Family) -> list[tuple[float, _Fact]]:
     """The facts whose difference, given with each, is large, where most agree."""
@@ -313,7 +339,7 @@ def _unlike(facts: Sequence[tuple[float, _Fact]], family: _Family) -> list[tuple
         if enough and (not several or count - unlike >= family.for_each * unlike):
             bound = max(_CLEAR * rounding, family.several if several else family.one)
             # Several that are stated the same are a copy, as of a gripper, rather than a mirror image.
-            return [each for each in different if each[0] > bound and not (several and len(set(each[1].values)) == 1)]
+            return [each for each in different if each[0] > bound and not (several and each[1].is_copy)]
     return []
 
 
@@ -321,15 +347,3 @@ def _apart(a: float, b: float) -> float:
     """The relative difference of two numbers."""
     largest = max(abs(a), abs(b))
     return 0.0 if a == b else abs(a - b) / largest if math.isfinite(largest) else 1.0
-
-
-def _texts(form: str, a: object, b: object) -> tuple[str, str]:
-    return form.format(a).rstrip(), form.format(b).rstrip()
-
-
-def _at(a: Vector3, b: Vector3) -> tuple[str, str]:
-    return _texts("at {} m", _list(a), _list(b))
-
-
-def _list(values: Iterable[float]) -> str:
-    return "[" + ", ".join(f"{value:.6g}" for value in values) + "]"
