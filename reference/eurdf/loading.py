@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Concatenate, ParamSpec, TypeVar
 from eurdf.advice.angles import advise_on_angles
 from eurdf.advice.lengths import advise_on_lengths
 from eurdf.advice.loops import closure_diagnostics
-from eurdf.advice.plausibility import advise_on_plausibility
+from eurdf.advice.plausibility import advise_on_plausibility, spring_notes
 from eurdf.advice.quaternions import advise_on_quaternions
 from eurdf.advice.symmetry import advise_on_symmetry
 from eurdf.advice.trial import Evidence
@@ -193,8 +193,8 @@ def check(
 ) -> Report:
     """Check a robot: EU-DIA-001, EU-DIA-003: every error that no other error hides is reported.
 
-    It also gives advice (EU-DIA-006): warnings without a clause, whose codes begin with ``x-``. Notes say what
-    `eurdf.simplify` saves.
+    It also gives advice (EU-DIA-006): warnings without a clause, whose codes begin with ``x-``. Notes name springs that
+    are never at rest, and say what `eurdf.simplify` saves.
 
     The arguments are those of `load`.
 
@@ -224,7 +224,8 @@ def check(
 
     read.diagnostics.tried(is_right)
     is_sound = read.linked is not None and read.yaml is not None and not read.diagnostics.error_count
-    return Report(read.path, tuple(read.diagnostics), saving(read.mechanism) if is_sound else ())
+    notes = (*spring_notes(read.mechanism), *saving(read.mechanism)) if is_sound else ()
+    return Report(read.path, tuple(read.diagnostics), notes)
 
 
 def _findings(

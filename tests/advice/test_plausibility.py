@@ -56,7 +56,15 @@ ANKLE, LEG, EXAMPLE = "robots/unitree_g1_ankle", "robots/cassie_leg", "spec/exam
         ("drive", ANKLE, "urdf", 'velocity="37"', 'velocity="2000"', "2000 rad/s", "2000 rpm are 209.4 rad/s"),
         ("drive", LEG, "yaml", "gear_ratio: 25", "gear_ratio: 0.04", "turns more slowly", "is it 25?"),
         ("drive", LEG, "yaml", "rotor_inertia: 6.1e-05", "rotor_inertia: 610", "3.81e+05 kg·m²", "1 g·cm²"),
-        ("mimic", EXAMPLE, "urdf", '<mimic joint="grip"', '<mimic joint="grip" multiplier="-1"', "-0.05 to 0,", "sign"),
+        (
+            "mimic",
+            EXAMPLE,
+            "urdf",
+            '<mimic joint="grip"',
+            '<mimic joint="grip" multiplier="-1"',
+            "-0.05 to 0 m,",
+            "sign",
+        ),
         ("mimic", EXAMPLE, "urdf", '<mimic joint="grip"', '<mimic joint="grip" offset="5"', "5 to 5.05", "offset"),
     ],
 )
@@ -78,3 +86,10 @@ def test_velocity_limit_that_is_a_power_of_ten_is_none(tmp_path: Path) -> None:
         text = (ROOT / ANKLE / name).read_text(encoding="utf-8")
         (tmp_path / name).write_text(text.replace('velocity="37"', 'velocity="1000"'), encoding="utf-8")
     assert eurdf.check(tmp_path).diagnostics == ()
+
+
+def test_spring_beyond_the_limits_is_noted() -> None:
+    """A preloaded spring is one on purpose: it is no warning."""
+    report = eurdf.check("robotiq_2f85")
+    assert report.diagnostics == ()
+    assert "the spring of joint 'left_spring_link_joint' never relaxes: its rest, 2.62 rad," in report.notes[0]

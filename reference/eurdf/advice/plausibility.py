@@ -8,8 +8,10 @@ from functools import partial
 from typing import NamedTuple
 
 from eurdf.diagnostics import Diagnostics, Place
-from eurdf.linking.inertia import MOMENT_TOLERANCE
+from eurdf.diagnostics.registry import REGISTRY, Phase
+from eurdf.linking.configurations import within_limits
 from eurdf.linking.robot_files import ReadRobot
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.mechanism import Mechanism
 
 # Densities of the ball that has the mass and the moments of a link, kg/m³: no metal has the first, and what has the
@@ -22,6 +24,9 @@ _LITTLE = (0.01, 0.001)
 # A link is a point if the trace of its moments is at most this part of its mass at the reach of the robot. It is one on
 # purpose unless it is the only one, and so many links are none.
 _POINT, _OTHERS = 1e-9, 3
+
+# Nothing is known of a robot that reaches less than this, m, as one of a single link.
+_SMALLEST = 1e-6
 
 # A radius of gyration of more than this many times the reach of the robot is one of another unit.
 _BEYOND = 2.0
@@ -48,10 +53,12 @@ def advise_on_plausibility(read: ReadRobot, diagnostics: Diagnostics) -> None:
     """Report the first of the numbers of each kind that are not plausible, and how many more there are."""
     reach = reach_of(read.mechanism)
     total = sum(body.inertia.mass for body in read.mechanism.bodies if body.inertia is not None)
-    # An actuator that is none may be reported already.
-    efforts = () if _OF_ACTUATORS & diagnostics.counts().keys() else _without_effort(read)
+    # What is reported already may have the same cause.
+    known = diagnostics.counts().keys()
+    efforts = () if _OF_ACTUATORS & known else _without_effort(read)
+    is_known = any(REGISTRY[code].phase is Phase.INERTIA for code in known)
     for code, of_a_kind in (
-        ("x-implausible-inertia", _inertias(read, total, reach)),
+        ("x-implausible-inertia", () if is_known else _inertias(read, total, reach)),
         ("x-implausible-drive", efforts),
         ("x-implausible-drive", _fast(read)),
         ("x-implausible-drive", _inverse_gears(read)),
@@ -62,6 +69,23 @@ def advise_on_plausibility(read: ReadRobot, diagnostics: Diagnostics) -> None:
         if found:
             more = f"; {len(found) - 1} more like it" if len(found) > 1 else ""
             diagnostics.report(code, found[0].message + more, found[0].place, found[0].hint)
+
+
+def spring_notes(mechanism: Mechanism) -> tuple[str, ...]:
+    """A sentence about each spring that is never at rest within the limits of its joint: it may be preloaded."""
+    return tuple(
+        f"the spring of joint '{joint.name}' never relaxes: its rest, {rest:g} {_unit(joint)}, is beyond the limits "
+        f"{lower:g} to {upper:g} {_unit(joint)}"
+        for joint in mechanism.joints
+        if any(joint.properties.stiffness)
+        for rest, (lower, upper) in zip(joint.properties.rest, joint.ranges, strict=False)
+        if not within_limits(rest, lower, upper)
+    )
+
+
+def _unit(joint: Joint) -> str:
+    """Of a coordinate."""
+    return "m" if joint.type.slides else "rad"
 
 
 def reach_of(mechanism: Mechanism) -> float:
@@ -80,14 +104,14 @@ def _inertias(read: ReadRobot, total: float, reach: float) -> Iterator[_Implausi
     """
     points: list[_Implausible] = []
     others = 0
+    if reach < _SMALLEST:
+        return
     for body in read.mechanism.bodies:
         inertia, link = body.inertia, read.urdf.links.get(body.name)
         if inertia is None or link is None or link.inertial is None or inertia.mass <= _LITTLE[1] * total:
             continue
         moments = inertia.moments[0], inertia.moments[3], inertia.moments[5]
         trace, place = sum(moments), partial(read.urdf.document.place, link.inertial)
-        if max(moments) > 0.5 * trace * (1.0 + MOMENT_TOLERANCE):  # which is reported by itself
-            continue
         if len(set(moments)) == 1 and _is_power_of_ten(trace / 3.0):  # which stands for unknown moments
             continue
         what, large = f"link '{body.name}' has a mass of {inertia.mass:.4g} kg", inertia.mass > _LITTLE[0] * total
@@ -104,7 +128,7 @@ def _inertias(read: ReadRobot, total: float, reach: float) -> Iterator[_Implausi
             message = f"{what}, and moments of inertia as of a ball of {radius:.2g} m: it is denser than any metal"
             hint = f"is the mass in kg ({inertia.mass:.4g} g are {inertia.mass / 1e3:.4g} kg), the inertia in kg·m²?"
             yield _Implausible(message, place, hint)
-        elif density < _LIGHTEST and gyration > _BEYOND * reach > 0.0:
+        elif density < _LIGHTEST and gyration > _BEYOND * reach:
             message = f"{what} and a radius of gyration of {gyration:.3g} m; the whole robot reaches {reach:.3g} m"
             hint = "are its moments in kg·m²? 1 kg·mm² is 1e-6, 1 g·cm² 1e-7, 1 g·mm² 1e-9 kg·m²"
             yield _Implausible(message, place, hint)
@@ -117,8 +141,9 @@ def _is_power_of_ten(value: float) -> bool:
 
 
 def _without_effort(read: ReadRobot) -> Iterator[_Implausible]:
+    actuators = set(read.mechanism.actuators)
     for joint in read.mechanism.joints:
-        if joint.name in read.mechanism.actuators and any(effort == 0.0 for effort in joint.properties.effort):
+        if joint.name in actuators and any(effort == 0.0 for effort in joint.properties.effort):
             message = f"actuator '{joint.name}' has the effort limit 0, so its motor can do nothing"
             hint = f"does a motor move '{joint.name}'? If so, what is its largest torque or force?"
             yield _Implausible(message, partial(place_of, read, joint.name, "effort"), hint)
@@ -129,7 +154,8 @@ def _fast(read: ReadRobot) -> Iterator[_Implausible]:
         for speed in joint.properties.velocity if joint.type.is_axial else ():  # a helical joint turns fast
             # A power of ten stands for no limit.
             if _FASTEST < speed < math.inf and not _is_power_of_ten(speed):
-                unit, other, factor = ("m/s", "mm/s", 1e-3) if joint.type.slides else ("rad/s", "rpm", math.pi / 30.0)
+                unit = _unit(joint) + "/s"
+                other, factor = ("mm/s", 1e-3) if joint.type.slides else ("rpm", math.pi / 30.0)
                 message = f"the velocity limit of joint '{joint.name}' is {speed:g} {unit}"
                 hint = f"is it in {other}? {speed:g} {other} are {speed * factor:.4g} {unit}"
                 yield _Implausible(message, partial(place_of, read, joint.name, "velocity"), hint)
@@ -168,8 +194,8 @@ def _mimics(read: ReadRobot) -> Iterator[_Implausible]:
         lower, upper = joint.ranges[0]
         if min(most, upper) - max(least, lower) < _WITHIN * (most - least):
             message = (
-                f"joint '{name}' mimics '{mimic.joint}' from {least:.4g} to {most:.4g}, and its own limits are "
-                f"{lower:.4g} to {upper:.4g}"
+                f"joint '{name}' mimics '{mimic.joint}' from {least:.4g} to {most:.4g} {_unit(joint)}, and its own limits "
+                f"are {lower:.4g} to {upper:.4g} {_unit(joint)}"
             )
             hint = "is the sign of the multiplier right, and the offset in rad or m?"
             yield _Implausible(message, partial(place_of, read, joint.name, "mimic"), hint)
