@@ -16,7 +16,6 @@ from eurdf.advice.mirrored_names import mirrored_names
 from eurdf.advice.symmetry import advise_on_symmetry
 from eurdf.diagnostics import Diagnostics
 from eurdf.linking.robot_files import ReadRobot, read_robot
-from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 from support.places import ROBOTS
@@ -44,43 +43,34 @@ def chosen(data: st.DataObject, items: Any, sided: Callable[[Any], bool]) -> Any
     return data.draw(st.sampled_from([item for item in items if item.name in image and sided(item)]))
 
 
-def with_joint(mechanism: Mechanism, joint: Joint) -> Mechanism:
-    return replace(mechanism, joints=tuple(joint if each.name == joint.name else each for each in mechanism.joints))
+def scaled(value: Any, factor: float) -> Any:
+    if isinstance(value, Pose):
+        return Pose(scaled(value.xyz, factor), value.quaternion)
+    return tuple(factor * each for each in value) if isinstance(value, tuple) else factor * value
 
 
 @given(st.data(), ROBOT, FACTORS, st.sampled_from(["mass", "moments", "pose"]))
 def test_inertia_of_one_side_is_reported(data: st.DataObject, name: str, factor: float, what: str) -> None:
     mechanism = read(name).mechanism
     body = chosen(data, mechanism.bodies, lambda each: each.inertia and math.hypot(*each.inertia.pose.xyz) > 0.03)
-    value = getattr(body.inertia, what)
-    if what == "pose":
-        value = Pose(tuple(factor * x for x in value.xyz), value.quaternion)
-    else:
-        value = factor * value if what == "mass" else tuple(factor * x for x in value)
-    changed = replace(body, inertia=replace(body.inertia, **{what: value}))
+    changed = replace(body, inertia=replace(body.inertia, **{what: scaled(getattr(body.inertia, what), factor)}))
     bodies = tuple(changed if each is body else each for each in mechanism.bodies)
     (message,) = advice(name, replace(mechanism, bodies=bodies))
     assert f"'{body.name}'" in message
 
 
-@given(st.data(), ROBOT, FACTORS, st.sampled_from(["upper", "velocity", "effort", "damping", "armature"]))
-def test_number_of_one_joint_is_reported(data: st.DataObject, name: str, factor: float, what: str) -> None:
+@given(st.data(), ROBOT, FACTORS, st.sampled_from(["placement", "upper", "velocity", "effort", "damping", "armature"]))
+def test_value_of_one_joint_is_reported(data: st.DataObject, name: str, factor: float, what: str) -> None:
     mechanism = read(name).mechanism
-    joint = chosen(data, mechanism.joints, lambda each: each.type.is_ranged)
-    values = getattr(joint.properties, what)
-    assume(values and values[0] and math.isfinite(values[0]))
-    (message,) = advice(
-        name, with_joint(mechanism, joint.with_properties(replace(joint.properties, **{what: (factor * values[0],)})))
-    )
-    assert f"'{joint.name}'" in message
-
-
-@given(st.data(), ROBOT, FACTORS)
-def test_origin_of_one_joint_is_reported(data: st.DataObject, name: str, factor: float) -> None:
-    mechanism = read(name).mechanism
-    joint = chosen(data, mechanism.joints, lambda j: not j.type.is_fixed and math.hypot(*j.placement.xyz) > 0.03)
-    placement = Pose(tuple(factor * x for x in joint.placement.xyz), joint.placement.quaternion)
-    (message,) = advice(name, with_joint(mechanism, replace(joint, placement=placement)))
+    joint = chosen(data, mechanism.joints, lambda j: j.type.is_ranged and math.hypot(*j.placement.xyz) > 0.03)
+    if what == "placement":
+        changed = replace(joint, placement=scaled(joint.placement, factor))
+    else:
+        values = getattr(joint.properties, what)
+        assume(values and values[0] and math.isfinite(values[0]))
+        changed = joint.with_properties(replace(joint.properties, **{what: scaled(values, factor)}))
+    joints = tuple(changed if each is joint else each for each in mechanism.joints)
+    (message,) = advice(name, replace(mechanism, joints=joints))
     assert f"'{joint.name}'" in message
 
 

@@ -193,10 +193,8 @@ def _mimics(read: ReadRobot) -> Iterator[_Implausible]:
         least, most = sorted(mimic.multiplier * end + mimic.offset for end in leader.ranges[0])
         lower, upper = joint.ranges[0]
         if min(most, upper) - max(least, lower) < _WITHIN * (most - least):
-            message = (
-                f"joint '{name}' mimics '{mimic.joint}' from {least:.4g} to {most:.4g} {_unit(joint)}, and its own limits "
-                f"are {lower:.4g} to {upper:.4g} {_unit(joint)}"
-            )
+            ranges = f"from {least:.4g} to {most:.4g} {_unit(joint)}, and its own limits are {lower:.4g} to {upper:.4g}"
+            message = f"joint '{name}' mimics '{mimic.joint}' {ranges} {_unit(joint)}"
             hint = "is the sign of the multiplier right, and the offset in rad or m?"
             yield _Implausible(message, partial(place_of, read, joint.name, "mimic"), hint)
 

@@ -94,11 +94,6 @@ class _Fact:
     mirrored: float | None = None
     body: str = ""
 
-    @property
-    def is_copy(self) -> bool:
-        """Whether the values are stated the same."""
-        return self.values[1] == self.values[2]
-
     def text(self, side: int) -> str:
         """The value of a side."""
         form, *values = self.values
@@ -147,30 +142,24 @@ class _Sides:
         self._pose = {read.mechanism.bodies[0].name: IDENTITY}  # at neutral, in the root
         for joint in read.mechanism.joints if self.pairs else ():
             self._pose[joint.child] = self._pose[joint.parent] * joint.placement * joint.offset
-        # The axis of the root along which left and right are mirrored is that which suits most origins of joints.
-        origins = [
-            (self._pose[one.parent].rotate(one.placement.xyz), self._pose[two.parent].rotate(two.placement.xyz))
+        # Points of both sides, seen in the root: the origins of joints, later also the centres of mass.
+        self._points = [
+            (one.parent, *self._rotated(one.parent, one.placement.xyz, two.parent, two.placement.xyz))
             for one, two in self.pairs
         ]
+        # The axis of the root along which left and right are mirrored is that which suits most of them.
         number = Counter({1: 0, 0: 0, 2: 0})
         for self._across in number:
-            number[self._across] = sum(
-                abs(a[self._across]) > self._short and self._off(a, b) <= _ROUNDING[0] for a, b in origins
-            )
+            near = (abs(a[self._across]) > self._short and self._off(a, b) <= _ROUNDING[0] for _, a, b in self._points)
+            number[self._across] = sum(near)
         self._across = number.most_common(1)[0][0]
 
     def turned(self) -> set[str]:
         """Bodies in whose frames most points are not mirrored: they are turned against their images at neutral."""
-        points = [(one.parent, one.placement.xyz, two.parent, two.placement.xyz) for one, two in self.pairs]
-        for name, other in self._image.items():
-            one, two = self._body[name].inertia, self._body[other].inertia
-            if name < other and one is not None and two is not None:
-                points.append((name, one.pose.xyz, other, two.pose.xyz))
         count: Counter[str] = Counter()
-        for body, point, image, mirrored in points:
-            if body in self._image and math.hypot(*point) > self._short:
-                off = self._off(self._pose[body].rotate(point), self._pose[image].rotate(mirrored))
-                count[body] += 1 if off > _CLEAR * _ROUNDING[0] else -1
+        for body, a, b in self._points:
+            if body in self._image and math.hypot(*a) > self._short:
+                count[body] += 1 if self._off(a, b) > _CLEAR * _ROUNDING[0] else -1
         return {body for body, more in count.items() if more > 0}
 
     def of_bodies(self) -> Iterator[_Fact]:
@@ -187,6 +176,7 @@ class _Sides:
             yield fact("mass of link", values=("{:.6g} kg", masses[0], masses[1]), difference=_apart(*masses))
             if one is not None and two is not None:
                 points, (a, b) = (one.pose.xyz, two.pose.xyz), (one.moments, two.moments)
+                self._points.append((body.name, *self._rotated(body.name, points[0], other, points[1])))
                 yield fact("centre of mass of link", values=(_POINT, *points), difference=self._lengths(*points))
                 values = "{0[0]:.4g}, {0[3]:.4g}, {0[5]:.4g} kg·m²", a, b
                 traces = [each[0] + each[3] + each[5] for each in (a, b)]
@@ -310,8 +300,11 @@ class _Sides:
         place: Callable[[], Place],
     ) -> _Fact:
         """A fact about two points, each in the frame of its body."""
-        a, b = (self._pose[body].rotate(point) for body, point in zip(bodies, points, strict=True))
+        a, b = self._rotated(bodies[0], points[0], bodies[1], points[1])
         return _Fact(_PLACES, what, names, (_POINT, *points), self._lengths(a, b), place, self._off(a, b), bodies[0])
+
+    def _rotated(self, body: str, point: Vector3, other: str, image: Vector3) -> tuple[Vector3, Vector3]:
+        return self._pose[body].rotate(point), self._pose[other].rotate(image)
 
     def _lengths(self, a: Vector3, b: Vector3) -> float:
         """Relative difference of the lengths of two vectors."""
@@ -339,7 +332,11 @@ def _unlike(facts: Sequence[tuple[float, _Fact]], family: _Family) -> list[tuple
         if enough and (not several or count - unlike >= family.for_each * unlike):
             bound = max(_CLEAR * rounding, family.several if several else family.one)
             # Several that are stated the same are a copy, as of a gripper, rather than a mirror image.
-            return [each for each in different if each[0] > bound and not (several and each[1].is_copy)]
+            return [
+                (difference, fact)
+                for difference, fact in different
+                if difference > bound and not (several and fact.values[1] == fact.values[2])
+            ]
     return []
 
 

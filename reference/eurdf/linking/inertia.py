@@ -41,7 +41,7 @@ def check_inertias(urdf: Urdf, diagnostics: Diagnostics) -> set[str]:
             faulty.add(link.name)
         else:
             valid.append((link, link.inertia))
-    principal = np.linalg.eigvalsh(moments_of([inertia for _, inertia in valid]))  # which overflow in silence
+    principal = np.linalg.eigvalsh(_matrices([inertia for _, inertia in valid]))  # which overflow in silence
     for (link, _), (least, middle, most) in zip(valid, principal.tolist(), strict=True):
         tolerance = MOMENT_TOLERANCE * max(abs(least), abs(most))
         if least < -tolerance:
@@ -157,7 +157,7 @@ def _trace_about_origin(pose: Pose, inertia: Inertia) -> float:
 def _positive(members: Sequence[Member], bound: float) -> bool:
     """Whether the inertia about all axes through the origin, Σ R I Rᵀ + m (cᵀc 1 - c cᵀ), exceeds the bound."""
     total = np.zeros((3, 3))
-    for (pose, inertia), moments in zip(members, moments_of([inertia for _, inertia in members]), strict=True):
+    for (pose, inertia), moments in zip(members, _matrices([inertia for _, inertia in members]), strict=True):
         at = pose * inertia.pose
         R = np.array([at.rotate(axis) for axis in AXES]).T
         c = np.array(at.xyz)
@@ -165,7 +165,7 @@ def _positive(members: Sequence[Member], bound: float) -> bool:
     return bool(np.linalg.eigvalsh(total)[0] > bound)
 
 
-def moments_of(inertias: Sequence[Inertia]) -> np.ndarray:
+def _matrices(inertias: Sequence[Inertia]) -> np.ndarray:
     """The moments as (k, 3, 3)."""
     moments = np.array([inertia.moments for inertia in inertias]).reshape(-1, 6)
     return moments[:, [0, 1, 2, 1, 3, 4, 2, 4, 5]].reshape(-1, 3, 3)
