@@ -15,15 +15,15 @@ _FIRST = re.compile(r"(?<![A-Za-z])[LRlr](?=[A-Za-z])")
 
 _OTHER = {"left": "right", "right": "left", "l": "r", "r": "l"}
 
-# How many sides in a name are changed alone: of a name of many sides, not each.
-_ONE_OF = 4
+# Longer names have no side: the time grows with the square of the length.
+_LONGEST = 200
 
 _Span = tuple[int, int]
 
 
 def mirrored_names(names: Iterable[str]) -> dict[str, str]:
     """For each name of a side, the one of the other side among the names; both ways."""
-    known = dict.fromkeys(names)  # in their order
+    known = dict.fromkeys(name for name in names if len(name) <= _LONGEST)  # in their order
     image = {name: next((other for other in _candidates(name) if other in known), "") for name in known}
     return {name: other for name, other in image.items() if other and image[other] == name}
 
@@ -40,8 +40,8 @@ def _candidates(name: str) -> Iterator[str]:
 
 
 def _changed(name: str, spans: Sequence[_Span]) -> Iterator[str]:
-    """The name with all of the sides in it changed, then with one of the first."""
-    for chosen in (spans, *([span] for span in spans[:_ONE_OF])) if spans else ():
+    """The name with all of the sides in it changed, then with one of them."""
+    for chosen in (spans, *([span] for span in spans)) if spans else ():
         text = name
         for start, end in sorted(chosen, reverse=True):
             side = name[start:end]
