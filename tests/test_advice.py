@@ -449,7 +449,7 @@ def test_robot_in_millimetres_is_reported_once(advice) -> None:
 )
 def test_heavy_crane_can_be_long(tmp_path: Path, xyz: str, mass: float, expected: int) -> None:
     urdf = chain(joint("boom", "a", "b", xyz=xyz)).replace('<mass value="1.0"/>', f'<mass value="{mass}"/>')
-    assert codes(checked(tmp_path, urdf)) == ["x-length-in-millimetres"] * expected
+    assert codes(checked(tmp_path, urdf)).count("x-length-in-millimetres") == expected
 
 
 def test_single_outlier_length_is_reported_at_its_place(tmp_path: Path) -> None:

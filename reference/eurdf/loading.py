@@ -16,7 +16,9 @@ from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
 from eurdf.advice.angles import advise_on_angles
 from eurdf.advice.lengths import advise_on_lengths
 from eurdf.advice.loops import closure_diagnostics
+from eurdf.advice.plausibility import advise_on_plausibility, spring_notes
 from eurdf.advice.quaternions import advise_on_quaternions
+from eurdf.advice.symmetry import advise_on_symmetry
 from eurdf.advice.trial import Evidence, is_of_the_text
 from eurdf.diagnostics import Diagnostic, Diagnostics, Fix, Severity, quoted
 from eurdf.diagnostics.report import Report
@@ -203,8 +205,8 @@ def check(
 ) -> Report:
     """Check a robot: EU-DIA-001, EU-DIA-003: every error that no other error hides is reported.
 
-    It also gives advice (EU-DIA-006): warnings without a clause, whose codes begin with ``x-``. Notes say what
-    `eurdf.simplify` saves.
+    It also gives advice (EU-DIA-006): warnings without a clause, whose codes begin with ``x-``. Notes name springs that
+    are never at rest, and say what `eurdf.simplify` saves.
 
     The arguments are those of `load`.
 
@@ -257,7 +259,8 @@ def check_texts(texts: Mapping[str, str], path: RobotSource, urdf: RobotSource |
         with suppress(_TooMuch):  # what has not been tried stays a question
             read.diagnostics.tried(is_right)
     is_sound = read.linked is not None and read.yaml is not None and not read.diagnostics.error_count
-    return Report(read.path, tuple(read.diagnostics), saving(read.mechanism) if is_sound else ())
+    notes = (*spring_notes(read.mechanism), *saving(read.mechanism)) if is_sound else ()
+    return Report(read.path, tuple(read.diagnostics), notes)
 
 
 def _findings(read: ReadRobot, mesh_files: _MeshFiles, find: Mapping[str, Any]) -> Evidence:
@@ -278,6 +281,7 @@ def _findings(read: ReadRobot, mesh_files: _MeshFiles, find: Mapping[str, Any]) 
         meshes = {uri: by_path[path] for uri, path in files.paths.items() if path in by_path}
         for found in (*files.diagnostics, *unreadable):
             diagnostics.add(found)
+    before = len(diagnostics)
     if read.linked is not None and not refused:
         if read.yaml is not None:
             if read.mechanism.constraints:
@@ -287,6 +291,9 @@ def _findings(read: ReadRobot, mesh_files: _MeshFiles, find: Mapping[str, Any]) 
         warn_of_ignored_mimics(read.mechanism, read.urdf, diagnostics)
         advise_on_angles(read, diagnostics)
         advise_on_lengths(read, meshes, diagnostics)
+        advise_on_plausibility(read, diagnostics)
+        if len(diagnostics) == before and not diagnostics.error_count:  # else the cause may be reported already
+            advise_on_symmetry(read, diagnostics)
     return Evidence(diagnostics.counts(), not diagnostics.error_count, analysis)
 
 

@@ -43,8 +43,8 @@ _PNG = b"\x89PNG\r\n\x1a\n"
 
 
 def is_sound(candidate: Candidate) -> list[str]:
-    """`eurdf.check` reports no error and no warning."""
-    return [str(found) for found in eurdf.check(candidate.path).diagnostics]
+    """`eurdf.check` reports no error and no warning, except what the rule on mirrored legs reports exactly."""
+    return [str(found) for found in eurdf.check(candidate.path).without({"x-asymmetric"}).diagnostics]
 
 
 def is_built(candidate: Candidate) -> list[str] | None:

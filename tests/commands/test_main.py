@@ -107,6 +107,16 @@ def test_warning_fails_only_strict_check(folder: Path, run: Run, monkeypatch: py
     assert not json.loads(run("check", ".", "--json", "--strict")[1])["ok"]
 
 
+def test_ignored_advice_is_left_out(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    robot(folder)
+    finds(monkeypatch, "x-asymmetric", "x-no-actuator")
+    code, out, _ = run("check", ".", "--strict", "--ignore", "x-asymmetric")
+    assert (code, "x-asymmetric" in out, "x-no-actuator" in out) == (1, False, True)
+    assert run("check", ".", "--strict", "--ignore", "x-asymmetric", "--ignore", "x-no-actuator")[0] == 0
+    with pytest.raises(SystemExit):
+        run("check", ".", "--ignore", "unknown-frame")
+
+
 def test_check_json_matches_published_schema(folder: Path, run: Run) -> None:
     robot(folder / "a")
     robot(folder / "b", ACTUATES_NOTHING)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import sys
 from typing import TYPE_CHECKING, Any
 
@@ -26,6 +27,7 @@ Of several paths, a folder without a robot is skipped, and named on the standard
 error if no other path is left, and if a folder has several URDFs and no description.
 
 A warning whose code begins with x- is advice: the file conforms, but is probably not what you intended.
+--ignore leaves it out.
 
 A hint is a question, or a fix, which was tried: with it the diagnostic is gone, there is no new one, and the actuators
 still move independently. --fix applies these, to files in the folder of the robot only, all or none; --diff shows them.
@@ -33,6 +35,17 @@ still move independently. --fix applies these, to files in the folder of the rob
 
 # Show progress at once from this number of robots on.
 _MANY = 4
+
+
+def _advice(code: str) -> str:
+    """A code of advice: errors, and warnings that a clause demands, are not ignored."""
+    from eurdf.diagnostics.registry import OWN_PREFIX, REGISTRY
+    from eurdf.diagnostics.wording import meant
+
+    advice = [known for known in REGISTRY if known.startswith(OWN_PREFIX)]
+    if code not in advice:
+        raise argparse.ArgumentTypeError(f"'{code}' is no code of advice{meant(code, advice)}")
+    return code
 
 
 @command(
@@ -59,6 +72,13 @@ def check(
     fix: bool = flag("apply the fixes that are certain to the files, and check them again", group="fixes"),
     diff: bool = flag("show what --fix changes, and change nothing", group="fixes"),
     allow_none: bool = flag("succeed if a folder contains no robot (for hooks)"),
+    ignore: list[str] = option(
+        "leave out this advice, a code that begins with x- (repeatable)",
+        metavar="CODE",
+        type=_advice,
+        action="append",
+        default=[],
+    ),
 ) -> int:
     """Check, and write the diagnostics."""
     import eurdf
@@ -82,6 +102,7 @@ def check(
                 progress(len(reports), len(robots))
     if diff:
         return 0 if all(report.passes(strict) for report in reports) else 1
+    reports = [report.without(ignore) for report in reports]
     if form == "json":
         from eurdf.diagnostics.report import reports_to_json
 

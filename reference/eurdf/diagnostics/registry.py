@@ -191,6 +191,10 @@ x-uncontrolled-motion      A motion other than the spin of a rod remains when ev
 x-closes-beyond-limits     The loops close only with joints beyond their limits.
 x-mimic-ignored            A joint with a <mimic> moves freely: it has no actuator, and version 1 ignores <mimic>.
 x-massless-link            A link of a loop has no mass.
+x-implausible-inertia      A mass or moments of inertia are probably in another unit, or missing.
+x-implausible-drive        A limit, a gear ratio or a rotor inertia of a joint is probably in another unit, or missing.
+x-implausible-mimic        A mimic joint moves beyond its own limits for most of the range of its leader.
+x-asymmetric               Left and right differ in a value, although most of their values agree.
 x-other-format             A YAML file states closures for another program.
 x-xacro-warning            A xacro file was expanded with warnings.
 x-urdf-outside-folder      The URDF that a description names is outside the folder of the description.

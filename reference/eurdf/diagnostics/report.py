@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass, replace
 from typing import Any
 
 from eurdf.diagnostics.diagnostic import Diagnostic
@@ -30,6 +30,10 @@ class Report:
     path: str
     diagnostics: tuple[Diagnostic, ...] = ()
     notes: tuple[str, ...] = ()
+
+    def without(self, codes: Collection[str]) -> Report:
+        """The same report without the diagnostics of some codes."""
+        return replace(self, diagnostics=tuple(found for found in self.diagnostics if found.code not in codes))
 
     @property
     def errors(self) -> tuple[Diagnostic, ...]:
