@@ -564,7 +564,7 @@ def test_assembled_closing_only_w_first_has_hint(advice) -> None:
 
     (found,) = advice("digit_leg", edit)
     assert found.code == "assembled-open"
-    assert "read as w, x, y, z" in (found.hint or "")
+    assert "write x, y, z, w in place of w, x, y, z" in (found.hint or "")
 
 
 def test_coordinates_with_too_few_digits_are_named(advice) -> None:
@@ -577,17 +577,20 @@ def test_coordinates_with_too_few_digits_are_named(advice) -> None:
     assert "write more digits" in (found.hint or "")
 
 
-def test_wrong_coordinates_are_not_called_rounded(advice) -> None:
+def test_joint_left_out_of_assembled_is_named(advice) -> None:
     def edit(description: dict) -> None:
         description["configurations"]["assembled"] = {"motor_crank": 0.02}
 
     def too_far(urdf: str) -> str:
         return urdf.replace('<origin xyz="0.43 0 0"/>', '<origin xyz="5 0 0"/>')
 
-    for urdf in (str, too_far):
-        (found,) = advice("four_bar", edit, urdf)
-        assert found.code == "assembled-open"
-        assert found.hint == "`eurdf assemble --write --force` writes a configuration that closes them, if it finds one"
+    (found,) = advice("four_bar", edit)
+    assert found.code == "assembled-open"
+    assert found.fix is not None
+    assert (found.hint or "").startswith("state 'free_coupler', 'free_rocker' too, as `eurdf assemble --write --force`")
+    (found,) = advice("four_bar", edit, too_far)
+    assert found.code == "assembled-open"
+    assert "`eurdf assemble" not in (found.hint or "")
 
 
 def massless(*names: str) -> Callable[[str], str]:

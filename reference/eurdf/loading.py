@@ -165,7 +165,8 @@ def load(
 
 def _diagnostics(read: ReadRobot, of_meshes: Sequence[Diagnostic], loops: bool, robot: Robot) -> tuple[Diagnostic, ...]:
     """All diagnostics of a robot that was loaded, in the order of `eurdf.check`."""
-    of_loops = closure_diagnostics(read, robot) if loops else ()
+    of_loops = closure_diagnostics(read, robot) if loops else Diagnostics()
+    of_loops.tried(lambda *_: False)
     return (*read.diagnostics, *inertia_diagnostics(read), *of_meshes, *of_loops)
 
 
@@ -298,6 +299,7 @@ def _check_loops(read: ReadRobot) -> Analysis | None:
     # Only now: a description without closures is checked without a simulator.
     from eurdf.advice.actuation import advise_on_actuation
     from eurdf.advice.limits import advise_on_limits
+    from eurdf.advice.loops import advise_on_neutral
     from eurdf.advice.massless import advise_on_massless_links
     from eurdf.kinematics.analysis import analyze
     from eurdf.kinematics.assembly import assemble
@@ -312,6 +314,8 @@ def _check_loops(read: ReadRobot) -> Analysis | None:
     if not given_up and not diagnostics.error_count:
         q = robot.configurations["assembled"] if assembly is None else assembly.q
         advise_on_quaternions(read, robot, diagnostics)
+        if assembly is not None and advise_on_neutral(read, robot, diagnostics):
+            return None  # the rest would be consequences
         advise_on_massless_links(read, robot, q, diagnostics)
         analysis = analyze(robot, q) if robot.mechanism.actuators else None
         advise_on_actuation(read, robot, analysis, diagnostics)

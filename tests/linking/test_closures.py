@@ -83,8 +83,7 @@ def test_check_reports_contradicting_couplings(tmp_path: Path) -> None:
     items = "".join(f"  - {{name: c{index}, joints: {each}}}\n" for index, each in enumerate(joints))
     (found,) = eurdf.check(coupled_robot(tmp_path, f"{LATER}couplings:\n{items}actuators: [j0]\n")).diagnostics
     assert found.code == "closure-cannot-close"
-    assert found.hint is not None
-    assert "check the coefficients and offsets of the couplings" in found.hint
+    assert "the offset of 'c2' is 0, not 0.5" in (found.hint or "")
 
 
 def test_check_reports_a_coupling_that_is_open_when_assembled(tmp_path: Path) -> None:
@@ -92,6 +91,18 @@ def test_check_reports_a_coupling_that_is_open_when_assembled(tmp_path: Path) ->
     (found,) = eurdf.check(coupled_robot(tmp_path, yaml)).diagnostics
     assert (found.code, found.line) == ("assembled-open", 4)
     assert "'belt' by 0.573 degrees" in found.message
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"), [("offset: 0.4", "offset: -0.4"), ("j1: 2", "j1: -2"), ("j1: 2", "j1: 21")]
+)
+def test_wrong_number_of_a_coupling_is_named(tmp_path: Path, right: str, wrong: str) -> None:
+    yaml = BELT + "configurations: {assembled: {j0: 0.4, j1: 0.4}}\n"
+    assert eurdf.check(coupled_robot(tmp_path / "right", yaml)).diagnostics == ()
+    (found,) = eurdf.check(coupled_robot(tmp_path / "wrong", yaml.replace(right, wrong, 1))).diagnostics
+    assert found.code == "assembled-open"
+    good, bad = right.split()[1], wrong.split()[1]
+    assert any(text in (found.hint or "") for text in (f"{good}, not {bad}", f"write {good} in place of {bad}"))
 
 
 def test_check_reports_dependent_actuators_of_a_coupling(tmp_path: Path) -> None:

@@ -65,13 +65,6 @@ def w_first(mechanism: Mechanism, coordinates: _Coordinates) -> dict[str, tuple[
     return turned
 
 
-def closes_w_first(robot: Robot, name: str) -> bool:
-    """Whether the loops close at a named configuration where its quaternions are read w first."""
-    coordinates = robot.mechanism.configurations[name]
-    turned = w_first(robot.mechanism, coordinates)
-    return bool(turned) and _closes(robot, {**coordinates, **turned})
-
-
 def _distance(one: tuple[float, ...], other: tuple[float, ...]) -> float:
     return max(abs(a - b) for a, b in zip(one, other, strict=True))
 

@@ -25,8 +25,9 @@ if TYPE_CHECKING:
 _DESCRIPTION = """\
 Find a configuration in which every loop is closed, and show the coordinates of each joint as in files.
 
-The search starts at the configuration 'assembled', or at the neutral one if there is none. It respects the joint limits
-if possible. --write writes the configuration to the description as 'assembled'; comments and everything else are kept.
+The search starts at the configuration 'assembled', or at the neutral one if there is none. If possible, it keeps what
+'assembled' states, else what it states of motors, and respects the joint limits. --write writes the configuration to
+the description as 'assembled'; comments and everything else are kept.
 """
 
 # Tolerance of each row of the residual, m or rad.
@@ -127,6 +128,7 @@ def assemble(
     json: bool = JSON,
 ) -> int:
     """Assemble, show, and write."""
+    from eurdf.kinematics.holding import held_in_turn
     from eurdf.linking.configurations import beyond_limits
     from eurdf.linking.robot_files import read_valid
     from eurdf.pinocchio.robot import build_robot
@@ -144,7 +146,12 @@ def assemble(
     robot = build_robot(read.mechanism, geometry=False)
     start = start or (NAME if NAME in robot.configurations else NEUTRAL)
     with cannot_run(ValueError):
-        assembly = _assemble(robot, named_configuration(robot, start), hold, limits)
+        q0 = named_configuration(robot, start)
+        stated = read.mechanism.configurations.get(start, {}) if start == NAME and not hold else {}
+        for held in held_in_turn(robot, stated):
+            assembly = _assemble(robot, q0, [*hold, *held], limits)
+            if assembly.converged:
+                break
     beyond = beyond_limits(robot.mechanism.joints, robot.joint_positions(assembly.q))
     info = replace(_assembly_info(robot, assembly, start, hold, {found.joint for found in beyond}), file=file)
     if not json:

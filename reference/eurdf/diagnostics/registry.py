@@ -182,6 +182,7 @@ advice:
 x-angle-in-degrees         An angle is probably in degrees, because it is large.
 x-length-in-millimetres    A length is probably in millimetres, because it is large.
 x-tiny-robot               No length of a robot with closures reaches a millimetre.
+x-open-at-neutral          The loops are open at neutral, and one change closes them exactly there.
 x-quaternion-order         A quaternion is probably in the order w, x, y, z.
 x-no-actuator              A robot with closures has no actuator.
 x-shaky-loops              Loops can move to first order only; they are rigid.

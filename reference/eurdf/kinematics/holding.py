@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -33,6 +33,13 @@ class Holding(NamedTuple):
     robot: Robot
     joints: tuple[str, ...]
     q: Vector
+
+
+def held_in_turn(robot: Robot, stated: Iterable[str]) -> Iterator[tuple[str, ...]]:
+    """What to hold, in turn, to keep of a configuration what it states: all its joints, the motors of them, nothing."""
+    names = tuple(name for name in stated if name in robot.slots)
+    motors = tuple(name for name in names if name in robot.actuation.joints)
+    yield from dict.fromkeys((names, motors, ()))
 
 
 def holding(robot: Robot, q: Vector, hold: Hold, hold_at: Named | None) -> Holding:

@@ -28,7 +28,7 @@ class Opening:
     def __str__(self) -> str:
         parts = []
         if self.position > CLOSED or self.angle <= CLOSED:
-            parts.append(f"{self.position * 1e3:.3g} mm")
+            parts.append(f"{self.position:.3g} m" if self.position >= 1.0 else f"{self.position * 1e3:.3g} mm")
         if self.angle > CLOSED:
             parts.append(f"{math.degrees(self.angle):.3g} degrees")
         return f"'{self.name}' by {' and '.join(parts)}"

@@ -1,0 +1,79 @@
+"""Slips of who writes names and numbers: a sign, a unit, a digit, the other side of the robot."""
+
+from __future__ import annotations
+
+import math
+import re
+from decimal import Decimal
+
+#: What a number is multiplied by whose unit was taken for m, or for rad.
+OF_LENGTH = {"mm": Decimal("0.001"), "cm": Decimal("0.01"), "inches": Decimal("0.0254")}
+OF_ANGLE = {"degrees": Decimal(repr(math.pi / 180.0))}
+
+# Decimals beyond which nobody writes a number.
+_DECIMALS = 12
+
+_DIGITS = ("", ".", *"0123456789")
+_NUMBER = re.compile(r"-?(0|[1-9]\d*)(\.\d+)?")
+
+_SIDE = re.compile(r"(?<![a-z])(left|right|l|r)(?![a-z])", re.IGNORECASE)
+_OTHER = {"left": "right", "right": "left", "l": "r", "r": "l"}
+
+
+def side(name: str) -> str | None:
+    """The first word of a name that says left or right, by its first letter: l or r."""
+    found = _SIDE.search(name)
+    return found[1][0].lower() if found else None
+
+
+def other_side(name: str) -> str | None:
+    """The name with left and right exchanged; None if it has neither."""
+
+    def other(found: re.Match[str]) -> str:
+        word = _OTHER[found[1].lower()]
+        return word.upper() if found[1].isupper() else word.title() if found[1].istitle() else word
+
+    changed = _SIDE.sub(other, name)
+    return None if changed == name else changed
+
+
+def common_start(one: str, other: str) -> int:
+    """The number of characters with which both texts begin."""
+    pairs = enumerate(zip(one, other, strict=False))
+    return next((index for index, (a, b) in pairs if a != b), min(len(one), len(other)))
+
+
+def shortest(value: float, tolerance: float) -> str:
+    """The number with as few decimals as the tolerance allows."""
+    digits = next((n for n in range(_DECIMALS) if abs(round(value, n) - value) <= tolerance), _DECIMALS)
+    return f"{round(value, digits) + 0.0:.{digits}f}"
+
+
+def in_unit(token: str, factor: Decimal) -> str:
+    """A number as it is written, in another unit."""
+    text = f"{Decimal(token) * factor:.12f}".rstrip("0")
+    return text.rstrip(".") if float(text) else "0"
+
+
+def negated(token: str) -> str:
+    """A number as it is written, with the other sign."""
+    return token[1:] if token.startswith("-") else f"-{token.removeprefix('+')}"
+
+
+def with_one_slip(token: str, value: float, tolerance: float) -> str | None:
+    """The number as it is written, but for one digit or two that are exchanged, so that it has a value; else None.
+
+    Two numbers with a single digit each say nothing of slips.
+    """
+    texts = [
+        token[:i] + digit + token[i + more :] for i in range(len(token) + 1) for digit in _DIGITS for more in (0, 1)
+    ]
+    texts += [token[:i] + token[i + 1] + token[i] + token[i + 2 :] for i in range(len(token) - 1)]
+    near = [(abs(float(text) - value), text) for text in texts if _NUMBER.fullmatch(text) and text != token]
+    off, best = min(near, default=(math.inf, ""))
+    return best if off <= tolerance and max(map(_significant, (token, best))) > 1 else None
+
+
+def _significant(token: str) -> int:
+    """The number of digits that a number has."""
+    return len(re.sub(r"\D", "", token).lstrip("0"))
