@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
 
 from eurdf.closures import REGISTRY
-from eurdf.format.closure_model import ClosureEntry
-from eurdf.format.fixes import renumbered
+from eurdf.diagnostics import Fix
+from eurdf.format.closure_model import ClosureEntry, NamedFrame
+from eurdf.format.fixes import named, removed, renumbered
+from eurdf.format.yaml_text import scalar
+from eurdf.linking.counterparts import changes_between, other_frame, unused_pairs
 from eurdf.linking.frame_names import FrameNames
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import RIGID, Closure, Compliance
 from eurdf.mechanism.pose import Pose, Vector3
 from eurdf.reading.yaml_node import Pointer
 from eurdf.reading.yaml_reader import YamlReporter
+
+# Pairs of frames that are proposed, at most.
+_FEW = 3
 
 
 def link_closures(
@@ -39,7 +45,7 @@ def link_closures(
             continue
         taken[entry.name] = entry
         a, b = map(names.find, entry.frames)
-        if a is None or b is None or not _movable(entry, a, b, rigid, reporter):
+        if a is None or b is None or not _movable(entry, a, b, rigid, entries, names, reporter):
             continue
         pair = frozenset({(a.body, a.pose), (b.body, b.pose)})
         if pair in joined:
@@ -47,7 +53,8 @@ def link_closures(
                 "closure-duplicate",
                 f"closure '{entry.name}' connects the same two frames as '{joined[pair]}'",
                 entry.pointer,
-                "which of them connects other frames?",
+                None,
+                _other_frames(entry, taken[joined[pair]], entries, names, reporter),
             )
             continue
         joined[pair] = entry.name
@@ -97,26 +104,79 @@ def _have_directions(entry: ClosureEntry, reporter: YamlReporter) -> bool:
     return False
 
 
-def _movable(entry: ClosureEntry, a: Anchor, b: Anchor, rigid: Mapping[str, str], reporter: YamlReporter) -> bool:
+def _used(entries: Iterable[ClosureEntry]) -> list[tuple[str, str]]:
+    """The names of the frames of closures, where both are named."""
+    pairs = (entry.frames for entry in entries)
+    return [(a.target, b.target) for a, b in pairs if isinstance(a, NamedFrame) and isinstance(b, NamedFrame)]
+
+
+def _other_frames(
+    entry: ClosureEntry, first: ClosureEntry, entries: Sequence[ClosureEntry], names: FrameNames, reporter: YamlReporter
+) -> Iterator[Fix]:
+    """Proposals for a closure that repeats another one: frames that no closure uses, or to remove it."""
+    document = reporter.document
+    changes = changes_between(first.name, entry.name)
+    likely = [pair for pair in unused_pairs(_used(entries), names.known()) if pair.changes]
+    likely.sort(key=lambda pair: pair.changes.values() != changes.values())
+    for pair in likely[:_FEW]:
+        shown = f"'{pair.frames[0]}', '{pair.frames[1]}'"
+        edits = (
+            document.edit(side.pointer, scalar(name)) for side, name in zip(entry.frames, pair.frames, strict=True)
+        )
+        asked = f"did you mean {shown}, which no closure uses?"
+        yield Fix(f"name the frames {shown}, which no closure uses", tuple(edits), asked, rivals=len(likely) > 1)
+    if not likely:
+        yield from removed(document, entry.pointer, f"closure '{entry.name}'")
+        yield Fix("", (), "which of them connects other frames?")
+
+
+def _partners(
+    entry: ClosureEntry, entries: Iterable[ClosureEntry], names: FrameNames, reporter: YamlReporter
+) -> list[Fix]:
+    """Proposals to connect a frame of a closure to the one that pairs with it by name and that no closure uses."""
+    used = _used(entries)
+    free = frozenset(names.known()).difference(name for pair in used for name in pair)
+    fixes = []
+    for side, other in (entry.frames, entry.frames[::-1]):
+        if isinstance(side, NamedFrame) and (name := other_frame(side.target, used, free)):
+            edits = named(reporter.document, other.pointer, False, name)
+            asked = f"did you mean '{side.target}' and '{name}', which no closure uses?"
+            fixes.append(Fix(f"connect '{side.target}' to '{name}', which no closure uses", edits, asked))
+    return fixes
+
+
+def _movable(
+    entry: ClosureEntry,
+    a: Anchor,
+    b: Anchor,
+    rigid: Mapping[str, str],
+    entries: Iterable[ClosureEntry],
+    names: FrameNames,
+    reporter: YamlReporter,
+) -> bool:
     """EU-CLO-002, EU-CLO-003: the two frames are not one, and not fixed to one another."""
     if a.body == b.body and a.pose == b.pose:
         same = not a.frame or not b.frame or a.frame == b.frame
         what = f"a frame on '{a.body}'" if not a.frame else f"'{a.frame}'"
         message = f"{what} with itself" if same else f"'{a.frame}' with '{b.frame}', which is the same frame"
+        fixes = _partners(entry, entries, names, reporter)
         reporter.report(
             "closure-same-frame",
             f"closure '{entry.name}' connects {message}",
             entry.frames[1].pointer,
-            "name the frame on the other side of the cut",
+            None if fixes else "name the frame on the other side of the cut",
+            fixes[:1],
         )
         return False
     if rigid[a.body] == rigid[b.body]:
         which = f"'{a.body}'" if a.body == b.body else f"'{a.body}' and '{b.body}', which are fixed to each other"
+        fixes = _partners(entry, entries, names, reporter)
         reporter.report(
             "closure-same-body",
             f"closure '{entry.name}' connects two frames of one rigid body, {which}",
             entry.pointer,
-            "connect frames that can move relative to each other",
+            None if fixes else "which frames, that can move relative to each other, does it connect?",
+            fixes,
         )
         return False
     return True

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import partial
 from itertools import chain
@@ -56,6 +56,10 @@ class FrameNames:
             return None
         return Anchor(body, Pose.from_xyz_rpy(reference.xyz, reference.rpy))
 
+    def known(self) -> Iterator[str]:
+        """The names of all links, joints and frames."""
+        return chain(self._frames, self._urdf.links, self._urdf.joints, self._joints)
+
     def _known(self, name: str) -> bool:
         return name in self._urdf.links or name in self._urdf.joints or name in self._joints
 
@@ -85,7 +89,7 @@ class FrameNames:
         if child is not None:
             return Anchor(child, frame=name)
         if name not in self._made.faulty:
-            known = chain(self._frames, self._urdf.links, self._urdf.joints, self._joints)
+            known = self.known()
             self._report_unknown(name, "link, joint or frame", reference.pointer, known)
         return None
 
