@@ -39,6 +39,7 @@ WITHOUT_DATA = {"view", "plot_workspace"}
 #: Methods that change the object, write files, or return texts; and what is shared by design: the memory of a robot.
 NOT_CALLED = {"reset", "write", "start_at_joints", "start_at_motors", "c_source", "passes", "followed_by", "to_json"}
 NOT_CALLED |= {"on_grid", "nearest", "cached", "derived", "data", "tree", "diagnose", "no_geometry", "of"}
+NOT_CALLED |= {"python_source", "array_map", "ros2_package"}  # as `c_source`; functions in a namespace that is given
 NOT_CALLED |= {"times"}  # of calls, measured
 
 #: Objects of other libraries, and what a result refers to and does not own.
