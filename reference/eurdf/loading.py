@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
 
 from eurdf.advice.angles import advise_on_angles
 from eurdf.advice.lengths import advise_on_lengths
+from eurdf.advice.likely_closures import advise_on_missing_closures
 from eurdf.advice.loops import closure_diagnostics
 from eurdf.advice.plausibility import advise_on_plausibility, spring_notes
 from eurdf.advice.quaternions import advise_on_quaternions
@@ -243,9 +244,15 @@ def check_texts(texts: Mapping[str, str], path: RobotSource, urdf: RobotSource |
         if left < 0:
             raise _TooMuch
         trial = read_robot(path, urdf, **options, texts={**known, **Fix.together(fixes).texts()})
-        return Evidence(trial.diagnostics.counts()) if is_of_the_text(code) else _findings(trial, mesh_files, find)
+        return (
+            Evidence(trial.diagnostics.counts())
+            if is_of_the_text(code)
+            else _findings(trial, mesh_files, find, causes=False)
+        )
 
     def is_right(found: Diagnostic, fix: Fix) -> bool:
+        if not fix.edits:  # it is only asked
+            return False
         after = evidence_with(found.code, fix)
         if after.is_as_good_as(evidence, found.code) and not after.is_enough_for(found.code):
             # An error that is left hides what is wrong with this fix: try it with the likeliest fixes of all.
@@ -263,10 +270,11 @@ def check_texts(texts: Mapping[str, str], path: RobotSource, urdf: RobotSource |
     return Report(read.path, tuple(read.diagnostics), notes)
 
 
-def _findings(read: ReadRobot, mesh_files: _MeshFiles, find: Mapping[str, Any]) -> Evidence:
+def _findings(read: ReadRobot, mesh_files: _MeshFiles, find: Mapping[str, Any], *, causes: bool = True) -> Evidence:
     """Add what is found after reading to the diagnostics of a robot; what it says of itself with them.
 
-    Mesh files are found as ``find`` says, and not read again for the same text of a URDF.
+    Mesh files are found as ``find`` says, and not read again for the same text of a URDF. Causes are proposed only if
+    they are asked for.
     """
     diagnostics = read.diagnostics
     refused = diagnostics.refused  # without meshes, which the kinematics does not need
@@ -285,9 +293,10 @@ def _findings(read: ReadRobot, mesh_files: _MeshFiles, find: Mapping[str, Any]) 
     if read.linked is not None and not refused:
         if read.yaml is not None:
             if read.mechanism.constraints:
-                analysis = _check_loops(read)
+                analysis = _check_loops(read, causes)
             else:
                 advise_on_quaternions(read, None, diagnostics)
+                advise_on_missing_closures(read, diagnostics, causes)
         warn_of_ignored_mimics(read.mechanism, read.urdf, diagnostics)
         advise_on_angles(read, diagnostics)
         advise_on_lengths(read, meshes, diagnostics)
@@ -297,7 +306,7 @@ def _findings(read: ReadRobot, mesh_files: _MeshFiles, find: Mapping[str, Any]) 
     return Evidence(diagnostics.counts(), not diagnostics.error_count, analysis)
 
 
-def _check_loops(read: ReadRobot) -> Analysis | None:
+def _check_loops(read: ReadRobot, causes: bool) -> Analysis | None:
     """Report what needs a simulator: whether the loops close and, where there is no error, advice on how they move.
 
     Returns:
@@ -325,7 +334,7 @@ def _check_loops(read: ReadRobot) -> Analysis | None:
             return None  # the rest would be consequences
         advise_on_massless_links(read, robot, q, diagnostics)
         analysis = analyze(robot, q) if robot.mechanism.actuators else None
-        advise_on_actuation(read, robot, analysis, diagnostics)
+        advise_on_actuation(read, robot, analysis, diagnostics, causes=causes)
         advise_on_limits(read, robot, q, diagnostics)
         return analysis
     return None

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from eurdf.reading.source import Source
 from eurdf.reading.yaml_reader import read_yaml
-from eurdf.writing.edit_configuration import NotEditable, with_configuration
+from eurdf.writing.edit_configuration import with_configuration
+from eurdf.writing.yaml_edits import NotEditable
 
 HEAD = 'extended_urdf: "2.0"\n'
 NEW = {"a": (0.5,), "b": (0.0, 0.0, 0.0, 1.0)}

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import zip_longest
+from itertools import compress, zip_longest
 
-from eurdf.advice.hinges import LikelyHinge, likely_hinge
+import numpy as np
+
+from eurdf.advice.hinges import LikelyHinge, are_aligned, closures_of, likely_hinge, with_closures
+from eurdf.advice.likely_closures import forgotten_closures, retyped
+from eurdf.advice.likely_joints import is_planar, needless_types, other_joints
+from eurdf.advice.likely_motors import LikelyMotors
 from eurdf.advice.passive import PassiveMotions
 from eurdf.array import Vector
-from eurdf.diagnostics import Diagnostics, Place, plural, quoted
+from eurdf.closures.frame import FrameClosure
+from eurdf.closures.point import PointClosure
+from eurdf.diagnostics import Diagnostics, Fix, Place, enumerated, plural, quoted
 from eurdf.kinematics.analysis import Analysis, analyze
-from eurdf.kinematics.loop_analysis import LoopAnalysis
+from eurdf.kinematics.loop_analysis import LoopAnalysis, Motion
 from eurdf.linking.robot_files import ReadRobot
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.robot import Robot, build_robot
@@ -27,11 +34,13 @@ _NAMES_LISTED = 6
 _MOTIONS_LISTED = 3
 
 
-def advise_on_actuation(read: ReadRobot, robot: Robot, analysis: Analysis | None, diagnostics: Diagnostics) -> None:
+def advise_on_actuation(
+    read: ReadRobot, robot: Robot, analysis: Analysis | None, diagnostics: Diagnostics, *, causes: bool = True
+) -> None:
     """Report loops without an actuator; else actuators that depend on one another, and motions left uncontrolled.
 
     The analysis is None for a robot without actuators. Nothing is reported where an earlier warning may be the reason:
-    a misspelt key, or a closure that is left out.
+    a misspelt key, or a closure that is left out. Causes are looked for only if they are asked for: it takes time.
     """
     mechanism = robot.mechanism
     if any(found.code in _REASONS for found in read.diagnostics):
@@ -44,8 +53,10 @@ def advise_on_actuation(read: ReadRobot, robot: Robot, analysis: Analysis | None
             f"the robot has {plural(len(mechanism.constraints), noun)} and no actuator",
             _place_of_key(read, key),
             f"list the joints that its motors drive under '{_actuators_key(mechanism)}'",
+            lambda: _motors(read, [joint.name for joint in mechanism.joints]) if causes else (),
         )
         return
+    _report_several(read, analysis, diagnostics, causes)
     if analysis.left_out:
         place = _place_of_key(read, _closures_key(mechanism))
         diagnostics.report("x-loops-not-checked", analysis.left_out, place, "analyze parts of the robot separately")
@@ -59,25 +70,77 @@ def advise_on_actuation(read: ReadRobot, robot: Robot, analysis: Analysis | None
                 "but are rigid",
                 read.place_of_constraint(loop.closures[0]),
                 "check the lengths at this configuration, or state another one as 'assembled'",
+                other_joints(read, robot, analysis.q, loop) if causes else (),
             )
         return
     dependent = [loop for loop in analysis.loops if loop.dependent_actuators]
-    if dependent:
-        for loop, locking in zip(dependent, _locking(robot, analysis.q, dependent), strict=True):
-            hinge = None if locking else _freeing_hinge(robot, analysis.q, loop)
-            _report_dependent(read, robot, loop, locking, hinge, diagnostics)
-    _report_uncontrolled(read, robot, analysis, diagnostics)
+    locking = _locking(robot, analysis.q, dependent) if causes and dependent else [None] * len(dependent)
+    for loop, closures in zip(dependent, locking, strict=True):
+        _report_dependent(read, robot, analysis.q, loop, closures, diagnostics)
+    _report_uncontrolled(read, robot, analysis, diagnostics, causes)
+    _report_exchanged(read, robot, analysis, diagnostics)
+
+
+def _report_exchanged(read: ReadRobot, robot: Robot, analysis: Analysis, diagnostics: Diagnostics) -> None:
+    """Report actuators of loops that are not named as motors, if joints that are could be actuated in their place."""
+    mechanism, motors = robot.mechanism, LikelyMotors(read)
+    if not motors.named.difference(mechanism.actuators):
+        return
+    for loop in analysis.loops:
+        named = [name for name in motors.could_be(loop.joints) if name in motors.named]
+        others = [name for name in mechanism.actuators if name in loop.joints and name not in motors.named]
+        if not named or len(named) != len(others):
+            continue
+        new = dict(zip(others, named, strict=True))
+        actuators = tuple(new.get(name, name) for name in mechanism.actuators)
+        trial = build_robot(replace(mechanism, actuators=actuators, motors={}), geometry=False)
+        after = next(each for each in analyze(trial, analysis.q).loops if each.closures == loop.closures)
+        if after.controlled < loop.controlled or after.dependent_actuators:
+            continue
+        verb = "is" if len(others) == 1 else "are"
+        entries = [entry for entry in read.description.actuators if entry.joint in new]
+        diagnostics.report(
+            "x-motor-not-actuated",
+            f"{enumerated(others)} {verb} actuated; {enumerated(named)} {verb} named as motors are, and {verb} not",
+            read.description.document.place(entries[0].pointer),
+            None,
+            [motors.exchange(new)],
+        )
+
+
+def _motors(read: ReadRobot, moved: Sequence[str]) -> Iterator[Fix]:
+    motors = LikelyMotors(read)
+    yield from motors.by_name(moved)
+    yield from motors.by_rating(moved)
+
+
+def _report_several(read: ReadRobot, analysis: Analysis, diagnostics: Diagnostics, causes: bool) -> None:
+    """Report actuated joints with several velocities, of loops or named as a motor, which has one."""
+    suspect = LikelyMotors(read).named.union(*(loop.joints for loop in analysis.loops))
+    joints = {joint.name: joint for joint in read.mechanism.joints if joint.type.nv > 1 and joint.name in suspect}
+    for entry in read.description.actuators:
+        if (joint := joints.get(entry.joint)) is not None:
+            diagnostics.report(
+                "x-actuator-several",
+                f"actuator '{joint.name}' has {joint.type.nv} velocities: the joint is {joint.type}",
+                read.description.document.place(entry.pointer),
+                None,
+                LikelyMotors(read).of_several(joint) if causes else (),
+            )
 
 
 def _report_dependent(
     read: ReadRobot,
     robot: Robot,
+    q: Vector,
     loop: LoopAnalysis,
-    locking: Sequence[str],
-    hinge: LikelyHinge | None,
+    locking: Sequence[str] | None,
     diagnostics: Diagnostics,
 ) -> None:
-    """Report the dependent actuators of a group of loops, and the closures whose orientation locks them, if found."""
+    """Report the dependent actuators of a group of loops, and the closures whose orientation locks them, if found.
+
+    No cause is looked for if ``locking`` is None.
+    """
     dependent = [name for together in loop.dependent_actuators for name in together]
     # Each is alone in its set, and has one velocity: of several, others may be free.
     one_each = len(frozenset(loop.joints).intersection(robot.actuation.joints)) == loop.actuated
@@ -86,21 +149,37 @@ def _report_dependent(
         f"{_counted('actuator', dependent)} cannot move{'' if locked else ' independently'}: "
         f"{'locked' if locked else 'coupled'} by {_constraints(robot.mechanism, loop)}"
     )
+    # Of several actuators the one that is listed last, as what was added most likely.
+    entry = next(entry for entry in reversed(read.description.actuators) if entry.joint in dependent)
+    place = read.description.document.place(entry.pointer)
+    if locking is None:
+        diagnostics.report("x-dependent-actuators", message, place)
+        return
+    motors = LikelyMotors(read)
+    fixes = [*other_joints(read, robot, q, loop)]
+    fixes[:0] = (fix for together in loop.dependent_actuators for fix in motors.superfluous(together))
+    is_hinge = any(closure.name in locking and closure.type == "hinge" for closure in robot.mechanism.closures)
+    hinge = _freeing_hinge(robot, q, loop) if is_hinge or not locking else None
+    if hinge is not None:
+        place = read.place_of_constraint(hinge.closure)
+        fixes.append(Fix("", (), f"is closure '{hinge.closure}' a pin, of {hinge}, which frees the actuators?"))
     if locking:
         place = read.place_of_constraint(locking[0])
-        hint = (
-            f"type 3d for {_counted('closure', locking)} frees the actuators; use it for a ball joint, or for a pin "
-            "of a planar loop"
+        free = retyped(read, locking, "3d", f"{'their' if len(locking) > 1 else 'its'} orientation locks the actuators")
+        asked = (
+            f"type 3d for {_counted('closure', locking)} frees the actuators: is each a ball joint, or a pin of a "
+            "planar loop?"
         )
-    elif hinge is not None:
-        place = read.place_of_constraint(hinge.closure)
-        hint = f"if closure '{hinge.closure}' is a pin, {hinge} frees the actuators"
-    else:
-        # Of several actuators the one that is listed last, as what was added most likely.
-        entry = next(entry for entry in reversed(read.description.actuators) if entry.joint in dependent)
-        place = read.description.document.place(entry.pointer)
-        hint = f"list only actuators that can move{'' if locked else ' independently'}, or correct the closures"
-    diagnostics.report("x-dependent-actuators", message, place, hint)
+        # Of motors that only depend on one another, one may be none. In space, a ball may be missing in its place.
+        kinds = [closure.type for closure in robot.mechanism.closures if closure.name not in locking]
+        usual = kinds.count("3d") > kinds.count("6d") or is_planar(robot, q, loop)
+        sure = usual and hinge is None and (locked or motors.named.issuperset(dependent))
+        fixes.append(replace(free, summary=free.summary if sure else "", question=asked))
+    if not fixes:
+        asked = "is a joint of these loops locked, or its axis wrong"
+        asked += "?" if locked else f", or one of {enumerated(dependent)} no motor?"
+        fixes.append(Fix("", (), asked))
+    diagnostics.report("x-dependent-actuators", message, place, None, fixes)
 
 
 def _locking(robot: Robot, q: Vector, loops: Sequence[LoopAnalysis]) -> list[tuple[str, ...]]:
@@ -163,31 +242,75 @@ def _trials(names: Sequence[str]) -> list[tuple[str, ...]]:
     return [*alone, tuple(names)] if len(names) > 1 else alone
 
 
-def _report_uncontrolled(read: ReadRobot, robot: Robot, analysis: Analysis, diagnostics: Diagnostics) -> None:
+def _report_uncontrolled(
+    read: ReadRobot, robot: Robot, analysis: Analysis, diagnostics: Diagnostics, causes: bool
+) -> None:
     """Report the motions that are possible with every actuator held, except those that need no actuator."""
     if not analysis.motions:
         return
     passive = PassiveMotions(robot)
     in_loops = sum(len(loop.motions) for loop in analysis.loops)
-    motions = [motion for loop in analysis.loops for motion in passive.needing_actuators(loop)]
+    loose = [(loop, found) for loop in analysis.loops if (found := passive.needing_actuators(loop))]
+    motions = [motion for _, found in loose for motion in found]
     motions += [motion for motion in analysis.motions[in_loops:] if passive.needs_actuator(motion)]
     if motions:
         count = len(motions)
         moved = list(dict.fromkeys(quoted(motion.joints, _NAMES_LISTED) for motion in motions))
-        hint = (
-            "actuate a joint of each motion, add the missing closure, or use type 6d if it also fixes the orientation"
-        )
-        loose = (loop for loop in analysis.loops if loop.actuated and passive.needing_actuators(loop))
-        hinges = (_controlling_hinge(robot, analysis.q, loop) for loop in loose)
-        if (hinge := next(filter(None, hinges), None)) is not None:
-            hint = f"if closure '{hinge.closure}' is a pin, {hinge} leaves fewer; else {hint}"
         shown = "; ".join(moved[:_MOTIONS_LISTED]) + ("; ..." if len(moved) > _MOTIONS_LISTED else "")
         diagnostics.report(
             "x-uncontrolled-motion",
             f"{count} {'motion remains' if count == 1 else 'motions remain'} when every actuator is held: {shown}",
             _place_of_key(read, _actuators_key(robot.mechanism)),
-            hint,
+            None,
+            lambda: _controlling(read, robot, passive, analysis.q, loose, motions) if causes else (),
         )
+
+
+def _controlling(
+    read: ReadRobot,
+    robot: Robot,
+    passive: PassiveMotions,
+    q: Vector,
+    loose: Sequence[tuple[LoopAnalysis, Sequence[Motion]]],
+    motions: Sequence[Motion],
+) -> Iterator[Fix]:
+    """Proposals that control motions; ``loose`` are the groups of loops that have some."""
+    motors = LikelyMotors(read)
+    moved = list(dict.fromkeys(name for motion in motions for name in motion.joints))
+    yield from motors.by_name(moved)
+    yield from forgotten_closures(read)
+    if len(motions) == sum(len(found) for _, found in loose):
+        held = [_holding(robot, q, loop) for loop, _ in loose]
+        if all(held):
+            names = [name for closures in held for name in closures]
+            fix = retyped(read, names, "6d", "then no motion is left without an actuator")
+            asked = f"type 6d for {_counted('closure', names)} holds the rest: is each without a joint of its own?"
+            velocities = [index for name in motors.could_be(moved) for index in robot.tree.velocities_of(name)]
+            # Where motors could control all, some may be forgotten.
+            sure = np.linalg.matrix_rank(passive.basis(motions)[:, velocities], 1e-3) < len(motions)
+            yield replace(fix, summary=fix.summary if sure else "", question=asked)
+    yield from motors.by_rating(moved)
+    yield from needless_types(read, moved)
+    hinges = (_controlling_hinge(robot, q, loop) for loop, _ in loose if loop.actuated)
+    if (hinge := next(filter(None, hinges), None)) is not None:
+        yield Fix("", (), f"is closure '{hinge.closure}' a pin, of {hinge}, which leaves fewer motions?")
+    could = motors.could_be(moved)
+    which = f"which of {enumerated(could)} has a motor, or which" if could else "which"
+    yield Fix("", (), f"{which} closure is missing?")
+
+
+def _holding(robot: Robot, q: Vector, loop: LoopAnalysis) -> list[str]:
+    """The 3d closures of a group of loops, each alone or all, that as 6d leave it no motion without an actuator."""
+    points = [closure for closure in closures_of(robot, loop) if type(closure) is PointClosure]
+    # Without a configuration that is stated, frames have one orientation elsewhere.
+    stated = "assembled" in robot.configurations
+    aligned = compress(points, are_aligned(robot, q, points)) if stated else points
+    frames = [FrameClosure(closure.name, closure.a, closure.b) for closure in aligned]
+    for names in _trials([closure.name for closure in frames]):
+        trial, found = with_closures(robot, q, loop, [closure for closure in frames if closure.name in names])
+        if found is not None and found.mobility and not found.dependent_actuators and not _uncontrolled(trial, found):
+            return list(names)
+    return []
 
 
 def _closures_key(mechanism: Mechanism) -> str:

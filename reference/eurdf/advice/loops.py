@@ -64,6 +64,7 @@ def closure_diagnostics(read: ReadRobot, robot: Robot, assembly: Assembly | None
     if _is_rounding(robot, assembly.open):
         hint = f"{_closed_to(assembly.open)}: write the numbers of the files with more digits"
     else:
+        from eurdf.advice.likely_joints import missing_types
         from eurdf.advice.open_loops import suggested_by_names
 
         causes = _causes(read, robot, pose, None)[0]
@@ -71,6 +72,7 @@ def closure_diagnostics(read: ReadRobot, robot: Robot, assembly: Assembly | None
         widest_open = sorted(assembly.open, key=lambda each: -each.width)[:_MOST_NAMED]
         causes += suggested_by_names(read, pose, {each.name for each in widest_open})
         hint, fixes = _asked(read, worst.name, causes)
+        fixes = [*fixes, *missing_types(read, robot)]
     diagnostics.report(
         "closure-cannot-close",
         f"no configuration was found that closes the loops; least open: {widest(assembly.open)}{_unmoved(pose)}",

@@ -49,10 +49,14 @@ class PassiveMotions:
         """The uncontrolled motions of a group of loops, except spins of rods, and those that springs resist.
 
         A spin is a motion by which all bodies that move turn about one fixed line: their twists, seen from a point of
-        the line, are multiples of one that only turns.
+        the line, are multiples of one that only turns. Motions that differ by spins of single bodies count as one.
         """
         motions = self._unsprung(loop.motions)
-        return [motion for motion in motions if not _turns_about_one_line(self._twists(motion), self._length)]
+        if len(motions) > 1 and len(spins := self._spins(self._twists(motions))):
+            rest = np.linalg.svd(spins)[2][len(spins) :]  # the combinations that are orthogonal to the spins
+            motions = self._combined(motions, rest)
+        turns = (_turns_about_one_line(self._twists([motion])[0], self._length) for motion in motions)
+        return [motion for motion, is_spin in zip(motions, turns, strict=True) if not is_spin]
 
     def all_needing_actuators(self, analysis: Analysis) -> list[Motion]:
         """The uncontrolled motions of a robot, in its loops and outside of them, except those that need no actuator."""
@@ -66,21 +70,47 @@ class PassiveMotions:
 
     def _unsprung(self, motions: Sequence[Motion]) -> Sequence[Motion]:
         """Of motions at one configuration, and all that they combine to, those that stretch no spring."""
-        basis = np.zeros((len(motions), self._robot.model.nv))
-        for row, motion in zip(basis, motions, strict=True):
-            row[motion.velocities] = motion.values
-        stretched = basis[:, self._sprung]
+        stretched = self.basis(motions)[:, self._sprung]
         if not stretched.any():
             return motions
         combinations, stretches, _ = np.linalg.svd(stretched)
         rank = int((stretches > _SAME_LINE).sum())
+        return self._combined(motions, combinations[:, rank:].T)
+
+    def basis(self, motions: Sequence[Motion]) -> Matrix:
+        """The velocities (k, nv) of k motions."""
+        basis = np.zeros((len(motions), self._robot.model.nv))
+        for row, motion in zip(basis, motions, strict=True):
+            row[motion.velocities] = motion.values
+        return basis
+
+    def _combined(self, motions: Sequence[Motion], combinations: Matrix) -> list[Motion]:
+        """A basis of combinations (r, k) of k motions at one configuration."""
         names = self._robot.tree.velocity_names
         found = []
-        for row in sparse_basis(combinations[:, rank:].T @ basis):
+        for row in sparse_basis(combinations @ self.basis(motions)):
             moving = np.flatnonzero(row)
             joints = tuple(dict.fromkeys(names[index] for index in moving.tolist()))
             found.append(Motion(joints, moving, row[moving], motions[0].q))
         return found
+
+    def _spins(self, twists: Matrix) -> Matrix:
+        """The combinations (r, k) of k motions by which a single body spins, from the twists (k, bodies, 6) of all."""
+        scaled = twists / np.repeat([self._length, 1.0], 3)
+        bodies: list[Matrix] = []  # that move, each once: parts that are rigid to one another move alike
+        for body in np.moveaxis(scaled, 1, 0):
+            if np.abs(body).max() > _SAME_LINE and all(np.abs(body - other).max() > _SAME_LINE for other in bodies):
+                bodies.append(body)
+        found = []
+        for body in bodies:
+            others = np.hstack([other for other in bodies if other is not body] or [np.zeros((len(twists), 1))])
+            combinations, moves, _ = np.linalg.svd(others)
+            still = combinations[:, int((moves > _SAME_LINE * moves[0]).sum()) :].T
+            if len(still) == 1 and _turns_about_one_line(
+                [(still[0] @ body) * np.repeat([self._length, 1.0], 3)], self._length
+            ):
+                found.append(still[0])
+        return np.array(found)
 
     def _is_root_or_wheel(self, motion: Motion) -> bool:
         """Whether a motion outside of the loops is one of a floating or planar root, or of a wheel.
@@ -100,34 +130,36 @@ class PassiveMotions:
         radius = np.sqrt(np.trace(inertia.inertia) / (2.0 * inertia.mass))
         return bool(not slides.any() and np.linalg.norm(np.cross(axis, inertia.lever)) <= _CENTRED * radius)
 
-    def _twists(self, motion: Motion) -> list[Vector]:
-        """Twists (6,) in the world, linear and angular, of the bodies of the joints that a motion of loops moves.
+    def _twists(self, motions: Sequence[Motion]) -> Matrix:
+        """Twists (k, bodies, 6) in the world, linear and angular, of the bodies of joints that k motions of loops move.
 
         Bodies further out move as one of these does.
         """
-        if self._jacobian is None or self._jacobian[0] is not motion.q:
-            self._jacobian = motion.q, self._robot.tree.jacobian_along(joints_of_loops(self._robot), motion.q)
-        J = self._jacobian[1]
-        velocity = dict(zip(motion.velocities.tolist(), motion.values.tolist(), strict=True))
-        twists: dict[int, Vector] = {}
-        for joint in sorted({joint for index in velocity for joint in self._joints[index]}):  # parents come first
-            first, column, width = self._first[joint], self._columns[joint], self._widths[joint]
-            own = np.array([velocity.get(first + k, 0.0) for k in range(width)])
+        q = motions[0].q
+        if self._jacobian is None or self._jacobian[0] is not q:
+            self._jacobian = q, self._robot.tree.jacobian_along(joints_of_loops(self._robot), q)
+        J, basis = self._jacobian[1], self.basis(motions)
+        twists: dict[int, Matrix] = {}
+        moved = {joint for motion in motions for index in motion.velocities.tolist() for joint in self._joints[index]}
+        for joint in sorted(moved):  # parents come first
+            column, first, width = self._columns[joint], self._first[joint], self._widths[joint]
             above = self._parents[joint]
             while above and above not in twists:
                 above = self._parents[above]
-            twists[joint] = twists.get(above, np.zeros(6)) + J[:, column : column + width] @ own
+            own = basis[:, first : first + width] @ J[:, column : column + width].T
+            twists[joint] = twists.get(above, 0.0) + own
         # Between two joints in series there is no body.
-        return [twist for joint, twist in twists.items() if joint not in self._robot.tree.in_series]
+        bodies = [twist for joint, twist in twists.items() if joint not in self._robot.tree.in_series]
+        return np.stack(bodies, axis=1) if bodies else np.zeros((len(motions), 0, 6))
 
 
-def _turns_about_one_line(twists: list[Vector], length: float) -> bool:
+def _turns_about_one_line(twists: Sequence[Vector], length: float) -> bool:
     """Whether twists are such, except those of bodies that do not move.
 
     Each is (6,), linear and angular, m/s and rad/s; the velocities that they come from are about 1. The characteristic
     length is in m.
     """
-    if not twists:
+    if not len(twists):
         return True
     linear, angular = np.split(np.array(twists), 2, axis=1)
     speeds = np.sqrt((angular * angular).sum(axis=1))

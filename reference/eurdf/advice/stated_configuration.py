@@ -11,8 +11,8 @@ from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.holding import held_in_turn
 from eurdf.linking.robot_files import ReadRobot
 from eurdf.pinocchio.robot import Robot
-from eurdf.writing.edit_configuration import NotEditable
 from eurdf.writing.saved_configuration import NAME, with_closed_configuration
+from eurdf.writing.yaml_edits import NotEditable
 
 # A closed configuration is near one that is stated if no coordinate differs by more, rad or m.
 _NEAR = {"angle": 0.02, "length": 1e-3, "x": 1e-3, "y": 1e-3, "z": 1e-3}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,7 @@ from eurdf.diagnostics import REGISTRY, Phase, Severity
 
 if TYPE_CHECKING:
     from eurdf.kinematics.analysis import Analysis
+    from eurdf.kinematics.loop_analysis import LoopAnalysis
 
 
 #: Codes of what a value says by itself, whatever the rest of the robot is: an error hides them, but no fix causes them.
@@ -58,7 +60,7 @@ class Evidence:
         """Whether after a fix of one diagnostic, whose code is given, the robot is at least as good as before.
 
         That diagnostic is gone, and there is no new one, except what an error hid before; no actuator has lost its
-        independence, and the robot has not fewer motions than its actuators have.
+        independence, no loop has become rigid, and none has fewer motions than actuated velocities.
         """
         new = {each for each in self.counts if self.counts[each] > before.counts[each]}
         if is_of_the_text(code):
@@ -67,12 +69,21 @@ class Evidence:
             return False
         if self.analysis is None:
             return before.analysis is None
-        actuated = sum(loop.actuated for loop in self.analysis.loops)
-        moving = sum(loop.mobility for loop in self.analysis.loops)
-        return self._bound <= before._bound and moving >= actuated
+        rigid = self._closures(lambda loop: not loop.mobility) & before._closures(lambda loop: bool(loop.mobility))
+        short = self._closures(_is_short) <= before._closures(_is_short)
+        return self._bound <= before._bound and short and not rigid
+
+    def _closures(self, which: Callable[[LoopAnalysis], bool]) -> set[str]:
+        """The closures and couplings of some groups of loops."""
+        loops = () if self.analysis is None else self.analysis.loops
+        return {name for loop in loops if which(loop) for name in loop.closures}
 
     @property
     def _bound(self) -> set[str]:
         """The actuators that cannot move independently."""
         loops = () if self.analysis is None else self.analysis.loops
         return {name for loop in loops for together in loop.dependent_actuators for name in together}
+
+
+def _is_short(loop: LoopAnalysis) -> bool:
+    return loop.mobility < loop.actuated

@@ -113,7 +113,7 @@ class Diagnostic:
         if not self.proposals:
             return self
         right = filter(is_right, self.proposals)
-        fix = next(right, None)
+        fix = next((each for each in right if each.summary), None)
         if fix is not None and fix.rivals and next(right, None) is not None:
             fix = None
         return Diagnostic(self.code, self.message, self._place, fix.summary if fix else self.hint, fix=fix)

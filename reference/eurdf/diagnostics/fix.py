@@ -46,7 +46,7 @@ class Fix:
     """Edits that make a robot right, and what they do.
 
     Attributes:
-        summary: What they do, in the imperative, without a full stop.
+        summary: What they do, in the imperative, without a full stop; empty if it is only asked, and a rival of others.
         edits: Parts of files that do not overlap.
         question: The same as a question, for a hint if a trial does not show that the robot becomes right; None if it
             is not worth asking.

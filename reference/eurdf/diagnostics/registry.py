@@ -184,10 +184,13 @@ x-length-in-millimetres    A length is probably in millimetres, because it is la
 x-tiny-robot               No length of a robot with closures reaches a millimetre.
 x-open-at-neutral          The loops are open at neutral, and one change closes them exactly there.
 x-quaternion-order         A quaternion is probably in the order w, x, y, z.
+x-no-closure               A robot with actuators has no closure, but frames that are probably those of one.
 x-no-actuator              A robot with closures has no actuator.
+x-actuator-several         An actuated joint has several velocities; a motor has one.
 x-shaky-loops              Loops can move to first order only; they are rigid.
 x-dependent-actuators      Actuators cannot move independently, or cannot move at all.
 x-uncontrolled-motion      A motion other than the spin of a rod remains when every actuator is held.
+x-motor-not-actuated       A joint that is named as a motor is not actuated, and another of its loop is.
 x-closes-beyond-limits     The loops close only with joints beyond their limits.
 x-mimic-ignored            A joint with a <mimic> moves freely: it has no actuator, and version 1 ignores <mimic>.
 x-massless-link            A link of a loop has no mass.

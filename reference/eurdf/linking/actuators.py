@@ -27,7 +27,7 @@ def link_actuators(entries: Sequence[Geared], joints: Joints) -> tuple[str, ...]
     joint_of: dict[str, str] = {}  # by name of an actuator
     for entry in entries:
         name = entry.joint
-        pointer = _pointer_of_name(entry, reporter.document)
+        pointer = name_in(entry, reporter.document)
         joint = joints.by_name.get(name)
         if name in joints.merged:
             ball = joints.merged[name]
@@ -63,11 +63,19 @@ def link_actuators(entries: Sequence[Geared], joints: Joints) -> tuple[str, ...]
                 f"joint '{name}' mimics '{joint.mimic.joint}' and cannot be actuated",
                 pointer,
                 f"'{joint.mimic.joint}', which it follows, is the joint to actuate",
+                _leader(entry, joint.mimic.joint, joint_of, reporter.document),
             )
         elif _has_motor(entry, joint_of, reporter):
             listed[name] = None
             joint_of[entry.name or name] = name
     return tuple(listed)
+
+
+def _leader(entry: Geared, leader: str, joint_of: Mapping[str, str], document: YamlDocument) -> Sequence[Fix]:
+    """The joint that a mimic joint follows in its place; none of them if that is actuated already."""
+    if leader in joint_of.values():
+        return removed(document, entry.pointer, f"'{entry.joint}': it moves with '{leader}', which is actuated")
+    return (Fix(f"actuate '{leader}'", named(document, name_in(entry, document), False, leader)),)
 
 
 def _of_repeated(document: YamlDocument, entry: Geared, pointer: Pointer, free: Sequence[str]) -> list[Fix]:
@@ -81,7 +89,7 @@ def _has_motor(entry: Geared, named: Mapping[str, str], reporter: YamlReporter) 
     """EU-ACT-008, EU-ACT-009: the name of an actuator is unique, and its control range is in order."""
     name = entry.name or entry.joint
     if name in named:
-        pointer = _pointer_of_name(entry, reporter.document) if entry.name is None else (*entry.pointer, "name")
+        pointer = name_in(entry, reporter.document) if entry.name is None else (*entry.pointer, "name")
         reporter.report(
             "duplicate-actuator-name",
             f"there is already an actuator '{name}', of joint '{named[name]}'",
@@ -118,7 +126,8 @@ def with_motor(joint: Joint, entry: Geared, *, armature_given: bool) -> Joint:
     return joint.with_properties(motor if armature_given else replace(motor, armature=(ratio * ratio * rotor,) * nv))
 
 
-def _pointer_of_name(entry: Geared, document: YamlDocument) -> Pointer:
+def name_in(entry: Geared, document: YamlDocument) -> Pointer:
+    """Where an entry of the list of actuators has the name of its joint."""
     value: Any = document.data
     for key in entry.pointer:
         value = value[key]

@@ -2,28 +2,24 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
 
 from eurdf.closures import REGISTRY
-from eurdf.diagnostics import Fix, Proposals
+from eurdf.diagnostics import Fix
 from eurdf.format.closure_model import ClosureEntry, NamedFrame
-from eurdf.format.fixes import renumbered
+from eurdf.format.fixes import named, removed, renumbered
 from eurdf.format.yaml_text import scalar
+from eurdf.linking.counterparts import changes_between, other_frame, unused_pairs
 from eurdf.linking.frame_names import FrameNames
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.constraint import RIGID, Closure, Compliance
 from eurdf.mechanism.pose import Pose, Vector3
 from eurdf.reading.yaml_node import Pointer
-from eurdf.reading.yaml_reader import YamlDocument, YamlReporter
+from eurdf.reading.yaml_reader import YamlReporter
 
-# A word of a name, or what is between two.
-_WORD = re.compile(r"([^\W\d_]+)")
-
-# A word or a number in a name, and those that name two sides.
-_PART = re.compile(r"[^\W\d_]+|\d+")
-_SIDES = ([{"1", "2"}], [{"a", "b"}], [{"A", "B"}])
+# Pairs of frames that are proposed, at most.
+_FEW = 3
 
 
 def link_closures(
@@ -49,8 +45,7 @@ def link_closures(
             continue
         taken[entry.name] = entry
         a, b = map(names.find, entry.frames)
-        others = partial(_paired_frames, entry, entries, names, reporter.document)
-        if a is None or b is None or not _movable(entry, a, b, rigid, reporter, others):
+        if a is None or b is None or not _movable(entry, a, b, rigid, entries, names, reporter):
             continue
         pair = frozenset({(a.body, a.pose), (b.body, b.pose)})
         if pair in joined:
@@ -58,8 +53,8 @@ def link_closures(
                 "closure-duplicate",
                 f"closure '{entry.name}' connects the same two frames as '{joined[pair]}'",
                 entry.pointer,
-                "which of them connects other frames?",
-                partial(_other_frames, entry, entries, names, reporter.document),
+                None,
+                _other_frames(entry, taken[joined[pair]], entries, names, reporter),
             )
             continue
         joined[pair] = entry.name
@@ -75,26 +70,6 @@ def link_closures(
             continue
         closures.append(kind(entry.name, a, b, compliance=_compliance(entry), **kind.values_of(entry.stated)))
     return tuple(closures)
-
-
-def _other_frames(
-    entry: ClosureEntry, entries: Sequence[ClosureEntry], names: FrameNames, document: YamlDocument
-) -> Iterator[Fix]:
-    """Fixes that name other frames, which no closure uses: one word of both names is another, as right for left."""
-    one, other = (frame.target for frame in entry.frames)
-    used = {frame.target for each in entries for frame in each.frames}
-    free = [name for name in names.known() if name not in used]
-    parts = _WORD.split(one)
-    for name in free if all(isinstance(frame, NamedFrame) for frame in entry.frames) else ():
-        pairs = [pair for pair in zip(parts, _WORD.split(name), strict=False) if pair[0] != pair[1]]
-        if len(pairs) != 1 or name.count(pairs[0][1]) != one.count(pairs[0][0]):
-            continue
-        beside = "".join(pairs[0][1] if part == pairs[0][0] else part for part in _WORD.split(other))
-        if beside in free:
-            new = zip(entry.frames, (name, beside), strict=True)
-            edits = tuple(document.edit(frame.pointer, scalar(each)) for frame, each in new)
-            what = f"'{name}' and '{beside}', which no closure uses"
-            yield Fix(f"name the frames {what}", edits, f"did you mean {what}?")
 
 
 def _compliance(entry: ClosureEntry) -> Compliance:
@@ -129,44 +104,79 @@ def _have_directions(entry: ClosureEntry, reporter: YamlReporter) -> bool:
     return False
 
 
+def _used(entries: Iterable[ClosureEntry]) -> list[tuple[str, str]]:
+    """The names of the frames of closures, where both are named."""
+    pairs = (entry.frames for entry in entries)
+    return [(a.target, b.target) for a, b in pairs if isinstance(a, NamedFrame) and isinstance(b, NamedFrame)]
+
+
+def _other_frames(
+    entry: ClosureEntry, first: ClosureEntry, entries: Sequence[ClosureEntry], names: FrameNames, reporter: YamlReporter
+) -> Iterator[Fix]:
+    """Proposals for a closure that repeats another one: frames that no closure uses, or to remove it."""
+    document = reporter.document
+    changes = changes_between(first.name, entry.name)
+    likely = [pair for pair in unused_pairs(_used(entries), names.known()) if pair.changes]
+    likely.sort(key=lambda pair: pair.changes.values() != changes.values())
+    for pair in likely[:_FEW]:
+        shown = f"'{pair.frames[0]}', '{pair.frames[1]}'"
+        edits = (
+            document.edit(side.pointer, scalar(name)) for side, name in zip(entry.frames, pair.frames, strict=True)
+        )
+        asked = f"did you mean {shown}, which no closure uses?"
+        yield Fix(f"name the frames {shown}, which no closure uses", tuple(edits), asked, rivals=len(likely) > 1)
+    if not likely:
+        yield from removed(document, entry.pointer, f"closure '{entry.name}'")
+        yield Fix("", (), "which of them connects other frames?")
+
+
+def _partners(
+    entry: ClosureEntry, entries: Iterable[ClosureEntry], names: FrameNames, reporter: YamlReporter
+) -> list[Fix]:
+    """Proposals to connect a frame of a closure to the one that pairs with it by name and that no closure uses."""
+    used = _used(entries)
+    free = frozenset(names.known()).difference(name for pair in used for name in pair)
+    fixes = []
+    for side, other in (entry.frames, entry.frames[::-1]):
+        if isinstance(side, NamedFrame) and (name := other_frame(side.target, used, free)):
+            edits = named(reporter.document, other.pointer, False, name)
+            asked = f"did you mean '{side.target}' and '{name}', which no closure uses?"
+            fixes.append(Fix(f"connect '{side.target}' to '{name}', which no closure uses", edits, asked))
+    return fixes
+
+
 def _movable(
-    entry: ClosureEntry, a: Anchor, b: Anchor, rigid: Mapping[str, str], reporter: YamlReporter, others: Proposals
+    entry: ClosureEntry,
+    a: Anchor,
+    b: Anchor,
+    rigid: Mapping[str, str],
+    entries: Iterable[ClosureEntry],
+    names: FrameNames,
+    reporter: YamlReporter,
 ) -> bool:
-    """EU-CLO-002, EU-CLO-003: the two frames are not one, and not fixed to one another; ``others`` name others."""
+    """EU-CLO-002, EU-CLO-003: the two frames are not one, and not fixed to one another."""
     if a.body == b.body and a.pose == b.pose:
         same = not a.frame or not b.frame or a.frame == b.frame
         what = f"a frame on '{a.body}'" if not a.frame else f"'{a.frame}'"
         message = f"{what} with itself" if same else f"'{a.frame}' with '{b.frame}', which is the same frame"
+        fixes = _partners(entry, entries, names, reporter)
         reporter.report(
             "closure-same-frame",
             f"closure '{entry.name}' connects {message}",
             entry.frames[1].pointer,
-            "name the frame on the other side of the cut",
+            None if fixes else "name the frame on the other side of the cut",
+            fixes[:1],
         )
         return False
     if rigid[a.body] == rigid[b.body]:
         which = f"'{a.body}'" if a.body == b.body else f"'{a.body}' and '{b.body}', which are fixed to each other"
+        fixes = _partners(entry, entries, names, reporter)
         reporter.report(
             "closure-same-body",
             f"closure '{entry.name}' connects two frames of one rigid body, {which}",
             entry.pointer,
-            "which frame is on the other side of the cut?",
-            others,
+            None if fixes else "which frames, that can move relative to each other, does it connect?",
+            fixes,
         )
         return False
     return True
-
-
-def _paired_frames(
-    entry: ClosureEntry, entries: Sequence[ClosureEntry], names: FrameNames, document: YamlDocument
-) -> Iterator[Fix]:
-    """Fixes that name a frame that no closure uses, whose name differs from the other's in the side: 1 or 2, a or b."""
-    used = {frame.target for each in entries for frame in each.frames}
-    for kept, changed in (entry.frames, entry.frames[::-1]):
-        parts = _PART.findall(kept.target)
-        for name in names.known() if isinstance(changed, NamedFrame) else ():
-            pairs = zip(parts, _PART.findall(name), strict=False)
-            if name not in used and [{*pair} for pair in pairs if pair[0] != pair[1]] in _SIDES:
-                what = f"'{name}', which no closure uses"
-                edits = (document.edit(changed.pointer, scalar(name)),)
-                yield Fix(f"name {what}, in place of '{changed.target}'", edits, f"did you mean {what}?")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import partial
 from itertools import chain
@@ -56,9 +56,9 @@ class FrameNames:
             return None
         return Anchor(body, Pose.from_xyz_rpy(reference.xyz, reference.rpy))
 
-    def known(self) -> Iterable[str]:
-        """All names of frames."""
-        return dict.fromkeys(chain(self._frames, self._urdf.links, self._urdf.joints, self._joints))
+    def known(self) -> Iterator[str]:
+        """The names of all links, joints and frames."""
+        return chain(self._frames, self._urdf.links, self._urdf.joints, self._joints)
 
     def _known(self, name: str) -> bool:
         return name in self._urdf.links or name in self._urdf.joints or name in self._joints
@@ -89,7 +89,8 @@ class FrameNames:
         if child is not None:
             return Anchor(child, frame=name)
         if name not in self._made.faulty:
-            self._report_unknown(name, "link, joint or frame", reference.pointer, self.known())
+            known = self.known()
+            self._report_unknown(name, "link, joint or frame", reference.pointer, known)
         return None
 
     def _either(self, name: str, pointer: Pointer) -> list[Fix]:

@@ -4,18 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from itertools import takewhile
 from typing import Any
 
-from eurdf.diagnostics.lines import BREAK
-from eurdf.format.model import VERSION2
-from eurdf.format.yaml_text import Value, flow, lines_of
+from eurdf.format.yaml_text import Value
 from eurdf.reading.yaml_node import YamlCollection, end_of, start_of
 from eurdf.reading.yaml_reader import YamlDocument, plain_data
-
-
-class NotEditable(Exception):  # noqa: N818 - shown to the user as it is
-    """The file has a form in which the configuration cannot be changed without changing something else."""
+from eurdf.writing.yaml_edits import NotEditable, YamlEdits
 
 
 def with_configuration(document: YamlDocument, name: str, coordinates: Mapping[str, Sequence[float]]) -> str:
@@ -29,123 +23,42 @@ def with_configuration(document: YamlDocument, name: str, coordinates: Mapping[s
         NotEditable: The result does not read back as it should, such as where an anchor is involved.
     """
     value: dict[str, Value] = {joint: _plain(values) for joint, values in coordinates.items()}
-    text = _ChangedText(document).stated(name, value)
+    edits = YamlEdits(document)
+    _state(edits, document, name, value)
+    text = edits.text()
     if not _reads_back(text, document.data, name, value):
         raise NotEditable(f"configuration '{name}' cannot be written without changing other parts of the file")
     return text
 
 
-class _ChangedText:
-    """One text and the changes to it."""
-
-    def __init__(self, document: YamlDocument) -> None:
-        self._text = document.source.text
-        self._root = document.root
-        self._as_json = document.root.is_flow
-        found = BREAK.search(self._text)
-        self._break = found.group() if found else "\n"
-        self._changes: list[tuple[int, int, str]] = []
-
-    def stated(self, name: str, value: dict[str, Value]) -> str:
-        configurations = self._root.nodes.get("configurations")
-        if configurations is None:
-            before = tuple(takewhile(lambda key: key != "configurations", VERSION2.all_keys))
-            last = [key for key in self._root.nodes if key in before][-1]
-            self._add(self._root, last, {"configurations": {name: value}})
-        elif not isinstance(configurations, YamlCollection):
-            raise NotEditable("'configurations' is an alias")
-        elif name in configurations.nodes:
-            self._replace(configurations, name, value)
-        elif configurations.nodes:
-            self._add(configurations, list(configurations.nodes)[-1], {name: value})
-        else:
-            self._fill(self._root, "configurations", {name: value})
-        text = self._text
-        for start, end, new in sorted(self._changes, reverse=True):
-            text = text[:start] + new + text[end:]
-        return text
-
-    def _replace(self, configurations: YamlCollection, name: str, value: dict[str, Value]) -> None:
-        """Give a configuration that is there its new coordinates, joint by joint, for comments may be between them."""
-        old = configurations.nodes[name]
-        if isinstance(old, YamlCollection) and not old.nodes:
-            self._fill(configurations, name, value)
-            return
-        if not isinstance(old, YamlCollection):  # an alias of a configuration
-            self._change(start_of(old), end_of(old), self._flow(value))
-            return
-        for joint, coordinates in value.items():
-            if joint in old.nodes and not _same(old.data[joint], coordinates):
-                start = start_of(old.nodes[joint])
-                # The items of a list may be below their key, which nothing else may.
-                deeper = "  " if self._indent(start) is not None and self._text[start] == "-" else ""
-                self._change(start, end_of(old.nodes[joint]), deeper + self._flow(coordinates))
-        new = {joint: coordinates for joint, coordinates in value.items() if joint not in old.nodes}
-        if new:
-            self._add(old, list(old.nodes)[-1], new)
-
-    def _add(self, mapping: YamlCollection, last: str | int, entries: Mapping[str, Value]) -> None:
-        """Add entries behind one that a mapping has."""
-        key_start, key_end = mapping.keys[last]
-        end = max(end_of(mapping.nodes[last]), key_end or 0)
-        indent = self._indent(key_start)
-        if mapping.is_flow:
-            # On a line of its own where that one is.
-            separator = ", " if indent is None else f",{self._break}{indent}"
-            text = "".join(f"{separator}{self._flow({key: value})[1:-1]}" for key, value in entries.items())
-            self._change(end, end, text)
-            return
-        if indent is None:
-            raise NotEditable("a key does not begin its line")
-        lines = [line for key, value in entries.items() for line in _lines(key, value)]
-        at = self._line_after(end)
-        text = "".join(f"{indent}{line}{self._break}" for line in lines)
-        begins_line = at == 0 or self._text[at - 1] in "\r\n"
-        self._change(at, at, text if begins_line else self._break + text)
-
-    def _fill(self, around: YamlCollection, key: str, value: Mapping[str, Value]) -> None:
-        """Give an empty mapping its entries: between its braces, or in lines below its key."""
-        lines = _lines(key, value)[1:]
-        start, end = start_of(around.nodes[key]), end_of(around.nodes[key])
-        indent = self._indent(around.keys[key][0])
-        if not lines or around.is_flow or indent is None:
-            self._change(start, end, self._flow(value))
-            return
-        while self._text[start - 1] == " ":  # behind the colon
-            start -= 1
-        self._change(start, end, (self._break + indent).join(("", *lines)))
-
-    def _flow(self, value: Value) -> str:
-        return _json(value) if self._as_json else flow(value)
-
-    def _change(self, start: int, end: int, new: str) -> None:
-        self._changes.append((start, end, new))
-
-    def _indent(self, index: int) -> str | None:
-        """What is before a character on its line, where that is blanks alone."""
-        begin = max(self._text.rfind("\n", 0, index), self._text.rfind("\r", 0, index)) + 1
-        before = self._text[begin:index]
-        return before if not before.strip(" ") else None
-
-    def _line_after(self, index: int) -> int:
-        """Where the line after a character begins; a block scalar ends there itself."""
-        if index and self._text[index - 1] in "\r\n":
-            return index
-        found = BREAK.search(self._text, index)
-        return found.end() if found else len(self._text)
+def _state(edits: YamlEdits, document: YamlDocument, name: str, value: dict[str, Value]) -> None:
+    configurations = document.root.nodes.get("configurations")
+    if isinstance(configurations, YamlCollection) and name in configurations.nodes:
+        _replace(edits, document, configurations, name, value)
+    else:
+        edits.add_entries("configurations", {name: value})
 
 
-def _lines(key: str, value: Value) -> Sequence[str]:
-    """The lines of an entry; each configuration begins one."""
-    if key == "configurations" and isinstance(value, Mapping):
-        return f"{key}:", *(f"  {line}" for name, inner in value.items() for line in lines_of(name, inner))
-    return lines_of(key, value)
-
-
-def _json(value: Value) -> str:
-    """A value in JSON, in which YAML too takes every character."""
-    text = json.dumps(value, ensure_ascii=False)
-    return "".join(one if one.isprintable() or ord(one) > 0xFFFF else f"\\u{ord(one):04x}" for one in text)
+def _replace(
+    edits: YamlEdits, document: YamlDocument, configurations: YamlCollection, name: str, value: dict[str, Value]
+) -> None:
+    """Give a configuration that is there its new coordinates, joint by joint, for comments may be between them."""
+    old = configurations.nodes[name]
+    if isinstance(old, YamlCollection) and not old.nodes:
+        edits.fill(configurations, name, value)
+        return
+    if not isinstance(old, YamlCollection):  # an alias of a configuration
+        edits.change(start_of(old), end_of(old), edits.flow(value))
+        return
+    for joint, coordinates in value.items():
+        if joint in old.nodes and not _same(old.data[joint], coordinates):
+            start = start_of(old.nodes[joint])
+            # The items of a list may be below their key, which nothing else may.
+            deeper = "  " if edits.indent(start) is not None and document.source.text[start] == "-" else ""
+            edits.change(start, end_of(old.nodes[joint]), deeper + edits.flow(coordinates))
+    new = {joint: coordinates for joint, coordinates in value.items() if joint not in old.nodes}
+    if new:
+        edits.add(old, list(old.nodes)[-1], new)
 
 
 def _plain(values: Sequence[float]) -> Value:

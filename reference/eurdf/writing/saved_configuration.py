@@ -20,7 +20,8 @@ from eurdf.pinocchio.robot import Robot
 from eurdf.reading.robot_source import RobotSource
 from eurdf.reading.source import BOM
 from eurdf.writing.atomic_file import write_atomically
-from eurdf.writing.edit_configuration import NotEditable, with_configuration
+from eurdf.writing.edit_configuration import with_configuration
+from eurdf.writing.yaml_edits import NotEditable
 
 NAME = "assembled"
 
