@@ -1,4 +1,4 @@
-"""The C on the pages: it compiles without a warning, runs, and gives what Python gives."""
+"""The C and C++ on the pages: it compiles, the C without a warning, runs, and gives what Python gives."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
@@ -72,3 +74,31 @@ def test_programs_reach_what_python_reaches(language: str, tmp_path: Path, monke
         asked = eurdf.transmissions.actuator_values(robot, {"free_pitch": -0.3, "free_roll": 0.05}).values
         assert motors == pytest.approx(list(asked.values()), abs=1e-4)
         encoders = motors
+
+
+def frame_pose(robot: eurdf.Robot, frame: str, q: np.ndarray) -> pin.SE3:
+    pin.framesForwardKinematics(robot.model, robot.data, q)
+    return robot.data.oMf[robot.model.getFrameId(frame)].copy()
+
+
+@pytest.mark.slow
+def test_program_on_page_of_cpp_computes_what_python_computes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    headers = Path(pin.__file__).parents[4] / "include"
+    if shutil.which("g++") is None or not all((headers / name).is_dir() for name in ("eigen3", "urdfdom_headers")):
+        pytest.skip("no g++ or no headers: install g++ and `pin[build]`")
+    monkeypatch.chdir(tmp_path)
+    text = (ROOT / "docs" / "cpp.md").read_text(encoding="utf-8")
+    shown = {block.language: block.text for block in read_blocks(text) if isinstance(block, Code)}
+    assert main(shown["sh"].partition("#")[0].split()[1:]) == 0
+    Path("leg.cpp").write_text(shown["cpp"] + "\n", encoding="utf-8")
+    written = subprocess.run(["bash", "-ec", shown["bash"]], check=True, capture_output=True, text=True).stdout
+    q, v, a = (np.array(line.split(), dtype=float) for line in written.splitlines())
+
+    robot = eurdf.load("digit_leg", geometry=False)  # its coordinates are those of the MJCF
+    assert np.abs(eurdf.residual(robot, q)).max() < 1e-9
+    assert np.abs(eurdf.residual_and_jacobian(robot, q)[1] @ v).max() < 1e-9
+    target = frame_pose(robot, "foot", robot.configurations["assembled"])
+    target.translation += np.array([0.1, 0.02, 0.1])
+    np.testing.assert_allclose(frame_pose(robot, "foot", q).homogeneous, target.homogeneous, rtol=0.0, atol=1e-9)
+    expected = eurdf.forward_dynamics(robot, q, v, {"motor_knee": 20.0}).a
+    np.testing.assert_allclose(a, expected, rtol=0.0, atol=1e-9 * np.abs(expected).max())
