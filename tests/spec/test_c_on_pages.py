@@ -92,9 +92,15 @@ def test_program_on_page_of_cpp_computes_what_python_computes(tmp_path: Path, mo
     assert main(shown["sh"].partition("#")[0].split()[1:]) == 0
     Path("leg.cpp").write_text(shown["cpp"] + "\n", encoding="utf-8")
     written = subprocess.run(["bash", "-ec", shown["bash"]], check=True, capture_output=True, text=True).stdout
-    q, v, a = (np.array(line.split(), dtype=float) for line in written.splitlines())
+    compare("digit_leg", written)
+    eurdf.export("digit_leg_3d", "mjcf").write("digit_leg_mjcf", force=True)
+    compare("digit_leg_3d", subprocess.run(["./leg"], check=True, capture_output=True, text=True).stdout)
 
-    robot = eurdf.load("digit_leg", geometry=False)  # its coordinates are those of the MJCF
+
+def compare(name: str, written: str) -> None:
+    """What the program computed of a robot whose coordinates are those of its MJCF, with what Python computes."""
+    q, v, a = (np.array(line.split(), dtype=float) for line in written.splitlines())
+    robot = eurdf.load(name, geometry=False)
     assert np.abs(eurdf.residual(robot, q)).max() < 1e-9
     assert np.abs(eurdf.residual_and_jacobian(robot, q)[1] @ v).max() < 1e-9
     target = frame_pose(robot, "foot", robot.configurations["assembled"])
