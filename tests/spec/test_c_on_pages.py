@@ -1,4 +1,4 @@
-"""The C and C++ on the pages: it compiles without a warning, runs, and gives what Python gives."""
+"""The C and C++ on the pages: it compiles, the C without a warning, runs, and gives what Python gives."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
@@ -97,3 +98,37 @@ def test_component_of_ros2_control_reaches_what_python_reaches(tmp_path: Path) -
     effort, velocity = at.G.T @ [10.0, 5.0], np.linalg.solve(at.G, [1.0, 2.0])
     for joint, row, *others in zip(joints, numbers[1], velocity, effort, strict=True):
         assert row == pytest.approx([*positions[joint], *others], abs=2e-4)
+
+
+def frame_pose(robot: eurdf.Robot, frame: str, q: np.ndarray) -> pin.SE3:
+    pin.framesForwardKinematics(robot.model, robot.data, q)
+    return robot.data.oMf[robot.model.getFrameId(frame)].copy()
+
+
+@pytest.mark.slow
+def test_program_on_page_of_cpp_computes_what_python_computes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    headers = Path(pin.__file__).parents[4] / "include"
+    if shutil.which("g++") is None or not all((headers / name).is_dir() for name in ("eigen3", "urdfdom_headers")):
+        pytest.skip("no g++ or no headers: install g++ and `pin[build]`")
+    monkeypatch.chdir(tmp_path)
+    text = (ROOT / "docs" / "cpp.md").read_text(encoding="utf-8")
+    shown = {block.language: block.text for block in read_blocks(text) if isinstance(block, Code)}
+    assert main(shown["sh"].partition("#")[0].split()[1:]) == 0
+    Path("leg.cpp").write_text(shown["cpp"] + "\n", encoding="utf-8")
+    written = subprocess.run(["bash", "-ec", shown["bash"]], check=True, capture_output=True, text=True).stdout
+    compare("digit_leg", written)
+    eurdf.export("digit_leg_3d", "mjcf").write("digit_leg_mjcf", force=True)
+    compare("digit_leg_3d", subprocess.run(["./leg"], check=True, capture_output=True, text=True).stdout)
+
+
+def compare(name: str, written: str) -> None:
+    """What the program computed of a robot whose coordinates are those of its MJCF, with what Python computes."""
+    q, v, a = (np.array(line.split(), dtype=float) for line in written.splitlines())
+    robot = eurdf.load(name, geometry=False)
+    assert np.abs(eurdf.residual(robot, q)).max() < 1e-9
+    assert np.abs(eurdf.residual_and_jacobian(robot, q)[1] @ v).max() < 1e-9
+    target = frame_pose(robot, "foot", robot.configurations["assembled"])
+    target.translation += np.array([0.1, 0.02, 0.1])
+    np.testing.assert_allclose(frame_pose(robot, "foot", q).homogeneous, target.homogeneous, rtol=0.0, atol=1e-9)
+    expected = eurdf.forward_dynamics(robot, q, v, {"motor_knee": 20.0}).a
+    np.testing.assert_allclose(a, expected, rtol=0.0, atol=1e-9 * np.abs(expected).max())
