@@ -237,14 +237,15 @@ def test_copied_closure_gets_the_frames_that_no_closure_uses() -> None:
     assert [*found.fix.texts().values()] == [text]
 
 
-def test_doubled_closure_gets_no_other_frames() -> None:
+def test_doubled_closure_is_removed_where_all_frames_are_used() -> None:
     text = (ROBOTS / "four_bar" / "robot.yaml").read_text(encoding="utf-8")
     doubled = text.replace(
         "closures:\n", "closures:\n  - {name: again, type: 3d, frames: [rocker_pin_a, rocker_pin_b]}\n"
     )
     (found,) = eurdf.check(doubled, urdf=ROBOTS / "four_bar" / "robot.urdf").diagnostics
     assert found.code == "closure-duplicate"
-    assert found.fix is None
+    assert found.fix is not None
+    assert found.fix.summary == "remove closure 'rocker_pin'"
 
 
 def test_closure_of_one_body_gets_the_frame_of_the_other_side() -> None:

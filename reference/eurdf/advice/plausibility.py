@@ -40,7 +40,8 @@ _REFLECTED = 10.0
 # The part of the range of a mimic joint, as its leader makes it, that is at least within its own limits.
 _WITHIN = 0.5
 
-_OF_ACTUATORS = {"x-dependent-actuators", "x-uncontrolled-motion"}
+# Codes of actuators that are not those of the robot: what is wrong with their drives says nothing then.
+_OF_ACTUATORS = {"x-actuator-several", "x-dependent-actuators", "x-motor-not-actuated", "x-uncontrolled-motion"}
 
 
 class _Implausible(NamedTuple):

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 _LOCAL = frozenset(
     {
         *("x-angle-in-degrees", "x-length-in-millimetres", "x-tiny-robot", "x-quaternion-order"),
-        *("x-massless-link", "x-mimic-ignored", "x-no-actuator", "closure-type-unknown", "urdf-no-range"),
+        *("x-massless-link", "x-mimic-ignored", "x-no-actuator", "x-no-closure", "closure-type-unknown"),
+        *("x-implausible-inertia", "x-implausible-mimic", "urdf-no-range"),
     }
 )
 

@@ -20,6 +20,9 @@ _SIDES = frozenset().union(*_OPPOSITE)
 # Those that number parts; x, y and z are directions.
 _LETTERS = frozenset("abcdefgh")
 
+# The two ends of a cut.
+_ENDS = (frozenset("12"), frozenset("ab"))
+
 #: By the number of a word in a name, that word and another one in its place, in lower case.
 Changes = Mapping[int, tuple[str, str]]
 
@@ -116,14 +119,16 @@ def unused_pairs(used: Iterable[Frames], names: Iterable[str]) -> list[LikePair]
 
 
 def other_frame(name: str, used: Iterable[Frames], names: Collection[str]) -> str | None:
-    """The frame that pairs with one as those of another closure do, if there is one."""
+    """The frame that pairs with one as those of another closure do, or as 1 does with 2, or a with b; if there is one."""
     for a, b in used:
         for this, other in ((a, b), (b, a)):
             changes = changes_between(this, name)
             found = renamed(other, changes)
             if changes and found in names and found not in (name, other):
                 return found
-    return None
+    pairs = ((each, changes_between(name, each)) for each in names)
+    beside = [each for each, changes in pairs if len(changes) == 1 and frozenset(*changes.values()) in _ENDS]
+    return beside[0] if len(beside) == 1 else None
 
 
 def _cased(word: str, new: str | None) -> str:
