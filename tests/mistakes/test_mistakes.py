@@ -146,5 +146,5 @@ def test_few_causes_are_not_named(families: list[str], least: float) -> None:
     assert sum(each.named for each in of_these) >= least * len(of_these)
 
 
-def test_few_mistakes_are_not_found() -> None:
-    assert sum(each.silent for each in MISTAKES) <= 4
+def test_few_wrong_values_are_not_found() -> None:
+    assert sum(each.silent for each in MISTAKES if each.family.startswith("values")) <= 4
