@@ -1,7 +1,8 @@
 """Run measurements by name: ``python -m benchmarks load growth commands``.
 
 ``python -m benchmarks fuzz`` runs the mutation campaign, ``… simulators`` other simulators on exported robots,
-``… claims`` what the comparison with other formats says was seen by running, and ``… toolbox`` the published toolbox.
+``… claims`` what the comparison with other formats says was seen by running, ``… toolbox`` the published toolbox, and
+``… control`` what control and training get otherwise.
 """
 
 from __future__ import annotations
@@ -13,10 +14,12 @@ from pathlib import Path
 from types import ModuleType
 
 from benchmarks import (
+    array_map,
     assembly,
     batch,
     commands,
     conformance,
+    control,
     derivatives,
     dynamics,
     forward_kinematics,
@@ -52,6 +55,7 @@ MEASUREMENTS: dict[str, ModuleType] = {
     "batch": batch,
     "python_cost": python_cost,
     "transmission": transmission,
+    "array_map": array_map,
     "conformance": conformance,
 }
 
@@ -61,6 +65,7 @@ OTHERS: dict[str, ModuleType] = {
     "simulators": simulators,
     "claims": claims,
     "toolbox": toolbox,
+    "control": control,
 }
 
 

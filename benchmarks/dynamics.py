@@ -70,11 +70,14 @@ def states(robot: eurdf.Robot, count: int = 20) -> list[tuple[Vector, Vector]]:
 class Peers:
     """The same by Pinocchio and NumPy, which are given the force of the springs: Pinocchio knows none."""
 
-    def __init__(self, robot: eurdf.Robot) -> None:
+    def __init__(self, robot: eurdf.Robot, gains: tuple[float, float] | None = None) -> None:
         self._model, self._data = robot.model, robot.model.createData()
         self._models, self._datas = pin.StdVec_RigidConstraintModel(), pin.StdVec_RigidConstraintData()
         for constraint_model in robot.constraint_models:
             self._models.append(constraint_model)
+            if gains is not None:
+                own = self._models[-1].m_baumgarte_parameters
+                own.Kp, own.Kd = gains
             self._datas.append(constraint_model.createData())
         self._each = list(zip(robot.constraint_models, self._datas, strict=True))
         self._settings = pin.ProximalSettings(1e-14, 1e-14, 1e-8, 50)
@@ -88,11 +91,11 @@ class Peers:
         a = pin.constraintDynamics(model, data, q, v, tau, self._models, self._datas, self._settings)
         return np.array(a), -data.lambda_c
 
-    def derivatives(self, q: Vector, v: Vector, u: Vector, passive: Vector) -> Vector:
-        """The derivative of the acceleration by q (nv, nv); those by v and τ are computed too."""
+    def derivatives(self, q: Vector, v: Vector, u: Vector, passive: Vector) -> tuple[Vector, Vector, Vector]:
+        """The derivatives of the acceleration by q, v and τ, each (nv, nv)."""
         self.forward(q, v, u, passive)
         pin.computeConstraintDynamicsDerivatives(self._model, self._data, self._models, self._datas, self._settings)
-        return np.array(self._data.ddq_dq)
+        return np.array(self._data.ddq_dq), np.array(self._data.ddq_dv), np.array(self._data.ddq_dtau)
 
     def inverse(self, q: Vector, v: Vector, a: Vector, passive: Vector) -> tuple[Vector, Vector]:
         """Motor torques (nu,) and λ (nc,)."""

@@ -19,6 +19,7 @@ SECTIONS = {
     "Inverse kinematics": "inverse_kinematics",
     "Derivatives": "derivatives",
     "Batches": "batch",
+    "Array maps of transmissions": "array_map",
     "Growth": "growth",
     "What Python costs": "python_cost",
     "Commands": "commands",

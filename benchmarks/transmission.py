@@ -67,8 +67,8 @@ def main() -> None:
         found = eurdf.transmissions.workspace(robot, joints, grid=13 if len(joints) < 3 else 7)
         positions = np.random.default_rng(0).permutation(found.positions)
         K, called = least_times((_evaluated(robot, prepared.q), _moving(prepared, positions)), 200)
-        in_c, sine = _c_time(prepared, positions, "double")
-        in_float, _ = _c_time(prepared, positions, "float")
+        in_c, sine = c_time(prepared, positions, "double")
+        in_float, _ = c_time(prepared, positions, "float")
         times = " ".join(f"{1e6 * time:6.2f} µs" for time in (K, called, in_c, in_float))
         print(f"{name:20} {times} {1e9 * sine:6.1f} ns")
 
@@ -82,7 +82,7 @@ def _moving(prepared: eurdf.transmissions.PreparedTransmission, positions: np.nd
     return lambda: prepared.at_joints(next(each))
 
 
-def _c_time(
+def c_time(
     prepared: eurdf.transmissions.PreparedTransmission, positions: np.ndarray, real: Literal["double", "float"]
 ) -> tuple[float, float]:
     """Seconds of a call, and of one of `sin`."""

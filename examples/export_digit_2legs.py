@@ -58,6 +58,7 @@ def main(folder: str | Path = ".") -> Trainable:
     assert key is not None
     key.set("qpos", " ".join(map(repr, raised.tolist())))
     path = Path(folder) / "digit_2legs.xml"
+    path.parent.mkdir(parents=True, exist_ok=True)
     path.write_bytes(etree.tostring(root, xml_declaration=True, encoding="UTF-8"))
 
     model = mujoco.MjModel.from_xml_path(str(path))

@@ -28,6 +28,9 @@ PACKAGE = "eurdf"
 #: The public modules, except that of batches.
 DOORS = ("results", "errors", "kinematics", "springs", "transmissions", "convert", "viewing")
 
+# Modules that need an extra: their names are documented on a page of their own.
+_ADAPTERS = ("crocoddyl", "pink")
+
 # Marks the reference of a name in backticks.
 _QUOTED = "eu-quoted"
 
@@ -41,7 +44,7 @@ _ALIAS = re.compile(r"(?<![\w.'\"])[A-Z]\w*\b(?![.'\"])")
 _SUBSCRIPT = re.compile(r"(?:(?<=\b[^\W\d_])|(?<=[²Δ][^\W\d_]))_([A-Za-z]{1,2})(?![A-Za-z0-9_(])")
 
 # A name in the text of a page; a file such as eurdf.yaml is none.
-_PUBLIC_NAME = re.compile(rf"{PACKAGE}(\.[A-Za-z]\w*)+")
+_PUBLIC_NAME = re.compile(rf"{PACKAGE}(?!\.(?:{'|'.join(_ADAPTERS)})\b)(\.[A-Za-z]\w*)+")
 
 # The module of a type, where Sphinx writes that it need not be shown.
 _QUALIFIED = re.compile(r"~(?:\w+\.)*")

@@ -31,8 +31,9 @@ FOLDERS = ("spec", "docs")
 #: code host would show as code.
 BELOW = {"export.md": "export_*.md"}
 
-# The target of a link or picture out of the folder of the page, without its anchor.
-_OUTSIDE = re.compile(r"(?<=\]\()\.\./(?P<path>[^)#\s]+)")
+# The target of a link or picture out of the folder of the page, or of a link to a page in a folder below, without its
+# anchor.
+_OUTSIDE = re.compile(r"(?<=\]\()(?:\.\./(?P<path>[^)#\s]+)|(?P<below>\w+/[^)#\s]+\.md))")
 
 
 def page_files(source: Path) -> dict[str, Path]:
@@ -112,10 +113,13 @@ def on_the_site(target: str, pages: Path) -> str | None:
 
 
 def _translate_links(app: Sphinx, page: str, content: list[str]) -> None:
+    folder = next((each for each in FOLDERS if (ROOT / each / f"{page}.md").exists()), "")
+
     def translated(match: re.Match[str]) -> str:
-        url = on_the_site(match["path"], Path(app.srcdir))
+        path = match["path"] or f"{folder}/{match['below']}"
+        url = on_the_site(path, Path(app.srcdir))
         if url is None:
-            _LOGGER.warning("the repository has no file '%s'", match["path"], location=page)
+            _LOGGER.warning("the repository has no file '%s'", path, location=page)
         return url or match[0]
 
     content[0] = _OUTSIDE.sub(translated, content[0])

@@ -85,6 +85,19 @@ def test_table_shows_limits_and_inertia(capsys: pytest.CaptureFixture[str]) -> N
         main([*G1, "--grid", "2", "--at", "assembled"])
 
 
+def test_python_is_written_beside_c_or_neither(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    c, python = str(tmp_path / "c"), tmp_path / "training"
+    _, err = ran(capsys, *G1, "--python", str(python))
+    (file,) = python.iterdir()
+    assert f"wrote '{file}'" in err
+    before = file.stat().st_mtime_ns
+    assert "--force replaces it" in ran(capsys, *G1, "--c", c, "--python", str(python), code=2)[1]
+    assert not Path(c).exists()
+    assert file.stat().st_mtime_ns == before
+    ran(capsys, *G1, "--c", c, "--python", str(python), "--force")
+    assert len(list(Path(c).iterdir())) == 2
+
+
 def test_missing_map_exits_with_one(capsys: pytest.CaptureFixture[str]) -> None:
     out, err = ran(capsys, "transmission", "kangaroo_leg", "--joints", "free_ankle_y", "free_ankle_x", code=1)
     assert "add 'free_knee' to the joints" in err
@@ -100,7 +113,7 @@ def test_missing_map_exits_with_one(capsys: pytest.CaptureFixture[str]) -> None:
         (["--joints", "free_pitch", "--at", "nowhere"], "the configurations are: assembled"),
         (["--joints", "free_pitch", "--grid", "1"], "--grid 1 makes 1 poses; give 2 to 1000000"),
         (["--joints", "free_pitch", "--force"], "--force has no effect without --csv"),
-        (["--joints", "free_pitch", "--single"], "--single has no effect without --c; add it"),
+        (["--joints", "free_pitch", "--single"], "--single has no effect without --c or --ros2; add one"),
         (["--joints", "universal_rod_a", "--grid", "3"], "has no limits"),
     ],
 )

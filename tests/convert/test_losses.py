@@ -107,6 +107,7 @@ def robots() -> Iterator[tuple[Mechanism, dict[str, Any]]]:
     yield replace(rich, motors={}), {}
     for name in ("four_bar", "digit_leg_3d"):
         yield eurdf.load(name, geometry=False).mechanism, {"closures": "hinge"}
+    yield eurdf.load("talos_leg", geometry=False).mechanism, {"joints": "hinge"}
     yield _odd(mechanism, SKEW), {}
     yield replace(_odd(mechanism, PERPENDICULAR), root="fixed"), {}
     # No closed configuration: the ends of the closures are far away from each other.

@@ -39,6 +39,7 @@ WITHOUT_DATA = {"view", "plot_workspace"}
 #: Methods that change the object, write files, or return texts; and what is shared by design: the memory of a robot.
 NOT_CALLED = {"reset", "write", "start_at_joints", "start_at_motors", "c_source", "passes", "followed_by", "to_json"}
 NOT_CALLED |= {"on_grid", "nearest", "cached", "derived", "data", "tree", "diagnose", "no_geometry", "of"}
+NOT_CALLED |= {"python_source", "array_map", "ros2_package"}  # as `c_source`; functions in a namespace that is given
 NOT_CALLED |= {"times"}  # of calls, measured
 
 #: Objects of other libraries, and what a result refers to and does not own.
@@ -317,7 +318,8 @@ def test_results_print_in_few_lines_with_units(tmp_path: Path) -> None:
             several = case.arguments["robot"], joints, np.tile(case.arguments["q"], (2, 1))
             results |= {"transmissions": eurdf.transmission(*several), "boundary": results["workspace"].boundary}
             results["common"] = eurdf.transmissions.serial_limits(*several)
-        for each in objects(results, {}):
+        maps = [eurdf.transmissions.prepare_transmission(*several[:2]).array_map(np)] if joints else []
+        for each in (*objects(results, {}), *maps):  # what a map refers to is a whole library
             seen.update(type(each).__mro__)
             if type(each) in kinds:
                 text = repr(each)

@@ -1,4 +1,4 @@
-"""The C on the pages: it compiles without a warning, runs, and gives what Python gives."""
+"""The C and C++ on the pages: it compiles without a warning, runs, and gives what Python gives."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
 import pytest
 
 import eurdf
@@ -72,3 +73,27 @@ def test_programs_reach_what_python_reaches(language: str, tmp_path: Path, monke
         asked = eurdf.transmissions.actuator_values(robot, {"free_pitch": -0.3, "free_roll": 0.05}).values
         assert motors == pytest.approx(list(asked.values()), abs=1e-4)
         encoders = motors
+
+
+def test_component_of_ros2_control_reaches_what_python_reaches(tmp_path: Path) -> None:
+    page = (ROOT / "docs" / "humanoids.md").read_text(encoding="utf-8")
+    (command,) = re.findall(r"^eurdf (transmission .*) --ros2 ankle$", page, re.MULTILINE)
+    ((program, shown),) = re.findall(r"^```cpp\n(.*?)^```\n\n```text\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
+    if shutil.which("cc") is None or shutil.which("c++") is None:
+        pytest.skip("no compiler: install `cc` and `c++`")
+    assert main([*command.split(), "--ros2", str(tmp_path)]) == 0
+    (generated,), (folder,) = tmp_path.glob("src/*.c"), tmp_path.glob("include/*")
+    made, objects, source = tmp_path / "program", tmp_path / "generated.o", tmp_path / "program.cpp"
+    source.write_text(program, encoding="utf-8")
+    subprocess.run(["cc", "-std=c99", *STRICT, f"-I{folder}", "-c", generated, "-o", objects], check=True)
+    include = f"-I{folder.parent}", f"-I{ROOT / 'tests' / 'support' / 'ros2_control' / 'include'}"
+    subprocess.run(["c++", "-std=c++17", *STRICT, *include, source, objects, "-lm", "-o", made], check=True)
+    given = subprocess.run([made], check=True, capture_output=True, text=True).stdout
+    numbers = [np.array(re.findall(r"-?\d+\.\d+", text), float).reshape(2, 3) for text in (shown, given)]
+    assert numbers[0] == pytest.approx(numbers[1], abs=2e-4)
+    robot, joints = eurdf.load("unitree_g1_ankle", geometry=False), ["free_pitch", "free_roll"]
+    q = eurdf.forward_kinematics(robot, {"motor_a": 0.2, "motor_b": -0.5})
+    at, positions = eurdf.transmission(robot, joints, q), robot.joint_positions(q)
+    effort, velocity = at.G.T @ [10.0, 5.0], np.linalg.solve(at.G, [1.0, 2.0])
+    for joint, row, *others in zip(joints, numbers[1], velocity, effort, strict=True):
+        assert row == pytest.approx([*positions[joint], *others], abs=2e-4)

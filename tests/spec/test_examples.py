@@ -28,6 +28,13 @@ from support.places import ROOT
 pytestmark = pytest.mark.slow
 
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
+#: The rows of the README.
+LISTED = dict(re.findall(r"^\| `(\w+\.py)`(.*)", (ROOT / "examples" / "README.md").read_text(encoding="utf-8"), re.M))
+NEEDED = {
+    "squat_torques": ("matplotlib",),
+    "reach_with_pink": ("pink", "daqp"),
+    "squat_with_crocoddyl": ("crocoddyl",),
+}
 PAGE = (ROOT / "docs" / "toolbox.md").read_text(encoding="utf-8")
 
 needs_matplotlib = pytest.mark.skipif(
@@ -135,8 +142,7 @@ def test_robots_squat_on_both_feet(name: str) -> None:
 
 
 def test_examples_readme_lists_all() -> None:
-    listed = re.findall(r"^\| `(\w+\.py)`", (ROOT / "examples" / "README.md").read_text(encoding="utf-8"), re.M)
-    assert sorted(listed) == [path.name for path in EXAMPLES]
+    assert sorted(LISTED) == [path.name for path in EXAMPLES]
 
 
 def test_code_on_page_gives_the_twist() -> None:
@@ -203,13 +209,23 @@ def test_picture_of_squat_is_written(tmp_path: Path, squat: squat_torques.Squat)
     assert "[s]" in torques.get_xlabel()
 
 
+def test_examples_have_their_commands_on_the_page() -> None:
+    page = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
+    assert sorted(re.findall(r"^python examples/(\w+\.py) ", page, re.M)) == [path.name for path in EXAMPLES]
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_example_script_prints_its_result(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(sys, "argv", ["follow_foot_trajectory.py", str(tmp_path)])
-    runpy.run_path(str(ROOT / "examples" / "follow_foot_trajectory.py"), run_name="__main__")
-    assert "closures open by" in capsys.readouterr().out
-    assert (tmp_path / "foot_trajectory.csv").is_file()
+    for module in NEEDED.get(path.stem, ()):
+        pytest.importorskip(module, reason=f"{module} is not installed: pip install -e '.[examples,pink]'")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "argv", [path.name])
+    runpy.run_path(str(path), run_name="__main__")
+    assert re.search(r"\d", capsys.readouterr().out)
+    written = re.findall(r"writes `([\w.]+)`", LISTED[path.name])
+    assert sorted(each.name for each in tmp_path.iterdir()) == written
 
 
 def test_derivative_claim_on_page_is_right() -> None:

@@ -89,7 +89,7 @@ PAGES = ("solidworks", "onshape")
 #: Pages whose commands and code are run, as a reader of the page would.
 FOLLOWED = [
     *(f"docs/{name}" for name in ("from_mjcf", "from_sdf", "from_toolbox", "from_urdf_plus")),
-    pytest.param("docs/humanoids", marks=pytest.mark.slow),
+    *(pytest.param(f"docs/{name}", marks=pytest.mark.slow) for name in ("humanoids", "training")),
     *(f"spec/{name}" for name in (*PAGES, "tutorial")),
 ]
 

@@ -205,6 +205,7 @@ def test_full_disk_leaves_no_file_and_names_it(here: Path) -> None:
         "export leg --to mjcf -o sdf --force": "sdf/robot.xml",
         "import sdf/robot.sdf -o new": "new/robot.urdf",
         "transmission unitree_g1_ankle --joints free_pitch free_roll --c new": "new/",
+        "transmission unitree_g1_ankle --joints free_pitch free_roll --ros2 new": "new/",
     }
     said = subprocess.run(
         [sys.executable, "-c", FULL_DISK], input="\n".join(commands), capture_output=True, text=True, check=True
@@ -228,6 +229,7 @@ def test_full_disk_leaves_no_file_and_names_it(here: Path) -> None:
         ("schema --for leg/robot.urdf -o new.json", "new.json"),
         ("export leg --to sdf -o new", "new/robot.sdf"),
         ("import there/robot.sdf -o new", "new/robot.yaml"),
+        ("transmission unitree_g1_ankle --joints free_pitch free_roll --ros2 new", "new/package.xml"),
         ("view leg -o new.html", "new.html"),
         ("picture leg -o new.svg --graph", "new.svg"),
     ],

@@ -77,7 +77,8 @@ def export(
         default="stated",
     ),
     joints: JointChoice = option(
-        "hinge: ball joints become three hinges, about x, y and z, in MJCF; default: stated",
+        "hinge: no ball joints in MJCF: those of rods become universal joints and 3d closures, others three hinges, "
+        "about x, y and z; default: stated",
         choices=JOINTS,
         default="stated",
     ),

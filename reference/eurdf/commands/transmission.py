@@ -7,8 +7,9 @@ import io
 import json as json_text
 import os
 from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from eurdf.commands.command import JSON, ROBOT, SERIAL_JOINTS, SERIAL_MOTORS, cannot_run, command, flag, option
 from eurdf.commands.output import write_result
@@ -43,6 +44,7 @@ _MOST_POSES = 1_000_000
         "eurdf transmission unitree_g1_ankle --joints free_pitch free_roll",
         "eurdf transmission unitree_g1_ankle --joints free_pitch free_roll --grid 41 --csv ankle.csv",
         "eurdf transmission unitree_g1_ankle --joints free_pitch free_roll --plot ankle.pdf --c controller",
+        "eurdf transmission unitree_g1_ankle --joints free_pitch free_roll --python training",
     ),
 )
 def transmission(
@@ -68,17 +70,24 @@ def transmission(
     c: str | None = option(
         "write the map as C99 without dependencies, for controllers; it starts at --at", metavar="FOLDER"
     ),
-    single: bool = flag("let --c compute in single precision, for controllers without double"),
-    force: bool = flag("replace files of --csv, --plot and --c"),
+    ros2: str | None = option(
+        "write a package of ROS 2 with the map as a plugin of ros2_control; it starts at --at", metavar="FOLDER"
+    ),
+    python: str | None = option(
+        "write the map for arrays of NumPy, JAX or torch as one Python file without dependencies, for training",
+        metavar="FOLDER",
+    ),
+    single: bool = flag("let --c and --ros2 compute in single precision, for controllers without double"),
+    force: bool = flag("replace files of --csv, --plot, --c, --ros2 and --python"),
 ) -> int:
     """Show the transmission."""
     import eurdf
     from eurdf.errors import EurdfError, NoTransmission
 
-    if force and not (table or plot or c):
-        raise CannotRun("--force has no effect without --csv, --plot or --c; add one of them")
-    if single and not c:
-        raise CannotRun("--single has no effect without --c; add it")
+    if force and not (table or plot or c or ros2 or python):
+        raise CannotRun("--force has no effect without --csv, --plot, --c, --ros2 or --python; add one of them")
+    if single and not (c or ros2):
+        raise CannotRun("--single has no effect without --c or --ros2; add one of them")
     for file in (table, plot):
         if file:
             refuse_to_replace(file, force)
@@ -95,13 +104,22 @@ def transmission(
                 found = workspace(robot, joints, q, motors=motors, grid=_FIGURE if grid is None else grid)
                 with writing():
                     written.append(os.fspath(plot_workspace(found, plot)))
-            if c:
+            if c or ros2 or python:
                 from eurdf.transmissions.prepared import prepare_transmission
 
                 prepared = prepare_transmission(robot, joints, q, motors=motors)
-                source = prepared.c_source(real="float" if single else "double")
+                real: Literal["double", "float"] = "float" if single else "double"
+                makers = (
+                    (c, partial(prepared.c_source, real=real)),
+                    (ros2, partial(prepared.ros2_package, real=real)),
+                    (python, prepared.python_source),
+                )
+                sources = [(folder, make()) for folder, make in makers if folder]
+                for file in (os.path.join(folder, name) for folder, source in sources for name in source.files):
+                    refuse_to_replace(file, force)
                 with writing():
-                    written += [os.fspath(each) for each in source.write(c, force=force)]
+                    for folder, source in sources:
+                        written += map(os.fspath, source.write(folder, force=force))
     except NoTransmission as reason:
         write_notes([str(reason)])
         return 1

@@ -27,6 +27,7 @@ from eurdf.convert.formats import (
 from eurdf.convert.hinges import with_hinges
 from eurdf.convert.losses import Effect, Loss, Losses
 from eurdf.convert.parts import OwnVectors
+from eurdf.convert.rods import without_balls_of_rods
 from eurdf.convert.verification.verify import Verification, verify
 from eurdf.diagnostics import did_you_mean
 from eurdf.errors import CannotExport, InvalidRobot
@@ -72,7 +73,7 @@ class Export:
         files: Content of each file by its path relative to a folder; the main file is the first.
         losses: What is not as in the robot; empty if the file says everything.
         coordinates: From q and v of the robot to those of the exported model, and back.
-        robot: The robot, with the closures that were exported.
+        robot: The robot, with the closures and joints that were exported.
         start: The configuration (nq,) that simulations start from; neutral if no closed one was found.
     """
 
@@ -162,9 +163,10 @@ def export(
             ``position`` or ``none``.
         closures: ``stated`` keeps the closures of the description; with ``hinge``, each 3d closure whose bodies turn
             about one axis alone becomes a hinge, for solvers without ball joints in loops.
-        joints: ``stated`` keeps ball joints; with ``hinge``, which is for ``mjcf`` alone, each becomes three hinges of
-            one body, about x, y and z of the joint's frame in this order, for programs without ball joints. They are
-            singular where the second angle is ±π/2 rad.
+        joints: ``stated`` keeps ball joints; ``hinge``, which is for ``mjcf`` alone, is for programs without them. A
+            passive one of a rod becomes a 3d closure, in place of a 6d closure, or a universal joint: q and v of
+            `Export.coordinates` are then those of `Export.robot`. Others become three hinges of one body, about x, y
+            and z of the joint's frame in this order. These are singular where the second angle is ±π/2 rad.
         mesh_files: ``copy`` writes them to ``meshes/`` beside the file; with ``reference`` the file names them where
             they are, by their absolute paths.
         strict: Whether to refuse losses that are not exact.
@@ -238,13 +240,15 @@ def _export(
     if contacts:
         robot = replace(robot, mechanism=replace(robot.mechanism, contacts=()))
     configurations = _configurations(robot, choices.configuration)
+    format_ = export_format(to)
+    losses = Losses((*format_.rows, *UNKNOWN))
+    if choices.joints == "hinge":
+        robot, configurations = without_balls_of_rods(robot, configurations, losses)
     replaced: tuple[Loss, ...] = ()
     if choices.closures == "hinge" and configurations:
         closed = robot.configuration(next(iter(configurations.values())))
         robot, replaced = with_hinges(robot, closed)
-    format_ = export_format(to)
     mechanism = robot.mechanism
-    losses = Losses((*format_.rows, *UNKNOWN))
     losses.find(replace(mechanism, contacts=contacts), choices.actuators, format_.exact)
     given = ExportInput(
         mechanism,

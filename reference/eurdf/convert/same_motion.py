@@ -31,7 +31,7 @@ _CONFIGURATIONS, _STEP = 12, 0.2
 _CALLS = 15
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class SameMotion:
     """How far two robots differ along a random motion.
 
@@ -53,6 +53,9 @@ class SameMotion:
         if self.acceleration is None:
             return f"{found}; accelerations are not compared, since a joint without inertia can move"
         return f"{found}, accelerations by {self.acceleration:.1g}"
+
+    def __repr__(self) -> str:
+        return f"<SameMotion: {self}>"
 
 
 def compare_motion(

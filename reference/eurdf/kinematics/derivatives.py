@@ -66,11 +66,15 @@ class DynamicsDerivatives(NamedTuple):
 
 
 class DerivativesTask(NamedTuple):
-    """What is the same for all states; see `dynamics_derivatives`."""
+    """What is the same for all states; see `dynamics_derivatives`.
+
+    If redundant rows may contradict each other (not ``closed``), the derivatives lack how this changes.
+    """
 
     robot: Robot
     gains: tuple[float, float] | None
     dissipation: bool
+    closed: bool = True
 
 
 def dynamics_derivatives(
@@ -134,7 +138,7 @@ def derivatives_at(task: DerivativesTask, q: Matrix, v: Matrix, forces: Matrix) 
         state = MotionState(structure, dynamics, constraints, q, v, a)
         vary = state.variation(lambdas, gains, dissipation=task.dissipation)
         response, inverse = _response(robot, vary)
-        if inverse is not None:
+        if inverse is not None and task.closed:
             kp, kd = gains.T[:, structure.constraint_of_row]
             C = times(vary.K, a) + constraints.drift(q, v) + kd * times(vary.K, v)
             _refuse_contradictions(C + kp * constraints.residual(constraints.at(q)), v, a)

@@ -1,5 +1,6 @@
 """The public names, each with the module that defines it."""
 
+from eurdf.transmissions.array_kernel import ArrayMap as ArrayMap
 from eurdf.transmissions.grid_search import BoundaryPoint as BoundaryPoint
 from eurdf.transmissions.impedance import Impedance as Impedance
 from eurdf.transmissions.impedance import impedance_map as impedance_map

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import math
-import os
 import re
 import textwrap
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from importlib.resources import files
-from pathlib import Path
 from string import Template
 
 from eurdf.array import Matrix, Vector
@@ -29,10 +26,20 @@ from eurdf.kinematics.tolerances import (
     RESTARTS,
     SHORTEST_STEP,
 )
-from eurdf.transmissions.c_tables import KINDS, Tables, array, constraint_entry, drive_entry, literal, rows_of, table
+from eurdf.transmissions.c_tables import (
+    array,
+    constraint_entry,
+    drive_entry,
+    joint_entry,
+    literal,
+    rows_of,
+    table,
+    vector,
+)
 from eurdf.transmissions.drive import MOST_SUBSTEPS, SINGULAR, Drive
 from eurdf.transmissions.first_guess import Prediction, WorkspacePoses
-from eurdf.writing.output_folder import write_files
+from eurdf.transmissions.generated_source import GeneratedSource, checked_prefix
+from eurdf.transmissions.tables import Tables
 
 # Given velocities are independent if none of them opens the loops by more, dimensionless.
 _DETERMINED = 1e-6
@@ -67,29 +74,9 @@ _SINGLE = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class CSource:
-    """The transmission in C.
-
-    Attributes:
-        files: The content of the header and of the source, by file name.
-    """
-
-    files: Mapping[str, bytes]
-
-    def write(self, folder: str | os.PathLike[str], *, force: bool = False) -> tuple[Path, ...]:
-        """Write the files to a folder: all of them or none.
-
-        Raises:
-            FileExistsError: A file exists, and ``force`` is False.
-            OSError: A file cannot be written.
-        """
-        return write_files(folder, self.files, force=force)
-
-
 def c_source(
     drives: Sequence[Drive], poses: WorkspacePoses, q: Vector, prefix: str | None, steps: int, substeps: int, real: str
-) -> CSource:
+) -> GeneratedSource:
     """The source; see `eurdf.transmissions.prepared.PreparedTransmission.c_source`.
 
     Args:
@@ -102,12 +89,7 @@ def c_source(
         real: As there.
     """
     robot = drives[0].robot
-    name = prefix
-    if name is None:
-        made = re.sub(r"[^A-Za-z0-9_]", "_", f"{robot.mechanism.name}_transmission")
-        name = made.lstrip("_0123456789").lower() or "transmission"
-    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name):
-        raise ValueError(f"prefix is {name!r}; it must be an identifier of C: letters, digits and _")
+    name = checked_prefix(prefix, robot)
     for argument, count in (("steps", steps), ("substeps", substeps)):
         if not isinstance(count, int) or count < 1:
             raise ValueError(f"{argument} is {count!r}; it must be a positive integer")
@@ -121,7 +103,7 @@ def c_source(
     reaches = [poses.reach(drive.given) if len(stored) else 0.0 for drive in drives]
     limits = _limits(steps, substeps, guesses, len(stored))
     source = _source(tables, name, drives, q, guesses, reaches, stored, limits, real)
-    return CSource({f"{name}.h": header.encode(), f"{name}.c": source.encode()})
+    return GeneratedSource({f"{name}.h": header.encode(), f"{name}.c": source.encode()})
 
 
 def _header(
@@ -223,14 +205,10 @@ def _source(
     path: list[str] = []
     constraints: list[str] = []
     for index in tables.constraints:
-        constraint, of_rows = robot.constraints[index], rows[index]
-        if constraint.type not in KINDS:
-            raise ValueError(
-                f"constraint '{constraint.name}' is {constraint.type}, which the generated C does not support"
-            )
-        first = len(path)
-        path += [f"{{{joint}, {literal(factor)}}}" for joint, factor in tables.path(constraint)]
-        constraints.append(constraint_entry(constraint, tables, first, len(path), scale[of_rows]))
+        numbers, first = tables.numbers(robot.constraints[index]), len(path)
+        path += [f"{{{joint}, {literal(factor)}}}" for joint, factor in numbers.path]
+        entry = numbers, robot.constraints[index].rows, first, len(path), scale[rows[index]]
+        constraints.append(constraint_entry(*entry))
     place = {index: number for number, index in enumerate(tables.constraints)}
     calls = [_calls(name, drive, number, len(drives) > 1) for number, drive in enumerate(drives)]
     most_rows = max(rows_of(rows, drive) for drive in drives)
@@ -250,7 +228,7 @@ def _source(
         "LONGEST_MOTION": LONGEST_MOTION,
         "MOST_CORRECTION": MOST_CORRECTION,
     }
-    big = name.upper()
+    big, reference = name.upper(), next((each.reference for each in guesses if each), q)
     parts = [
         f'/* See {name}.h. */\n#include "{name}.h"\n\n#include <math.h>\n#include <stdint.h>\n',
         "\n".join(f"#define {key} {value}" for key, value in limits.items()),
@@ -259,14 +237,14 @@ def _source(
         f"#define CLOSED_POSE {big}_OK\n#define NOT_CLOSED {big}_NOT_CLOSED\n#define TOO_FAR {big}_TOO_FAR\n"
         f"#define AT_SINGULARITY {big}_SINGULAR\n#define NOT_FINITE {big}_NOT_FINITE",
         _file("tables.h").rstrip(),
-        f"static const double start[] = {tables.pose(q)};",
-        f"static const double reference[] = {tables.pose(next((each.reference for each in guesses if each), q))};",
-        table("double", "poses", map(tables.pose, stored if len(stored) else [q]), "[][COORDINATES]"),
+        f"static const double start[] = {vector(tables.pose(q))};",
+        f"static const double reference[] = {vector(tables.pose(reference))};",
+        table("double", "poses", map(vector, map(tables.pose, stored if len(stored) else [q])), "[][COORDINATES]"),
         array("double", "units", map(literal, tables.units)),
         array("double", "spreads", map(literal, SPREADS)),
         array("int", "coordinates", map(str, tables.coordinates)),
         array("int", "ball_coordinates", map(str, tables.balls)),
-        table("joint", "joints", ["{0, 0, 0, 0, 0, 0, 0, {0}, {0}, {0}, {0}}", *tables.joints]),
+        table("joint", "joints", ["{0, 0, 0, 0, 0, 0, 0, {0}, {0}, {0}, {0}}", *map(joint_entry, tables.joints)]),
         table("step", "path", path or ["{0, 0}"]),
         table("constraint", "constraints", constraints or ["{0}"]),
         *(

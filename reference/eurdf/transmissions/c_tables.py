@@ -3,175 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from eurdf.array import Vector
-from eurdf.closures import MODULES
-from eurdf.kinematics.tangent_space import TangentSpaces
-from eurdf.mechanism.body import WORLD
-from eurdf.mechanism.constraint import Closure, Constraint, Coupling
-from eurdf.mechanism.joint import Joint, Mimic
-from eurdf.mechanism.pose import IDENTITY, ORIGIN, Pose, Vector3, X, Y, Z, cross, direction
-from eurdf.pinocchio.mimic import following
+from eurdf.mechanism.pose import Pose, X, Y, Z
 from eurdf.transmissions.drive import Drive
 from eurdf.transmissions.first_guess import Prediction
-
-if TYPE_CHECKING:
-    from eurdf.pinocchio.robot import Robot
-
-#: What the kernel calls each kind of constraint.
-KINDS = {type_: module.upper() for type_, module in MODULES.items()} | {Coupling.type: "COUPLING"}
+from eurdf.transmissions.tables import ConstraintNumbers, Screw, Tables
 
 # Digits of a coefficient after the point, which are more than a first guess needs.
 _DIGITS = 9
 
 
-class Tables:
-    """The joints and constraints of some drives as numbers.
-
-    Attributes:
-        joints: Entry of each joint but number 0, which is at rest, parents first.
-        size: Number of coordinates.
-        units: Unit of each velocity.
-        coordinates: For each velocity its coordinate; -1 for the first of a ball, -2 for the others.
-        balls: For each velocity the first coordinate of its ball; -1 if it has none.
-        velocity: Index here of a velocity of the robot's model.
-        constraints: Indices of the constraints.
-    """
-
-    def __init__(self, robot: Robot, drives: Sequence[Drive]) -> None:
-        mechanism = robot.mechanism
-        self.robot = robot
-        self.constraints = sorted({index for drive in drives for index in drive.closures})
-        chosen = [robot.constraints[index] for index in self.constraints]
-        for constraint in chosen:
-            if any(anchor.body == WORLD for anchor in constraint.anchors):
-                raise ValueError(
-                    f"the C of a transmission cannot have the contact '{constraint.name}' of a floating robot; prepare "
-                    "it for the robot without contacts"
-                )
-        self._above = {joint.child: joint for joint in mechanism.joints}
-        relevant = {body for constraint in chosen for body in self._between(constraint)}
-        alone = {name for constraint in chosen for name in constraint.joints}
-        alone |= {name for drive in drives for name in (*drive.given.joints, *drive.asked.joints)}
-        mimics = following(mechanism).mimics
-        self.size = 0
-        self.velocity: dict[int, int] = {}
-        self.units: list[float] = []
-        self.coordinates: list[int] = []
-        self.balls: list[int] = []
-        own = {joint.name: mimics.get(joint.name) for joint in mechanism.joints if joint.child in relevant}
-        needed = {name if mimic is None else mimic.joint for name, mimic in own.items()} | alone
-        first: dict[str, tuple[int, int]] = {}
-        self._first = first
-        scale = robot.cached(TangentSpaces).scale
-        for name, slot in robot.slots.items():
-            if name not in needed:
-                continue
-            first[name] = self.size, len(self.units)
-            quaternion = slot.joint.type.quaternion
-            for k in range(slot.nv):
-                self.velocity[slot.idx_v + k] = len(self.units)
-                self.units.append(float(scale[slot.idx_v + k]))
-                of_ball = quaternion is not None and k >= quaternion
-                self.coordinates.append((-1 if k == quaternion else -2) if of_ball else self.size + k)
-                self.balls.append(self.size + (quaternion or 0) if of_ball else -1)
-            self.size += len(slot.joint.type.coordinates)
-        self.joints: list[str] = []
-        self.places: dict[str, tuple[int, Pose]] = {}
-        self.of_body: dict[str, range] = {}
-        self.of_joint: dict[str, int] = {}
-        for joint in mechanism.joints:
-            if joint.child in relevant:
-                self._add(joint, mimics.get(joint.name), first)
-            elif joint.name in alone:
-                self.of_joint[joint.name] = len(self.joints) + 1
-                self.joints += _screws(joint, 0, IDENTITY, *first[joint.name], None, len(self.joints) + 1)
-
-    def pose(self, q: Vector) -> str:
-        """The coordinates at a configuration (nq,), as an initializer."""
-        values = self.robot.joint_positions(q)
-        return vector(value for name in self._first for value in values[name])
-
-    def _add(self, joint: Joint, mimic: Mimic | None, first: Mapping[str, tuple[int, int]]) -> None:
-        parent, pose = self.places.get(joint.parent, (0, IDENTITY))
-        pose = pose * joint.placement
-        if joint.type.is_fixed:
-            self.places[joint.child] = parent, pose * joint.offset
-            self.of_body[joint.child] = range(0)
-            return
-        start = len(self.joints) + 1
-        leader = joint.name if mimic is None else mimic.joint
-        self.joints += _screws(joint, parent, pose, *first[leader], mimic, start)
-        self.of_joint[joint.name] = start
-        self.of_body[joint.child] = range(start, len(self.joints) + 1)
-        self.places[joint.child] = len(self.joints), joint.offset
-
-    def _way_up(self, body: str) -> list[str]:
-        """The body and what is above it."""
-        way = [body]
-        while way[-1] in self._above:
-            way.append(self._above[way[-1]].parent)
-        return way
-
-    def _between(self, constraint: Constraint) -> set[str]:
-        """The bodies on the way from one anchor to the other, without the one where they meet."""
-        ends = [set(self._way_up(anchor.body)) for anchor in constraint.anchors]
-        return ends[0] ^ ends[1] if ends else set()
-
-    def anchors(self, constraint: Constraint) -> list[tuple[int, Pose]]:
-        """The joints that carry the anchors of a constraint, and their poses there."""
-        places = [self.places.get(anchor.body, (0, IDENTITY)) for anchor in constraint.anchors]
-        return [(joint, pose * at.pose) for (joint, pose), at in zip(places, constraint.anchors, strict=True)]
-
-    def path(self, constraint: Constraint) -> list[tuple[int, float]]:
-        """The joints that move a constraint, with +1 for those that move B and -1 for A, or with coefficients."""
-        if isinstance(constraint, Coupling):
-            return [(self.of_joint[name], coefficient) for name, coefficient in constraint.coefficients]
-        between, found = self._between(constraint), []
-        for anchor, sign in zip(constraint.anchors, (-1.0, 1.0), strict=True):
-            for body in self._way_up(anchor.body):
-                if body in between:
-                    found += [(joint, sign) for joint in self.of_body[body]]
-        return found
+def joint_entry(screw: Screw) -> str:
+    """The entry of a joint."""
+    numbers = ", ".join(str(int(each)) for each in screw[:5])
+    frame = f"{_frame(screw.pose)}, {vector(screw.axis)}, {vector(screw.advance)}"
+    return f"{{{numbers}, {literal(screw.multiplier)}, {literal(screw.offset)}, {frame}}}"
 
 
-def _screws(
-    joint: Joint, parent: int, pose: Pose, coordinate: int, velocity: int, mimic: Mimic | None, number: int
-) -> list[str]:
-    """The entries of a joint as joints of one coordinate and balls in a row; ``number`` is that of the first."""
-    factor, offset = (1.0, 0.0) if mimic is None else (mimic.multiplier, mimic.offset)
-    found = []
-    for k, (axis, turns, advance) in enumerate(joint.motions):
-        numbers = parent, int(axis is None), int(turns), coordinate + k, velocity + k
-        along = [advance * each for each in axis] if axis and advance else ORIGIN
-        frame = f"{_rotation(pose)}, {vector(pose.xyz)}, {vector(axis or Z)}, {vector(along)}"
-        found.append(f"{{{', '.join(map(str, numbers))}, {literal(factor)}, {literal(offset)}, {frame}}}")
-        parent, pose = number + k, IDENTITY
-    return found
-
-
-def constraint_entry(constraint: Constraint, tables: Tables, first: int, last: int, scale: Vector) -> str:
+def constraint_entry(own: ConstraintNumbers, rows: int, first: int, last: int, scale: Vector) -> str:
     """The entry of a constraint, whose path is that from first to last, with the scales of its rows."""
-    ends = tables.anchors(constraint) or [(0, IDENTITY), (0, IDENTITY)]
-    own = constraint.own if isinstance(constraint, Closure) else {}
-    a, b = (direction(axis) for axis in own.get("axes", (Z, Z)))
-    length = constraint.offset if isinstance(constraint, Coupling) else own.get("length", 0.0)
-    frames = ", ".join(f"{_rotation(pose)}, {vector(pose.xyz)}" for _, pose in ends)
+    (joint_a, a), (joint_b, b) = own.ends
     return (
-        f"{{{KINDS[constraint.type]}, {constraint.rows}, {first}, {last}, "
-        f"{ends[0][0]}, {ends[1][0]}, {frames}, "
-        f"{literal(length)}, {vector(a)}, {vector(b)}, {{{', '.join(map(vector, _across(a)))}}}, {vector(scale)}}}"
+        f"{{{own.kind.upper()}, {rows}, {first}, {last}, {joint_a}, {joint_b}, {_frame(a)}, {_frame(b)}, "
+        f"{literal(own.length)}, {', '.join(map(vector, own.axes))}, {{{', '.join(map(vector, own.across))}}}, "
+        f"{vector(scale)}}}"
     )
-
-
-def _across(a: Vector3) -> tuple[Vector3, Vector3]:
-    """Two unit vectors across a unit vector and each other."""
-    least = min(range(3), key=lambda k: abs(a[k]))
-    first = direction(cross(a, (X, Y, Z)[least]))
-    return first, cross(a, first)
 
 
 def drive_entry(
@@ -239,6 +98,7 @@ def vector(values: Iterable[float]) -> str:
     return "{" + ", ".join(map(literal, values)) + "}"
 
 
-def _rotation(pose: Pose) -> str:
+def _frame(pose: Pose) -> str:
     columns = [pose.rotate(axis) for axis in (X, Y, Z)]
-    return vector(columns[column][row] for row in range(3) for column in range(3))
+    rotation = vector(columns[column][row] for row in range(3) for column in range(3))
+    return f"{rotation}, {vector(pose.xyz)}"

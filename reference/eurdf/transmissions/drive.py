@@ -58,6 +58,7 @@ class Drive:
         asked: The joints asked for.
         closures: Indices of the constraints that relate them.
         own: Indices (k,) in v of the joints that follow.
+        groups: The constraints in groups, each of which closes without the others while the given joints are held.
         unit: Unit (k,) of their velocities.
         rows: Scales (m,) of the rows of the residual, which make them dimensionless.
         factors: Those (m, k + n) of K, whose columns are of these joints and of the given ones.
@@ -90,6 +91,7 @@ class Drive:
             for group in independent_groups(robot, {*driven, *at.held_index.tolist()})
             if not moving_velocities(robot, group.closures).isdisjoint(driven)
         ]
+        self.groups = tuple(groups)
         if groups:
             group = merged(groups)
             self.closures, self.own = group.closures, group.velocities

@@ -10,7 +10,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from eurdf.mechanism.joint import Joint
 from eurdf.pinocchio.robot import build_robot
 from eurdf.transmissions.drive import Drive
 from eurdf.transmissions.polynomial_map import design, scaled
-from eurdf.transmissions.reachable_set import points_along, workspace
+from eurdf.transmissions.reachable_set import Workspace, points_along, workspace
 from eurdf.transmissions.selection import Selection
 from eurdf.transmissions.serial_mechanism import with_properties
 
@@ -42,8 +42,8 @@ _POINTS, _MOST_ALONG = 343, 17
 # From one that is too large, they could lead to another branch.
 _HIGHEST_DEGREE = 8
 _GOOD, _TOO_LARGE = 1e-3, 0.05
-# Points for each coefficient, and how much larger than at the points the error may be between them.
-_POINTS_EACH, _LARGER = 2, 4.0
+#: Points for each coefficient, and how much larger than at the points the error may be between them.
+_POINTS_EACH, LARGER = 2, 4.0
 # Number of poses that are stored.
 _STORED = 64
 # Bound of the steps to the pose nearest to the reference.
@@ -110,12 +110,20 @@ class WorkspacePoses:
         count, none = len(self._joints), np.zeros((0, len(self._reference)))
         if count > _MOST_SEARCHED:
             return none, f"there are more than {_MOST_SEARCHED} joints"
-        grid = max(3, points_along(count, _POINTS, _MOST_ALONG))
-        robot, joints, motors = _widened(self._robot), self._joints.joints, self._motors.joints
         try:
-            return workspace(robot, joints, self._reference, motors=motors, grid=grid, ranges=self._ranges).q, ""
+            return self._searched(_widened(self._robot)).q, ""
         except ValueError as error:  # there is no workspace around the reference
             return none, str(error)
+
+    @cached_property
+    def within(self) -> Workspace:
+        """The workspace within the position limits; the errors are those of `workspace`."""
+        return self._searched(self._robot)
+
+    def _searched(self, robot: Robot) -> Workspace:
+        grid = max(3, points_along(len(self._joints), _POINTS, _MOST_ALONG))
+        joints, motors = self._joints.joints, self._motors.joints
+        return workspace(robot, joints, self._reference, motors=motors, grid=grid, ranges=self._ranges)
 
     @cached_property
     def _chosen(self) -> list[int]:
@@ -162,9 +170,23 @@ class WorkspacePoses:
 
     def prediction(self, drive: Drive) -> tuple[Prediction | None, str]:
         """The polynomials of the positions that a drive is given; if there are none, why."""
-        n, own = len(drive.given), [slot.joint for slot in self._robot.slots.values() if slot.idx_v in drive.own]
+        n = len(drive.given)
         if n > _MOST_PREDICTED:
             return None, f"polynomials are of at most {_MOST_PREDICTED} positions"
+        samples, missing = self.samples(drive)
+        if samples is None:
+            return None, missing
+        c, error = fitted(samples, samples.motions)
+        degree = round(len(c) ** (1.0 / n)) - 1
+        if not error <= _TOO_LARGE:
+            return None, f"polynomials of degree {degree} would err by {error:.2g}"
+        coefficients = (c * drive.unit).T.reshape(len(drive.own), *(degree + 1,) * n)
+        bound, sign = LARGER * error + SAME, sign_of(drive.derivative(self._reference))
+        return Prediction(self._reference, drive.own, samples.lower, samples.upper, coefficients, bound, sign), ""
+
+    def samples(self, drive: Drive) -> tuple[Samples | None, str]:
+        """The poses of the workspace by the positions that a drive is given; if they are too few, why."""
+        n, own = len(drive.given), [slot.joint for slot in self._robot.slots.values() if slot.idx_v in drive.own]
         poses, missing = self._found
         odd = [f"joint '{joint.name}' is {joint.type.value}" for joint in own if _is_odd(joint)]
         if missing or odd:
@@ -174,18 +196,40 @@ class WorkspacePoses:
         beyond = 0.5 * _MARGIN * np.ptp(x, axis=0)  # the workspace ends between points
         if not (beyond > 0.0).all() or len(q) < _POINTS_EACH * 2**n:
             return None, f"only {len(q)} points of a grid are in the workspace"
-        lower, upper = x.min(axis=0) - beyond, x.max(axis=0) + beyond
-        error, degree, c = math.inf, 0, np.zeros((1, len(drive.own)))
-        while error > _GOOD and degree < _HIGHEST_DEGREE and _POINTS_EACH * (degree + 2) ** n <= len(q):
-            degree += 1
-            basis = design(scaled(x, lower, upper), degree)
-            c = np.asarray(np.linalg.lstsq(basis, motions, rcond=None)[0], np.float64)
-            error = float(np.abs(basis @ c - motions).max(initial=0.0))
-        if not error <= _TOO_LARGE:
-            return None, f"polynomials of degree {degree} would err by {error:.2g}"
-        coefficients = (c * drive.unit).T.reshape(len(drive.own), *(degree + 1,) * n)
-        bound, sign = _LARGER * error + SAME, sign_of(drive.derivative(self._reference))
-        return Prediction(self._reference, drive.own, lower, upper, coefficients, bound, sign), ""
+        return Samples(self._reference, q, x, motions, x.min(axis=0) - beyond, x.max(axis=0) + beyond), ""
+
+
+class Samples(NamedTuple):
+    """Poses of the workspace.
+
+    Attributes:
+        reference: The pose (nq,) that motions start from.
+        q: The poses (N, nq).
+        positions: Given positions (N, n) there, rad or m.
+        motions: Motions (N, k) to them of the joints that follow, dimensionless, as in `Prediction`.
+        lower: Smallest given positions (n,), and a little less.
+        upper: Largest given positions (n,), and a little more.
+    """
+
+    reference: Vector
+    q: Matrix
+    positions: Matrix
+    motions: Matrix
+    lower: Vector
+    upper: Vector
+
+
+def fitted(samples: Samples, values: Matrix) -> tuple[Matrix, float]:
+    """Coefficients (c, k) of polynomials of the positions through values (N, k), and the largest error."""
+    n, count = samples.positions.shape[1], len(samples.q)
+    x = scaled(samples.positions, samples.lower, samples.upper)
+    error, degree, c = math.inf, 0, np.zeros((1, values.shape[1]))
+    while error > _GOOD and degree < _HIGHEST_DEGREE and _POINTS_EACH * (degree + 2) ** n <= count:
+        degree += 1
+        basis = design(x, degree)
+        c = np.asarray(np.linalg.lstsq(basis, values, rcond=None)[0], np.float64)
+        error = float(np.abs(basis @ c - values).max(initial=0.0))
+    return c, error
 
 
 def sign_of(D: Matrix) -> float:

@@ -491,7 +491,7 @@ static int closable(const drive *by, const double from[], const double given[]) 
         for (int k = 0; k < by->given; ++k) x[coordinates[by->given_velocity[k]]] = given[k];
         for (int k = 0; k < by->own && attempt > 0; ++k) {
             random = 1664525u * random + 1013904223u;
-            y[k][0] = spreads[(attempt < SPREADS ? attempt : SPREADS) - 1] * (random / 2147483648.0 - 1.0);
+            y[k][0] = spreads[(attempt < SPREADS ? attempt : SPREADS) - 1] * ((double)random / 2147483648.0 - 1.0);
         }
         if (attempt > 0) move(by, y, x);
         if (descend(by, x)) return 1;

@@ -12,11 +12,15 @@ from eurdf.array import Matrix, Vector
 from eurdf.errors import NoTransmission
 from eurdf.kinematics.named import Named, vector_of
 from eurdf.loading import of_any_robot
-from eurdf.transmissions.c_source import CSource, c_source
+from eurdf.transmissions.array_kernel import ArrayMap
+from eurdf.transmissions.array_tables import array_tables, python_source
+from eurdf.transmissions.c_source import c_source
 from eurdf.transmissions.drive import STEPS, Drive, closed_pose
 from eurdf.transmissions.first_guess import Prediction, Ranges, WorkspacePoses, sign_of
+from eurdf.transmissions.generated_source import GeneratedSource
 from eurdf.transmissions.motors import sides
 from eurdf.transmissions.reachable_set import grid_axes
+from eurdf.transmissions.ros2_package import ros2_package
 from eurdf.transmissions.selection import Selection
 from eurdf.transmissions.transmission import Transmission, at_one
 
@@ -145,7 +149,7 @@ class PreparedTransmission:
         steps: int = STEPS,
         substeps: int = 16,
         real: Literal["double", "float"] = "double",
-    ) -> CSource:
+    ) -> GeneratedSource:
         """The same as dependency-free C99: a header and a source file.
 
         Each function allocates nothing, takes a bounded number of steps, and returns a status: ``NOT_CLOSED`` where
@@ -172,6 +176,54 @@ class PreparedTransmission:
         with suppress(NoTransmission):
             drives.append(self._drive_of_motors)
         return c_source(drives, self._workspace, self._q, prefix, steps, substeps, real)
+
+    def ros2_package(
+        self, prefix: str | None = None, *, real: Literal["double", "float"] = "double"
+    ) -> GeneratedSource:
+        """The C in a package of ROS 2: a ``transmission_interface::Transmission`` that ros2_control's hardware loads.
+
+        The class is header-only and maps positions, velocities and efforts both ways. With it are its loader, a plugin
+        of pluginlib; the files of ament_cmake; and ``transmission.xml``, the element for the URDF.
+
+        Args:
+            prefix: As in `c_source`; the name of the package is this and ``_ros2``.
+            real: As in `c_source`.
+
+        Returns:
+            The files, by their path in the package.
+
+        Raises:
+            NoTransmission: The motors do not determine the joints, or depend on each other.
+            ValueError: As in `c_source`.
+        """
+        _ = self._drive_of_motors  # raises the error
+        source = self.c_source(prefix, real=real)
+        return ros2_package(source, self._at.robot.mechanism.name, self.joints, self.motors, real)
+
+    def array_map(self, xp: Any) -> ArrayMap:
+        """The map from joints to motors for arrays of many positions, on the branch of the first pose.
+
+        The first call searches the workspace, which takes some seconds.
+
+        Args:
+            xp: A namespace of the array API: NumPy, `jax.numpy`, torch, …
+
+        Raises:
+            ValueError: There are not as many motors as joints; a joint or constraint of the loops is of another type
+                than the map supports; or polynomials do not predict the poses of the workspace well enough.
+        """
+        return ArrayMap(xp, array_tables(self._by_joints, self._workspace))
+
+    def python_source(self, prefix: str | None = None) -> GeneratedSource:
+        """The same as `array_map` as one Python file without dependencies, with a function ``array_map(xp)``.
+
+        Args:
+            prefix: The name of the file without ``.py``; by default the robot's name and ``_transmission``.
+
+        Raises:
+            ValueError: The prefix is no identifier, or as `array_map` raises.
+        """
+        return python_source(self._by_joints, self._workspace, prefix)
 
     @property
     def _drive_of_motors(self) -> Drive:

@@ -132,6 +132,13 @@ class MechanismTree:
         """The mass of links, kg."""
         return sum(inertia.mass for link in links if (inertia := self.links[link].inertia) is not None)
 
+    def mass_of_whole(self, link: str) -> float:
+        """The mass of a link with what is fixed to it, kg; infinite for what is fixed to the root body."""
+        root = self.rigid[link][0]
+        if root not in self.above:
+            return math.inf
+        return self.mass(*(name for name, (above, _) in self.rigid.items() if above == root))
+
     def is_heavy(self, link: str) -> bool:
         """Whether a link resists every motion by itself."""
         inertia = self.links[link].inertia
@@ -145,7 +152,7 @@ class MechanismTree:
         root = self.rigid[link][0]
         own = {name for name, (above, _) in self.rigid.items() if above == root}
         carried = (joint for joint in self.mechanism.joints if joint.parent in own and not joint.type.is_fixed)
-        return root in self.above and not self.mass(*own) and all(joint is without for joint in carried)
+        return not self.mass_of_whole(link) and all(joint is without for joint in carried)
 
     def is_rigid(self, links: Collection[str]) -> bool:
         """Whether no moving joint hangs from one of the links."""
@@ -181,7 +188,7 @@ def poses_of(mechanism: Mechanism, positions: Positions) -> dict[str, Pose]:
     return poses
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class RobotSize:
     """The size of a robot.
 
@@ -192,6 +199,9 @@ class RobotSize:
 
     nv: int
     nc: int
+
+    def __repr__(self) -> str:
+        return f"<RobotSize: nv {self.nv}, nc {self.nc}>"
 
 
 def size_of(mechanism: Mechanism) -> RobotSize:

@@ -227,12 +227,14 @@ def _as_point(tree: MechanismTree, closure: FrameClosure) -> Rewriting:
         if why:
             kept.append(f"closure '{closure.name}' stays 6d: {why}")
             continue
-        # Rather a link that ends here than one that others hang from, or are closed to; else the lighter one.
+        # Rather a link that ends here than one that others hang from, or are closed to; else the lighter one; else that
+        # on the heavier body: a rod stays on a light crank, which a servo in a simulation would otherwise move alone.
         held = sum(anchor.body in links for each in mechanism.closures for anchor in each.anchors)
-        balls.append((not tree.is_rigid(links), held, tree.mass(*links), len(balls), ball, at, own, other))
+        heavier = -tree.mass_of_whole(ball.parent)
+        balls.append((not tree.is_rigid(links), held, tree.mass(*links), heavier, len(balls), ball, at, own, other))
     if not balls:
         return Rewriting(mechanism, kept=tuple(kept))
-    *_, ball, at, own, other = min(balls, key=lambda each: each[:4])
+    *_, ball, at, own, other = min(balls, key=lambda each: each[:5])
     weld = replace(ball.fixed(other.pose * (at * own.pose).inverse()), parent=other.body)
     # The body that held the link keeps its letter.
     ends = Anchor(ball.parent, Pose(ball.placement.xyz)), _anchor(ball.child, Pose(ball.offset.inverse().xyz))

@@ -16,10 +16,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
+from eurdf.mechanism.body import Body
 from eurdf.mechanism.constraint import Constraint, Coupling
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_types import JointType
+from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import Robot, build_robot
+from eurdf.writing.rewriting import MechanismTree
+from support import by_hand
 from support.exported import BALL, BODY, LIMIT, InMuJoCo, hanging, near, random_robot
 from support.places import ROBOTS
 from support.plain_urdf import inertial, joint_element, link_element
@@ -99,7 +104,8 @@ def actuated_acceleration(there: InMuJoCo, q: Any, u: Any) -> Any:
 
 @pytest.mark.parametrize("name", BALLS)
 def test_balls_of_the_collection_can_be_hinges(name: str) -> None:
-    robot, export = eurdf.load(name, geometry=False), eurdf.export(name, "mjcf", joints="hinge")
+    export = eurdf.export(name, "mjcf", joints="hinge")
+    robot = export.robot
     there, assembled = InMuJoCo(robot, export), robot.configurations["assembled"]
     assert mujoco.mjtJoint.mjJNT_BALL not in there.model.jnt_type
     open_loops, _ = near(robot, assembled)
@@ -115,6 +121,74 @@ def test_balls_of_the_collection_can_be_hinges(name: str) -> None:
     u = np.linspace(0.05, 0.2, len(robot.actuation.idx_v))
     expected = eurdf.forward_dynamics(robot, assembly.q, np.zeros(robot.model.nv), u).a[robot.actuation.idx_v]
     np.testing.assert_allclose(actuated_acceleration(there, assembly.q, u), expected, atol=1e-8 * abs(expected).max())
+
+
+def with_other_frame(mechanism: Mechanism, ball: Joint, pose: Pose) -> Mechanism:
+    """The same mechanism, with the frame of a ball's link at a pose in its old one."""
+
+    def moved(own: Any, name: str, at: str = "pose") -> Any:
+        return replace(own, **{at: pose.inverse() * getattr(own, at)}) if own and name == ball.child else own
+
+    turned = replace(ball, offset=ball.offset * pose)
+    return replace(
+        mechanism,
+        bodies=tuple(replace(each, inertia=moved(each.inertia, each.name)) for each in mechanism.bodies),
+        joints=tuple(turned if each is ball else moved(each, each.parent, "placement") for each in mechanism.joints),
+        closures=tuple(
+            replace(each, a=moved(each.a, each.a.body), b=moved(each.b, each.b.body)) for each in mechanism.closures
+        ),
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "universal", "fixed"),
+    [("cassie_leg", 2, 2), ("digit_leg", 3, 3), ("digit_leg_3d", 3, 0), ("talos_leg", 1, 1)],
+)
+@given(seed=seeds)
+@settings(max_examples=3)
+def test_rods_without_ball_joints_lose_their_spin_alone(name: str, universal: int, fixed: int, seed: int) -> None:
+    random, mechanism = np.random.default_rng(seed), eurdf.load(name, geometry=False).mechanism
+    balls = [joint for joint in mechanism.joints if joint.type is JointType.SPHERICAL]
+    for ball in balls:
+        mechanism = with_other_frame(mechanism, ball, by_hand.some_pose(random))
+    robot = build_robot(mechanism, geometry=False)
+    idx_q, assembled = robot.actuation.idx_q, robot.configurations["assembled"]
+    q, start = (
+        eurdf.forward_kinematics(robot, assembled[idx_q] + random.uniform(-0.05, 0.05, len(idx_q))) for _ in range(2)
+    )
+    configurations = {"assembled": robot.joint_positions(start), "other": robot.joint_positions(q)}
+    robot = build_robot(replace(mechanism, configurations=configurations), geometry=False)
+    export = eurdf.export(robot, "mjcf", joints="hinge")
+    codes = [loss.code for loss in export.losses if loss.concept == "spherical joint"]
+    assert sorted(codes) == ["export-rod-closure"] * fixed + ["export-rod-universal"] * universal
+    there = InMuJoCo(export.robot, export)
+    assert mujoco.mjtJoint.mjJNT_BALL not in there.model.jnt_type
+    assert export.robot.model.nv == robot.model.nv - universal - 3 * fixed
+    same = export.robot.configurations["other"]
+    for closed in export.robot.configurations.values():
+        assert np.abs(eurdf.residual(export.robot, closed)).max() < 1e-9
+    there.at(same)
+    pin.framesForwardKinematics(robot.model, robot.data, q)
+    rods = {body for joint in balls for body in MechanismTree(export.robot.mechanism).below(joint.child)}
+    for body in {body.name for body in robot.mechanism.bodies} - rods:
+        expected = robot.data.oMf[robot.model.getFrameId(body)].homogeneous
+        np.testing.assert_allclose(there.pose(body), expected, atol=1e-9, err_msg=body)
+    u = np.linspace(0.05, 0.2, len(robot.actuation.idx_v))
+    expected = eurdf.forward_dynamics(robot, q, np.zeros(robot.model.nv), u).a[robot.actuation.idx_v]
+    np.testing.assert_allclose(actuated_acceleration(there, same, u), expected, atol=1e-4 * abs(expected).max())
+
+
+def test_rod_with_its_mass_beside_its_line_keeps_its_spin() -> None:
+    mechanism = eurdf.load("digit_leg_3d", geometry=False).mechanism
+    (ball,) = (joint for joint in mechanism.joints if joint.name == "ball_rod1")
+
+    def bent(body: Body) -> Body:
+        inertia = body.inertia
+        return replace(body, inertia=inertia and replace(inertia, pose=Pose((0.0, 0.02, 0.0)) * inertia.pose))
+
+    bodies = tuple(bent(body) if body.name == ball.child else body for body in mechanism.bodies)
+    export = eurdf.export(build_robot(replace(mechanism, bodies=bodies), geometry=False), "mjcf", joints="hinge")
+    assert [loss.name for loss in export.losses if loss.code == "export-spherical-hinges"] == ["ball_rod1"]
 
 
 def with_turned_ball(angle: float) -> Robot:
@@ -144,9 +218,13 @@ def test_hinges_for_balls_are_for_mjcf_alone() -> None:
         eurdf.export("delta", "urdf", joints="hinge")
 
 
-@pytest.mark.parametrize("name", ["battobot", "talos_leg", "unitree_g1_ankle"])
-def test_loops_stay_closed_under_position_servos(name: str) -> None:
-    there = InMuJoCo(eurdf.load(name, geometry=False), eurdf.export(name, "mjcf", actuators="position"))
+@pytest.mark.parametrize(
+    ("name", "joints"),
+    [("battobot", "stated"), ("talos_leg", "stated"), ("unitree_g1_ankle", "stated"), ("digit_leg", "hinge")],
+)
+def test_loops_stay_closed_under_position_servos(name: str, joints: Any) -> None:
+    export = eurdf.export(name, "mjcf", actuators="position", joints=joints)
+    there = InMuJoCo(export.robot, export)
     mujoco.mj_resetDataKeyframe(there.model, there.data, 0)
     mujoco.mj_forward(there.model, there.data)
     there.data.ctrl[:] = there.data.actuator_length

@@ -111,6 +111,23 @@ ROWS = (
         )
         for kind in ("spherical", "floating")
     ),
+    exact(
+        "spherical joint",
+        "becomes a 3d closure, in place of the 6d closure that holds its link: the link is fixed to what held it",
+        "use Export.robot, which q and v of Export.coordinates are of",
+        code="export-rod-closure",
+        only=_HINGES,
+        where=by_writer,
+    ),
+    approximate(
+        "spherical joint",
+        "becomes a universal joint without limits: the rod that it carries no longer turns about its own line",
+        "use Export.robot, which q and v of Export.coordinates are of",
+        code="export-rod-universal",
+        error="none in poses of other links; forces of the size of those of the rod's inertia about its line",
+        only=_HINGES,
+        where=by_writer,
+    ),
     approximate("helical joint", "becomes a slide and a hinge that a soft equality couples", _KEYFRAME, error=_OPENING),
     approximate(
         "mimic joint", "becomes a free joint that a soft equality couples to its leader", _KEYFRAME, error=_OPENING

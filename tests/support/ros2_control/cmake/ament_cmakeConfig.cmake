@@ -1,0 +1,8 @@
+macro(ament_export_targets name)
+  install(EXPORT ${name} NAMESPACE ${PROJECT_NAME}:: DESTINATION share/${PROJECT_NAME}/cmake)
+endmacro()
+macro(ament_export_dependencies)
+endmacro()
+macro(ament_package)
+  install(FILES package.xml DESTINATION share/${PROJECT_NAME})
+endmacro()

@@ -1,0 +1,2 @@
+add_library(hardware_interface::hardware_interface INTERFACE IMPORTED)
+target_include_directories(hardware_interface::hardware_interface INTERFACE "${CMAKE_CURRENT_LIST_DIR}/../include")
