@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from support.places import ROOT
 
-#: Folders of tests that are about the repository, whole robots, and what a contributor adds.
-ELSEWHERE = {"recipes", "robots", "spec"}
+#: Folders of tests that are about the repository, whole robots, what a contributor adds, and mistakes.
+ELSEWHERE = {"mistakes", "recipes", "robots", "spec"}
 
 
 def test_each_file_has_the_path_of_a_module_or_package() -> None:
