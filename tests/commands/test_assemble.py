@@ -269,7 +269,7 @@ def test_uneditable_file_is_unchanged(folder: Path, run: Run) -> None:
     file = bench(folder, text)
     code, _, err = run("assemble", "robot.yaml", "--write")
     assert code == 2
-    assert err == "eurdf: cannot write to 'robot.yaml': 'configurations' is an alias; edit the file by hand\n"
+    assert err == "eurdf: cannot write to 'robot.yaml': 'configurations' is an alias, or empty; edit the file by hand\n"
     assert file.read_text() == text
 
 

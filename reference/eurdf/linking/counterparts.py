@@ -119,7 +119,7 @@ def unused_pairs(used: Iterable[Frames], names: Iterable[str]) -> list[LikePair]
 
 
 def other_frame(name: str, used: Iterable[Frames], names: Collection[str]) -> str | None:
-    """The frame that pairs with one as those of another closure do, or as 1 does with 2, or a with b; if there is one."""
+    """The frame that pairs with one as those of another closure do, or as 1 with 2, or a with b; if there is one."""
     for a, b in used:
         for this, other in ((a, b), (b, a)):
             changes = changes_between(this, name)

@@ -21,7 +21,7 @@ from eurdf.reading.core_schema import TAG_PREFIX, resolve, resolve_tagged
 from eurdf.reading.other_formats import of_text, other_format
 from eurdf.reading.source import FILE_LIMIT, Source, short, too_large
 from eurdf.reading.yaml_node import Alias, Node, Pointer, Span, YamlCollection, json_pointer
-from eurdf.reading.yaml_syntax import stray_mark, syntax_error, unusual_name, version_fix
+from eurdf.reading.yaml_syntax import stray_mark, syntax_error, unusual_name, version_fix, without_other_breaks
 
 #: Maximum depth of nested mappings and lists, aliases expanded.
 DEPTH_LIMIT = 64
@@ -151,25 +151,6 @@ def _read_nodes(source: Source) -> YamlCollection:
     if "\ufeff" in source.text and (mark := stray_mark(source, data)) is not None:
         raise mark
     return root
-
-
-def without_other_breaks(source: Source) -> tuple[str, dict[int, str]]:
-    """The text with U+0085, U+2028 and U+2029 replaced, and what turns them back in the values.
-
-    They are ordinary characters in YAML 1.2, but libyaml breaks lines at them, as YAML 1.1 does. What replaces them is
-    characters that the file does not have; it cannot have all of this range, which takes more bytes than it may have.
-    """
-    breaks = [] if source.text.isascii() else [mark for mark in "\x85\u2028\u2029" if mark in source.text]
-    if not breaks:
-        return source.text, {}
-    used = set(source.text)
-    free = (chr(code) for code in range(0x10000, 0x110000) if chr(code) not in used)
-    replaced = source.text
-    original = {}
-    for mark, replacement in zip(breaks, free, strict=False):
-        replaced = replaced.replace(mark, replacement)
-        original[ord(replacement)] = mark
-    return replaced, original
 
 
 class _NodeReader:

@@ -188,3 +188,22 @@ def _cannot_begin(text: str, index: int) -> _Meaning:
     if character == "\t":
         return _TAB
     return _Meaning(f"a value cannot begin with '{character}'", "quote the value")
+
+
+def without_other_breaks(source: Source) -> tuple[str, dict[int, str]]:
+    """The text with U+0085, U+2028 and U+2029 replaced, and what turns them back in the values.
+
+    They are ordinary characters in YAML 1.2, but libyaml breaks lines at them, as YAML 1.1 does. What replaces them is
+    characters that the file does not have; it cannot have all of this range, which takes more bytes than it may have.
+    """
+    breaks = [] if source.text.isascii() else [mark for mark in "\x85\u2028\u2029" if mark in source.text]
+    if not breaks:
+        return source.text, {}
+    used = set(source.text)
+    free = (chr(code) for code in range(0x10000, 0x110000) if chr(code) not in used)
+    replaced = source.text
+    original = {}
+    for mark, replacement in zip(breaks, free, strict=False):
+        replaced = replaced.replace(mark, replacement)
+        original[ord(replacement)] = mark
+    return replaced, original

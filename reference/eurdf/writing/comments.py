@@ -13,7 +13,8 @@ from yaml.tokens import BlockEntryToken, FlowSequenceStartToken, KeyToken
 
 from eurdf.reading.source import Source
 from eurdf.reading.yaml_node import Pointer
-from eurdf.reading.yaml_reader import YamlDocument, without_other_breaks
+from eurdf.reading.yaml_reader import YamlDocument
+from eurdf.reading.yaml_syntax import without_other_breaks
 
 _COMMENT = re.compile("#[^\r\n]*")
 
