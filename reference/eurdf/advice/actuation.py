@@ -277,6 +277,8 @@ def _controlling(
     """Proposals that control motions; ``loose`` are the groups of loops that have some."""
     motors = LikelyMotors(read)
     moved = list(dict.fromkeys(name for motion in motions for name in motion.joints))
+    if springs := motors.without_stiffness(moved):
+        yield Fix("", (), f"is 'stiffness' of {enumerated(springs)} missing?")
     yield from motors.by_name(moved)
     yield from forgotten_closures(read)
     if len(motions) == sum(len(found) for _, found in loose):

@@ -13,7 +13,7 @@ from eurdf.linking.robot_files import ReadRobot
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.reading.yaml_node import Pointer
 
-# An orientation beyond one turn, and a joint angle beyond two, is looked at, in rad. Wrists and steering wheels turn up
+# An orientation or the rest of a spring beyond one turn, and a joint angle beyond two, is looked at, in rad. Wrists and steering wheels turn up
 # to one and a half times to either side; of published robots, limits are at most 10 rad or else beyond `_MOST`.
 _MOST_ORIENTATION = 2.0 * math.pi * 1.001
 _MOST_POSITION = 4.0 * math.pi * 1.001
@@ -107,7 +107,7 @@ def _in_description(description: Description, mechanism: Mechanism) -> Iterator[
                     yield found(value, f"limit '{side}' of joint '{entry.name}'", (*entry.pointer, "limits", side))
         for index in angles.get(entry.name, ()):
             rest = entry.rest[index] if isinstance(entry.rest, tuple) else entry.rest
-            if rest is not None and _position_in_degrees(rest):
+            if rest is not None and _position_in_degrees(rest, _MOST_ORIENTATION):
                 yield found(rest, f"'rest' of joint '{entry.name}'", (*entry.pointer, "rest"))
                 break
     for key, configuration in description.configurations.items():
@@ -122,8 +122,8 @@ def _orientation_in_degrees(value: float) -> bool:
     return _MOST_ORIENTATION < abs(value) <= _MOST and not _is_quarter_turns(value)
 
 
-def _position_in_degrees(value: float) -> bool:
-    return _MOST_POSITION < abs(value) <= _MOST and (value * _PER_DEGREE).is_integer() and not _is_quarter_turns(value)
+def _position_in_degrees(value: float, most: float = _MOST_POSITION) -> bool:
+    return most < abs(value) <= _MOST and (value * _PER_DEGREE).is_integer() and not _is_quarter_turns(value)
 
 
 def _is_quarter_turns(value: float) -> bool:

@@ -80,7 +80,7 @@ def _missing_types(read: ReadRobot, joints: Iterable[Joint]) -> Iterator[Fix]:
         if name in known and (joint.type in ROTARY or (own is not None and not is_first)):
             like = [other for other in stated if other not in actuators and _is_like(other, name)]
             kind = "SPHERICAL" if is_first else "spherical"
-            kind = stated[like[0]] if like else kind if says_ball and _BALL.search(name) else own
+            kind = kind if says_ball and _BALL.search(name) else stated[like[0]] if like else own
             if kind != own:
                 types[name] = kind
     if types:

@@ -48,6 +48,14 @@ class LikelyMotors:
             has = partial(_has_word, word)
             yield from self._additions(self._distinct(free, has), f"named like all actuators, with '{word}'")
 
+    def without_stiffness(self, moved: Iterable[str]) -> list[str]:
+        """The joints that are named as springs, and have no stiffness."""
+        return [
+            name
+            for name in self.could_be(moved)
+            if "spring" in words_of(name) and not any(self._single[name].properties.stiffness)
+        ]
+
     def by_rating(self, moved: Collection[str]) -> Iterator[Fix]:
         """Proposals to list joints by what the URDF says of motors."""
         free = self.could_be(moved)
