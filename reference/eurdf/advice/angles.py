@@ -13,8 +13,9 @@ from eurdf.linking.robot_files import ReadRobot
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.reading.yaml_node import Pointer
 
-# An orientation or the rest of a spring beyond one turn, and a joint angle beyond two, is looked at, in rad. Wrists and steering wheels turn up
-# to one and a half times to either side; of published robots, limits are at most 10 rad or else beyond `_MOST`.
+# An orientation or the rest of a spring beyond one turn, and another joint angle beyond two, is looked at, in rad.
+# Wrists and steering wheels turn up to one and a half times to either side; of published robots, limits are at most
+# 10 rad or else beyond `_MOST`.
 _MOST_ORIENTATION = 2.0 * math.pi * 1.001
 _MOST_POSITION = 4.0 * math.pi * 1.001
 

@@ -21,6 +21,9 @@ _DENSEST, _LIGHTEST = 2.3e4, 1.2
 # Links with less of the mass of the robot than this often have a placeholder as their inertia: too small, too large.
 _LITTLE = (0.01, 0.001)
 
+# A link with more of the mass of the robot than this has its moments stated.
+_MOST = 0.5
+
 # A link is a point if the trace of its moments is at most this part of its mass at the reach of the robot. It is one on
 # purpose unless it is the only one, and so many links are none.
 _POINT, _OTHERS = 1e-9, 3
@@ -113,7 +116,8 @@ def _inertias(read: ReadRobot, total: float, reach: float) -> Iterator[_Implausi
             continue
         moments = inertia.moments[0], inertia.moments[3], inertia.moments[5]
         trace, place = sum(moments), partial(read.urdf.document.place, link.inertial)
-        if len(set(moments)) == 1 and _is_power_of_ten(trace / 3.0):  # which stands for unknown moments
+        is_unknown = len(set(moments)) == 1 and _is_power_of_ten(trace / 3.0)  # which stands for unknown moments
+        if is_unknown and inertia.mass <= _MOST * total:
             continue
         what, large = f"link '{body.name}' has a mass of {inertia.mass:.4g} kg", inertia.mass > _LITTLE[0] * total
         if trace <= _POINT * inertia.mass * reach * reach:

@@ -109,7 +109,7 @@ def advise_on_symmetry(read: ReadRobot, diagnostics: Diagnostics) -> None:
     if not sides.pairs:
         return
     families: dict[_Family, list[_Fact]] = defaultdict(list)
-    for fact in (*sides.of_bodies(), *sides.of_joints(), *sides.of_closures()):
+    for fact in (*sides.of_bodies(), *sides.of_joints(), *sides.of_closures(), *sides.of_couplings()):
         families[fact.family].append(fact)
     turned = sides.turned()
     found: dict[tuple[str, tuple[str, str]], tuple[float, _Fact]] = {}
@@ -135,7 +135,7 @@ class _Sides:
     def __init__(self, read: ReadRobot) -> None:
         self._read, self._mechanism = read, read.mechanism
         self._body = {body.name: body for body in read.mechanism.bodies}
-        joints = {joint.name: joint for joint in read.mechanism.joints}
+        joints = self._joint = {joint.name: joint for joint in read.mechanism.joints}
         self._image, self._of_joint = mirrored_names(self._body), mirrored_names(joints)
         self.pairs = [(joints[name], joints[other]) for name, other in self._of_joint.items() if name < other]
         self._short = _SHORT * reach_of(read.mechanism)
@@ -177,7 +177,15 @@ class _Sides:
             if one is not None and two is not None:
                 points, (a, b) = (one.pose.xyz, two.pose.xyz), (one.moments, two.moments)
                 self._points.append((body.name, *self._rotated(body.name, points[0], other, points[1])))
-                yield fact("centre of mass of link", values=(_POINT, *points), difference=self._lengths(*points))
+                off = self._off(*self._points[-1][1:])
+                is_copy = points[0] == points[1] and off > _ROUNDING[0]
+                yield fact(
+                    "centre of mass of link",
+                    values=(_POINT, *points),
+                    difference=self._lengths(*points),
+                    mirrored=None if is_copy else off,
+                    body=body.name,
+                )
                 values = "{0[0]:.4g}, {0[3]:.4g}, {0[5]:.4g} kg·m²", a, b
                 traces = [each[0] + each[3] + each[5] for each in (a, b)]
                 yield fact("moments of inertia of link", values=values, difference=_apart(*traces))
@@ -226,14 +234,18 @@ class _Sides:
             yield _Fact(_PLACES, "axis of joint", names, ("[{}]", *axes), 0.0, place, off, one.parent)
         if one.properties == two.properties and one.mimic is None and two.mimic is None:
             place = partial(place_of, self._read, one.name)
-            yield _Fact(_NUMBERS, "numbers of joint", names, ("", 0, 0), 0.0, place)
+            # Ranges that are stated the same are a copy if they are not mirrored.
+            mirrored = 0.0 if self._range_off(one, two) == 0.0 else None
+            yield _Fact(_NUMBERS, "numbers of joint", names, ("", 0, 0), 0.0, place, mirrored, one.parent)
             return
         values: tuple[str, object, object]
         for c, d in zip(one.ranges, two.ranges, strict=True):
             widths = c[1] - c[0], d[1] - d[0]  # the zero of a side may be elsewhere
             values = "{0[0]:.4g} to {0[1]:.4g} " + ("m" if slides else "rad"), c, d
             place = partial(place_of, self._read, one.name, "upper")
-            yield _Fact(_NUMBERS, "range of joint", names, values, _apart(*widths), place)
+            yield _Fact(
+                _NUMBERS, "range of joint", names, values, _apart(*widths), place, self._range_off(one, two), one.parent
+            )
         if one.mimic is not None or two.mimic is not None:
             e, f = (each.mimic or Mimic("", 0.0) for each in (one, two))
             factors = _apart(abs(e.multiplier), abs(f.multiplier)), _apart(abs(e.offset), abs(f.offset))
@@ -253,6 +265,15 @@ class _Sides:
                 )
                 what, place = f"{name.replace('_', ' ')} of joint", partial(place_of, self._read, one.name, name)
                 yield _Fact(_NUMBERS, what, names, values, max(starmap(_apart, pairs)), place)
+
+    def _range_off(self, one: Joint, two: Joint) -> float | None:
+        """Relative difference of a range from the mirrored one; None if either is not known."""
+        if not (sense := self._sense(one, two)):
+            return None
+        (lower, upper), other = one.ranges[0], two.ranges[0]
+        image = (lower, upper) if sense > 0.0 else (-upper, -lower)
+        size = max(map(abs, image + other))
+        return math.dist(image, other) / (size or 1.0) if math.isfinite(size) else None
 
     def of_closures(self) -> Iterator[_Fact]:
         """Which closures there are, by name or by the links that they join, and their types, frames and lengths."""
@@ -290,6 +311,42 @@ class _Sides:
                 if isinstance(value, float):
                     values, difference = ("{:.6g} m", value, two.own[key]), _apart(value, two.own[key])
                     yield _Fact(_PLACES, f"{key} of closure", names, values, difference, place)
+
+    def of_couplings(self) -> Iterator[_Fact]:
+        """Their joints, and coefficients up to a common factor; without signs where axes are not mirrored."""
+        couplings = {each.name: each for each in self._mechanism.couplings}
+        for name, other in mirrored_names(couplings).items():
+            if not name < other:
+                continue
+            one, two = (dict(couplings[each].coefficients) for each in (name, other))
+            image = {self._of_joint.get(joint, joint): joint for joint in one}
+            difference = 1.0
+            if image.keys() == two.keys():
+                senses = {joint: self._sense(self._joint[image[joint]], self._joint[joint]) for joint in two}
+                # A joint of the middle is not mirrored: it only says how far both sides move.
+                known = all(senses.values()) and image.keys().isdisjoint(one)
+                c, d = (
+                    [(value if known else abs(value)) / (math.hypot(*each) or 1.0) for value in each]
+                    for each in ([one[image[joint]] * (senses[joint] or 1.0) for joint in two], list(two.values()))
+                )
+                difference = min(math.dist(c, d), math.dist(c, [-value for value in d]))
+            a, b = (" ".join(f"{value:+g} · '{joint}'" for joint, value in each.items()) for each in (one, two))
+            place = partial(self._read.place_of_constraint, name)
+            yield _Fact(_STRUCTURE, "coupling", (name, other), ("{}", a, b), difference, place)
+
+    def _sense(self, one: Joint, two: Joint) -> float:
+        """Of two joints with one axis: 1 if the same value is the mirrored motion at neutral, -1 if the opposite is.
+
+        0 if their axes are not mirrored.
+        """
+        if len(one.axes) != 1 or one.type != two.type:
+            return 0.0
+        a, b = ((self._pose[each.parent] * each.placement).rotate(direction(each.axes[0])) for each in (one, two))
+        image = self._mirrored(a)
+        for sense in (1.0, -1.0):
+            if math.dist(image, [sense * value for value in b]) <= _ROUNDING[0]:
+                return sense if one.type.slides else -sense
+        return 0.0
 
     def _point(
         self,
