@@ -115,7 +115,44 @@ def test_frame_and_sense_of_one_side_are_conventions(data, name: str, rpy: list[
         )
         for each in mechanism.closures
     )
-    assert advice(name, replace(mechanism, joints=joints, bodies=bodies, closures=closures)) == []
+    couplings = tuple(
+        replace(
+            each,
+            coefficients=tuple((key, -c if reverse and key == joint.name else c) for key, c in each.coefficients),
+        )
+        for each in mechanism.couplings
+    )
+    robot = replace(mechanism, joints=joints, bodies=bodies, closures=closures, couplings=couplings)
+    assert advice(name, robot) == []
+
+
+@pytest.mark.parametrize("reverse", [False, True])
+@given(st.data(), st.floats(0.2, 5.0) | st.floats(-5.0, -0.2))
+def test_coupling_of_one_side_is_reported_if_not_a_multiple(reverse: bool, data: st.DataObject, factor: float) -> None:
+    mechanism = read("tello").mechanism
+    coupling = chosen(data, mechanism.couplings, lambda _: True)
+    joint = data.draw(st.sampled_from(coupling.joints))
+    changed = replace(
+        coupling,
+        coefficients=tuple(
+            (name, factor * (-c if reverse and name == joint else c)) for name, c in coupling.coefficients
+        ),
+    )
+    couplings = tuple(changed if each is coupling else each for each in mechanism.couplings)
+    found = advice("tello", replace(mechanism, couplings=couplings))
+    assert [f"'{coupling.name}'" in each for each in found] == [True] * reverse
+
+
+@given(st.data(), st.sampled_from(["battobot", "cassie_2legs", "digit_2legs", "tello"]))
+def test_range_of_the_opposite_sense_is_reported(data: st.DataObject, name: str) -> None:
+    mechanism = read(name).mechanism
+    joint = chosen(data, mechanism.joints, lambda each: each.type.is_ranged and each.mimic is None)
+    lower, upper = joint.ranges[0]
+    assume(math.isfinite(lower) and math.isfinite(upper) and abs(lower + upper) > 0.1 * (upper - lower))
+    changed = joint.with_properties(replace(joint.properties, lower=(-upper,), upper=(-lower,)))
+    joints = tuple(changed if each is joint else each for each in mechanism.joints)
+    (message,) = advice(name, replace(mechanism, joints=joints))
+    assert f"range of joint '{joint.name}'" in message or f"'{joint.name}': " in message
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,8 @@ from eurdf.closures.frame import FrameClosure
 from eurdf.closures.point import PointClosure
 from eurdf.diagnostics import Diagnostics, Fix, Place, enumerated, plural, quoted
 from eurdf.kinematics.analysis import Analysis, analyze
-from eurdf.kinematics.loop_analysis import LoopAnalysis, Motion
+from eurdf.kinematics.loop_analysis import LoopAnalysis, Motion, sparse_basis
+from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.linking.robot_files import ReadRobot
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.robot import Robot, build_robot
@@ -28,6 +29,10 @@ _REASONS = frozenset({"near-miss-key", "closure-type-unknown", "urdf-closure-ign
 
 # Of a group of loops, so many closures at most are tried one by one.
 _MOST_TRIED = 12
+
+# At a dead point, the smallest singular value of the dimensionless K, stacked with the rows that select the actuated
+# velocities, is at most this. In the collection it is 1e-3 and more.
+_DEAD = 1e-6
 
 # Names that a message lists, and motions.
 _NAMES_LISTED = 6
@@ -61,6 +66,7 @@ def advise_on_actuation(
         place = _place_of_key(read, _closures_key(mechanism))
         diagnostics.report("x-loops-not-checked", analysis.left_out, place, "analyze parts of the robot separately")
         return
+    _report_rigid(read, robot, analysis, diagnostics, causes)
     shaky = [loop for loop in analysis.loops if loop.mobility and loop.finite_mobility == 0]
     if shaky:  # what actuators do there says little about another configuration
         for loop in shaky:
@@ -79,6 +85,49 @@ def advise_on_actuation(
         _report_dependent(read, robot, analysis.q, loop, closures, diagnostics)
     _report_uncontrolled(read, robot, analysis, diagnostics, causes)
     _report_exchanged(read, robot, analysis, diagnostics)
+    if not dependent:
+        _report_dead_points(read, robot, analysis, diagnostics)
+
+
+def _report_rigid(read: ReadRobot, robot: Robot, analysis: Analysis, diagnostics: Diagnostics, causes: bool) -> None:
+    """Report loops without an actuator, and without a motion."""
+    for loop in analysis.loops:
+        if not loop.mobility and not loop.actuated:
+            diagnostics.report(
+                "x-shaky-loops",
+                f"the loops of {_constraints(robot.mechanism, loop)} are rigid: {quoted(loop.joints, _NAMES_LISTED)} "
+                "cannot move",
+                read.place_of_constraint(loop.closures[0]),
+                "is a joint missing in these loops, or has one another parent?",
+                other_joints(read, robot, analysis.q, loop) if causes else (),
+            )
+
+
+def _report_dead_points(read: ReadRobot, robot: Robot, analysis: Analysis, diagnostics: Diagnostics) -> None:
+    """Report the motions that the actuators do not hold to first order, at 'assembled' but not beside it."""
+    for loop in analysis.loops if "assembled" in robot.configurations else ():
+        if not loop.actuated or loop.actuation_singularity > _DEAD:
+            continue
+        passive = PassiveMotions(robot)
+        if passive.needing_actuators(loop):  # also beside it
+            continue
+        actuated, names = frozenset(robot.actuation.idx_v), robot.tree.velocity_names
+        free = np.array([v for name in loop.joints for v in robot.tree.velocities_of(name) if v not in actuated])
+        _, values, vectors = np.linalg.svd(residual_and_jacobian(robot, analysis.q)[1][:, free])
+        motions = []
+        for row in sparse_basis(vectors[int((values > _DEAD * values[0]).sum()) :]):
+            moving = free[np.flatnonzero(row)]
+            joints = tuple(dict.fromkeys(names[v] for v in moving.tolist()))
+            motions.append(Motion(joints, moving, row[np.flatnonzero(row)], analysis.q))
+        if motions := passive.needing_actuators(replace(loop, motions=tuple(motions))):
+            moved = quoted(list(dict.fromkeys(name for motion in motions for name in motion.joints)), _NAMES_LISTED)
+            diagnostics.report(
+                "x-uncontrolled-motion",
+                f"at 'assembled' the actuators are at a dead point: when they are held, {moved} can still move to "
+                "first order",
+                read.place_of_configuration("assembled"),
+                "is the axis of one of these joints wrong, or is 'assembled' to be another configuration?",
+            )
 
 
 def _report_exchanged(read: ReadRobot, robot: Robot, analysis: Analysis, diagnostics: Diagnostics) -> None:

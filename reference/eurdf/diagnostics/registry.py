@@ -187,7 +187,7 @@ x-quaternion-order         A quaternion is probably in the order w, x, y, z.
 x-no-closure               A robot with actuators has no closure, but frames that are probably those of one.
 x-no-actuator              A robot with closures has no actuator.
 x-actuator-several         An actuated joint has several velocities; a motor has one.
-x-shaky-loops              Loops can move to first order only; they are rigid.
+x-shaky-loops              Loops are rigid: they cannot move, or to first order only.
 x-dependent-actuators      Actuators cannot move independently, or cannot move at all.
 x-uncontrolled-motion      A motion other than the spin of a rod remains when every actuator is held.
 x-motor-not-actuated       A joint that is named as a motor is not actuated, and another of its loop is.
