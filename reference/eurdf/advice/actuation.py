@@ -165,10 +165,11 @@ def _motors(read: ReadRobot, moved: Sequence[str]) -> Iterator[Fix]:
 
 def _report_several(read: ReadRobot, analysis: Analysis, diagnostics: Diagnostics, causes: bool) -> None:
     """Report actuated joints with several velocities, of loops or named as a motor, which has one."""
-    suspect = LikelyMotors(read).named.union(*(loop.joints for loop in analysis.loops))
-    joints = {joint.name: joint for joint in read.mechanism.joints if joint.type.nv > 1 and joint.name in suspect}
+    actuators = frozenset(read.mechanism.actuators)
+    joints = {joint.name: joint for joint in read.mechanism.joints if joint.type.nv > 1 and joint.name in actuators}
+    suspect = LikelyMotors(read).named.union(*(loop.joints for loop in analysis.loops)) if joints else ()
     for entry in read.description.actuators:
-        if (joint := joints.get(entry.joint)) is not None:
+        if (joint := joints.get(entry.joint)) is not None and joint.name in suspect:
             diagnostics.report(
                 "x-actuator-several",
                 f"actuator '{joint.name}' has {joint.type.nv} velocities: the joint is {joint.type}",
