@@ -178,14 +178,9 @@ class _Sides:
                 points, (a, b) = (one.pose.xyz, two.pose.xyz), (one.moments, two.moments)
                 self._points.append((body.name, *self._rotated(body.name, points[0], other, points[1])))
                 off = self._off(*self._points[-1][1:])
-                is_copy = points[0] == points[1] and off > _ROUNDING[0]
-                yield fact(
-                    "centre of mass of link",
-                    values=(_POINT, *points),
-                    difference=self._lengths(*points),
-                    mirrored=None if is_copy else off,
-                    body=body.name,
-                )
+                mirrored = off if points[0] != points[1] or off <= _ROUNDING[0] else None  # a copy
+                point, apart = (_POINT, *points), self._lengths(*points)
+                yield fact("centre of mass of link", values=point, difference=apart, mirrored=mirrored, body=body.name)
                 values = "{0[0]:.4g}, {0[3]:.4g}, {0[5]:.4g} kg·m²", a, b
                 traces = [each[0] + each[3] + each[5] for each in (a, b)]
                 yield fact("moments of inertia of link", values=values, difference=_apart(*traces))
