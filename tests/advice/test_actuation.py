@@ -185,3 +185,17 @@ def test_fix_that_makes_loops_rigid_is_refused(tmp_path: Path) -> None:
 def test_no_closure_of_the_collection_is_missing(name: str) -> None:
     likely = [fix.question for fix in forgotten_closures(read_valid(name, geometry=False)) if fix.question]
     assert likely == []
+
+
+@pytest.mark.parametrize(("place", "codes"), [("[0, 0, 0]", []), ("[0, 0, 0.1]", ["assembled-open"])])
+def test_floating_body_may_be_welded(tmp_path: Path, place: str, codes: list[str]) -> None:
+    box = '<link name="box"><inertial><mass value="0.1"/><inertia ixx="1e-4" ixy="0" ixz="0" iyy="1e-4" iyz="0" '
+    box += 'izz="1e-4"/></inertial></link><joint name="box_joint" type="floating"><parent link="ground"/>'
+    box += '<child link="box"/></joint></robot>'
+    text = yaml.safe_dump(DESCRIPTIONS["four_bar"], sort_keys=False)
+    text = text.replace(
+        "closures:\n", f"closures:\n- {{name: held, type: 6d, frames: [box, {{link: ground, xyz: {place}}}]}}\n"
+    )
+    (tmp_path / "robot.urdf").write_text(URDFS["four_bar"].replace("</robot>", box), encoding="utf-8")
+    (tmp_path / "robot.yaml").write_text(text, encoding="utf-8")
+    assert [each.code for each in eurdf.check(tmp_path).diagnostics] == codes

@@ -90,9 +90,10 @@ def advise_on_actuation(
 
 
 def _report_rigid(read: ReadRobot, robot: Robot, analysis: Analysis, diagnostics: Diagnostics, causes: bool) -> None:
-    """Report loops without an actuator, and without a motion."""
+    """Report loops without an actuator and without a motion, except of a body that floats and is welded on purpose."""
+    floating = {joint.name for joint in robot.mechanism.joints if joint.type.nv == 6}
     for loop in analysis.loops:
-        if not loop.mobility and not loop.actuated:
+        if not loop.mobility and not loop.actuated and floating.isdisjoint(loop.joints):
             diagnostics.report(
                 "x-shaky-loops",
                 f"the loops of {_constraints(robot.mechanism, loop)} are rigid: {quoted(loop.joints, _NAMES_LISTED)} "
