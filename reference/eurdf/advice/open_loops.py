@@ -57,8 +57,10 @@ def causes_of_open_loops(
             found.append(replace(slip, closed=closed))
         if steps > _MOST_STEPS:
             break
-    found.sort(key=lambda each: each.order)
-    return list({each.fix.edits or each.question: each for each in reversed(found)}.values())[::-1]
+    unlike: dict[object, Slip] = {}
+    for slip in sorted(found, key=lambda each: each.order):
+        unlike.setdefault(slip.fix.edits or slip.question, slip)
+    return list(unlike.values())
 
 
 def proposed(causes: Sequence[Slip], loops: int) -> list[Fix]:
