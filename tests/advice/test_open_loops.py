@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from decimal import Decimal
 from functools import cache
 from pathlib import Path
 
@@ -26,7 +27,10 @@ from eurdf.mechanism.mechanism import Mechanism
 from support.places import ROBOTS
 
 NAMES = sorted(path.parent.name for path in ROBOTS.glob("*/robot.yaml"))
-KINDS = ("sign", "millimetres", "exchanged coordinates", "digit", "root link", "frame", "exchanged frames", "parent")
+KINDS = (
+    *("sign", "millimetres", "exchanged coordinates", "digit", "decimal point", "root link"),
+    *("frame", "exchanged frames", "parent"),
+)
 
 
 @cache
@@ -73,6 +77,9 @@ def slipped(draw: st.DataObject, kind: str, pose: StatedPose, urdf: etree._Eleme
             at = draw.draw(st.sampled_from([found.start() for found in re.finditer(r"\d", xyz[k])]))
             xyz[k] = xyz[k][:at] + draw.draw(st.sampled_from("123456789")) + xyz[k][at + 1 :]
             assume(len(xyz[k].replace(".", "").strip("-0")) > 1)
+        elif kind == "decimal point":
+            assume(float(xyz[k]))
+            xyz[k] = format(Decimal(xyz[k]).scaleb(draw.draw(st.sampled_from((-2, -1, 1, 2)))), "f")
         else:
             place = pose.poses[joint.find("parent").get("link")].act(tuple(map(float, xyz)))
             xyz = [f"{value:.12f}" for value in place]

@@ -146,9 +146,11 @@ def _steps_along(loops: OpenLoops, side: Side, axis: Vector3) -> Iterator[float]
 def _written_poses(loops: OpenLoops) -> Iterator[_WrittenPose]:
     """The poses that the files state of joints of open loops, and of frames of their closures."""
     urdf, description = loops.read.urdf, loops.read.description
-    for name, sides in loops.joints.items():
+    first = {entry.name: entry.merges[0] for entry in description.joints if entry.merges}
+    for made, sides in loops.joints.items():
+        name = first.get(made, made)
         joint = urdf.joints.get(name)
-        if joint is None or loops.pose.joints[name].placement != joint.placement:
+        if joint is None or loops.pose.joints[made].placement != joint.placement:
             continue
         image = urdf.joints.get(other_side(name) or "")
         origin, turned = (loops.in_urdf(name, "origin", attribute) for attribute in ("xyz", "rpy"))
@@ -161,7 +163,7 @@ def _written_poses(loops: OpenLoops) -> Iterator[_WrittenPose]:
             sides,
             _numbers(origin.parts() if origin else ()),
             _numbers(turned.parts() if turned else ()),
-            name,
+            made,
         )
     added = {entry.name: entry for entry in description.frames}
     closures = {entry.name: entry for entry in description.closures}
@@ -274,7 +276,9 @@ def other_constraints(loops: OpenLoops) -> Iterator[Slip]:
         pointer, numbers, freer = loops.entry(index).pointer, closure.stated(), closure.with_orientation_free()
         if freer is not closure:
             what, change = f"the type of closure '{closure.name}'", Change(constraints={index: freer})
-            yield written(RARE, change, what, freer.type, closure.type, _NEVER_CERTAIN)  # it closes whatever the angles are
+            yield written(
+                RARE, change, what, freer.type, closure.type, _NEVER_CERTAIN
+            )  # it closes whatever the angles are
         for key, sign in product((key for key, value in numbers.items() if isinstance(value, float)), (1.0, -1.0)):
             token = loops.in_yaml(*pointer, key)
             other = numbers[key] + sign * loops.pose.opening(index)
