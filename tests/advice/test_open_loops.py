@@ -169,6 +169,17 @@ def test_assemble_keeps_what_is_stated(tmp_path: Path) -> None:
     assert eurdf.load(folder).mechanism.configurations["assembled"]["motor_crank"] == (0.2,)
 
 
+def test_axis_is_found_away_from_neutral(tmp_path: Path) -> None:
+    folder = edited(tmp_path, "four_bar", "robot.yaml", ("assembled: {}", "assembled: {motor_crank: 0.2}"))
+    assert main(["assemble", str(folder), "--write", "--force"]) == 0
+    urdf = folder / "robot.urdf"
+    before, joint, after = urdf.read_text(encoding="utf-8").partition('<joint name="free_rocker"')
+    urdf.write_text(before + joint + after.replace('<axis xyz="0 1 0"/>', '<axis xyz="0 0 1"/>', 1), encoding="utf-8")
+    (found,) = eurdf.check(folder).diagnostics
+    assert "0 1 0 in place of 0 0 1 as the axis of joint 'free_rocker'" in (found.hint or "")
+    assert found.fix is not None
+
+
 def test_exchanged_frames_are_asked_about_without_assembled(tmp_path: Path) -> None:
     folder = edited(tmp_path, "digit_leg", "robot.v1.yaml")
     assert eurdf.check(folder).diagnostics == ()

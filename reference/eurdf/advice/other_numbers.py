@@ -232,6 +232,13 @@ def other_coordinates(loops: OpenLoops) -> Iterator[Slip]:
             new = [negated(token.text) if float(token.text) else token.text for token in old]
             change, what = _turned(loops, joint.name, -value), f"the axis of joint '{joint.name}'"
             yield written(POSSIBLE, change, what, " ".join(new), axis.text, zip(old, new, strict=True), score=-0.1)
+            words = [token.text for token in old]
+            for texts in sorted({*permutations(words)} - {tuple(words)}):
+                x, y, z = map(float, texts)
+                other_axis = replace(joint, axes=((x, y, z),)).transform((value,))
+                placement = joint.placement * other_axis * joint.transform((value,)).inverse()
+                change = Change(placements={joint.name: placement})
+                yield written(POSSIBLE, change, what, " ".join(texts), axis.text, zip(old, texts, strict=True))
         token = loops.in_yaml("configurations", name, joint.name)
         if token is None or not token.is_number:
             continue
