@@ -252,6 +252,8 @@ class _Messages:
         elif here is None and pointer[0] == "closures" and meant in CLOSURE.forms.values_of_type(VERSION2_1):
             hint, proposals = self.version_hint(f"'{value}' is called '{meant}' here; that"), ()
         else:
+            if pointer[-1] == "axes" and {*value} == {*"xyz"}:
+                hint = "does it turn about all three axes? then its type is 'spherical'"
             proposals = renamings(similar(value, allowed), partial(named, self.document, pointer, False))
         return Diagnostic("wrong-value", message, self.place(pointer), hint, proposals=tuple(proposals))
 

@@ -289,9 +289,10 @@ class _Replacement(NamedTuple):
             keys = next(iter(stated))
             message = f"fixed joint '{joint.name}' cannot have the property '{keys[-1]}'"
             document, at = self.joints.reporter.document, entry.pointer
-            alone = list(stated) == [keys] and entry.type is None
-            fixes = removed(document, at if alone else (*at, *keys), f"'{entry.name if alone else keys[-1]}'")
-            self.report("joint-property", message, *keys, proposals=fixes)
+            if entry.type is None:
+                self.report("joint-property", message, *keys, hint="is its type in the URDF wrong, or the joint's name?")
+            else:
+                self.report("joint-property", message, *keys, proposals=removed(document, (*at, *keys), f"'{keys[-1]}'"))
             return None
         changes: dict[str, tuple[float, ...]] = {}
         for keys, numbers in stated.items():
