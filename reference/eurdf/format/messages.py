@@ -39,6 +39,9 @@ _JOINT_TYPE_HINTS = {
 #: Keys whose values are three numbers.
 _VECTORS = ("xyz", "rpy", "axis")
 
+#: Keys without which the robot is another one.
+_SUBSTANTIAL = ("closures", "couplings", "joints", "actuators")
+
 _JOINT_KEYS = JOINT.keys(VERSION2_1).keys()
 
 #: Keys that describe a joint or its motor: those of the format, and the words of a URDF and of other formats.
@@ -239,7 +242,8 @@ class _Messages:
         choices = f"{', '.join(others)} or {last}" if others else last
         message = f"{subject(pointer)} must be {choices}, not {described(value)}"
         if not isinstance(value, str):
-            return Diagnostic("wrong-type", message, self.place(pointer))
+            asked = "is the root fixed to the world, or does it float?" if pointer == ("root",) else None
+            return Diagnostic("wrong-type", message, self.place(pointer), asked)
         is_type = len(pointer) == 2 or pointer[-1] in ("type", "root")
         meant = type_meant(pointer[0], value) if is_type else None
         here = next((choice for choice in allowed if choice.casefold() == meant), None)
@@ -345,7 +349,8 @@ def _key_of_a_joint(pointer: Pointer) -> str | None:
 def _type_fix(document: YamlDocument, must: str, pointer: Pointer, value: Any) -> tuple[Fix, ...]:
     """What `_type_hint` says, as a fix."""
     if value is None:
-        return () if isinstance(pointer[-1], int) else tuple(removed(document, pointer, f"'{pointer[-1]}'"))
+        is_certain = isinstance(pointer[-1], str) and pointer[-1] not in _SUBSTANTIAL
+        return tuple(removed(document, pointer, f"'{pointer[-1]}'")) if is_certain else ()
     if must == "must be a list" and isinstance(value, str | int | float):
         items: list[Any] = re.split(r"[,\s]+", value.strip(", ")) if isinstance(value, str) else [value]
         if pointer[-1] in _VECTORS:
@@ -378,6 +383,8 @@ def _number(text: str) -> float | None:
 def _type_hint(must: str, pointer: Pointer, value: Any) -> str | None:
     """How to write what is probably meant, if it can be guessed."""
     if value is None:
+        if pointer[-1] in _SUBSTANTIAL:
+            return "is its value missing, or not indented?"
         return None if isinstance(pointer[-1], int) else "remove the key if it has no value"
     if ("text" in must or "name" in must) and isinstance(value, bool | int | float):
         return "quote a name that looks like a number, true or false"
