@@ -1,4 +1,4 @@
-"""What a command prints is no command of a workflow, whatever the names in files and paths are; names that are meant."""
+"""What a command prints is no command of a workflow, whatever names of files are; names that are meant."""
 
 from __future__ import annotations
 

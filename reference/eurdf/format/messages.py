@@ -27,9 +27,10 @@ from eurdf.reading.yaml_reader import YamlDocument
 #: Maximum number of reported errors per file; a file with more is not a description.
 MOST = 100
 
-#: What to write in place of a joint type that the file cannot state.
+#: What to write in place of a joint type, or of axes, that the file cannot state.
 _JOINT_TYPE_HINTS = {
     "universal": "a universal joint needs its axes: {type: universal, axes: xy}",
+    "xyz": "does it turn about all three axes? then its type is 'spherical'",
     "helical": "a helical joint needs its pitch: {type: helical, pitch: 0.005}",
     **dict.fromkeys(
         ("revolute", "continuous", "prismatic", "planar", "floating"), "a joint without a type keeps its URDF type"
@@ -38,9 +39,6 @@ _JOINT_TYPE_HINTS = {
 
 #: Keys whose values are three numbers.
 _VECTORS = ("xyz", "rpy", "axis")
-
-#: Keys without which the robot is another one.
-_SUBSTANTIAL = ("closures", "couplings", "joints", "actuators")
 
 _JOINT_KEYS = JOINT.keys(VERSION2_1).keys()
 
@@ -256,8 +254,6 @@ class _Messages:
         elif here is None and pointer[0] == "closures" and meant in CLOSURE.forms.values_of_type(VERSION2_1):
             hint, proposals = self.version_hint(f"'{value}' is called '{meant}' here; that"), ()
         else:
-            if pointer[-1] == "axes" and {*value} == {*"xyz"}:
-                hint = "does it turn about all three axes? then its type is 'spherical'"
             proposals = renamings(similar(value, allowed), partial(named, self.document, pointer, False))
         return Diagnostic("wrong-value", message, self.place(pointer), hint, proposals=tuple(proposals))
 
@@ -349,8 +345,8 @@ def _key_of_a_joint(pointer: Pointer) -> str | None:
 def _type_fix(document: YamlDocument, must: str, pointer: Pointer, value: Any) -> tuple[Fix, ...]:
     """What `_type_hint` says, as a fix."""
     if value is None:
-        is_certain = isinstance(pointer[-1], str) and pointer[-1] not in _SUBSTANTIAL
-        return tuple(removed(document, pointer, f"'{pointer[-1]}'")) if is_certain else ()
+        is_asked = isinstance(pointer[-1], int) or len(pointer) == 1
+        return () if is_asked else tuple(removed(document, pointer, f"'{pointer[-1]}'"))
     if must == "must be a list" and isinstance(value, str | int | float):
         items: list[Any] = re.split(r"[,\s]+", value.strip(", ")) if isinstance(value, str) else [value]
         if pointer[-1] in _VECTORS:
@@ -383,7 +379,7 @@ def _number(text: str) -> float | None:
 def _type_hint(must: str, pointer: Pointer, value: Any) -> str | None:
     """How to write what is probably meant, if it can be guessed."""
     if value is None:
-        if pointer[-1] in _SUBSTANTIAL:
+        if len(pointer) == 1:
             return "is its value missing, or not indented?"
         return None if isinstance(pointer[-1], int) else "remove the key if it has no value"
     if ("text" in must or "name" in must) and isinstance(value, bool | int | float):

@@ -290,9 +290,11 @@ class _Replacement(NamedTuple):
             message = f"fixed joint '{joint.name}' cannot have the property '{keys[-1]}'"
             document, at = self.joints.reporter.document, entry.pointer
             if entry.type is None:
-                self.report("joint-property", message, *keys, hint="is its type in the URDF wrong, or the joint's name?")
+                hint = "is its type in the URDF wrong, or the name of the joint?"
+                self.report("joint-property", message, *keys, hint=hint)
             else:
-                self.report("joint-property", message, *keys, proposals=removed(document, (*at, *keys), f"'{keys[-1]}'"))
+                fixes = removed(document, (*at, *keys), f"'{keys[-1]}'")
+                self.report("joint-property", message, *keys, proposals=fixes)
             return None
         changes: dict[str, tuple[float, ...]] = {}
         for keys, numbers in stated.items():
