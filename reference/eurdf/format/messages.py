@@ -380,7 +380,7 @@ def _type_hint(must: str, pointer: Pointer, value: Any) -> str | None:
     """How to write what is probably meant, if it can be guessed."""
     if value is None:
         if len(pointer) == 1:
-            return "is its value missing, or not indented?"
+            return "is its value missing?"
         return None if isinstance(pointer[-1], int) else "remove the key if it has no value"
     if ("text" in must or "name" in must) and isinstance(value, bool | int | float):
         return "quote a name that looks like a number, true or false"
