@@ -394,6 +394,6 @@ def _type_hint(must: str, pointer: Pointer, value: Any) -> str | None:
         number = _number(value)
         if number is not None:
             meant = number_meant(value)
-            unit = f"in {meant[1]}, " if meant and meant[1] else ""
-            return f"write the number {unit}as {repr(number).removesuffix('.0')}, without quotes"
+            why = f": {quoted(value)} in {meant[1]}" if meant and meant[1] else ""
+            return f"write the number as {repr(number).removesuffix('.0')}, without quotes{why}"
     return None
