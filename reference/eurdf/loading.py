@@ -17,6 +17,7 @@ from eurdf.advice.angles import advise_on_angles
 from eurdf.advice.lengths import advise_on_lengths
 from eurdf.advice.likely_closures import advise_on_missing_closures
 from eurdf.advice.loops import closure_diagnostics
+from eurdf.advice.near_assembled import advise_on_near_assembled
 from eurdf.advice.plausibility import advise_on_plausibility, spring_notes
 from eurdf.advice.quaternions import advise_on_quaternions
 from eurdf.advice.symmetry import advise_on_symmetry
@@ -292,6 +293,7 @@ def _findings(read: ReadRobot, mesh_files: _MeshFiles, find: Mapping[str, Any], 
     before = len(diagnostics)
     if read.linked is not None and not refused:
         if read.yaml is not None:
+            advise_on_near_assembled(read, diagnostics)
             if read.mechanism.constraints:
                 analysis = _check_loops(read, causes)
             else:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from decimal import Decimal
 from functools import cache
 from pathlib import Path
 
@@ -26,7 +27,10 @@ from eurdf.mechanism.mechanism import Mechanism
 from support.places import ROBOTS
 
 NAMES = sorted(path.parent.name for path in ROBOTS.glob("*/robot.yaml"))
-KINDS = ("sign", "millimetres", "exchanged coordinates", "digit", "root link", "frame", "exchanged frames", "parent")
+KINDS = (
+    *("sign", "millimetres", "exchanged coordinates", "digit", "decimal point", "root link"),
+    *("frame", "exchanged frames", "parent"),
+)
 
 
 @cache
@@ -73,6 +77,9 @@ def slipped(draw: st.DataObject, kind: str, pose: StatedPose, urdf: etree._Eleme
             at = draw.draw(st.sampled_from([found.start() for found in re.finditer(r"\d", xyz[k])]))
             xyz[k] = xyz[k][:at] + draw.draw(st.sampled_from("123456789")) + xyz[k][at + 1 :]
             assume(len(xyz[k].replace(".", "").strip("-0")) > 1)
+        elif kind == "decimal point":
+            assume(float(xyz[k]))
+            xyz[k] = format(Decimal(xyz[k]).scaleb(draw.draw(st.sampled_from((-2, -1, 1, 2)))), "f")
         else:
             place = pose.poses[joint.find("parent").get("link")].act(tuple(map(float, xyz)))
             xyz = [f"{value:.12f}" for value in place]
@@ -162,6 +169,17 @@ def test_assemble_keeps_what_is_stated(tmp_path: Path) -> None:
     assert eurdf.load(folder).mechanism.configurations["assembled"]["motor_crank"] == (0.2,)
 
 
+def test_axis_is_found_away_from_neutral(tmp_path: Path) -> None:
+    folder = edited(tmp_path, "four_bar", "robot.yaml", ("assembled: {}", "assembled: {motor_crank: 0.2}"))
+    assert main(["assemble", str(folder), "--write", "--force"]) == 0
+    urdf = folder / "robot.urdf"
+    before, joint, after = urdf.read_text(encoding="utf-8").partition('<joint name="free_rocker"')
+    urdf.write_text(before + joint + after.replace('<axis xyz="0 1 0"/>', '<axis xyz="0 0 1"/>', 1), encoding="utf-8")
+    (found,) = eurdf.check(folder).diagnostics
+    assert "0 1 0 in place of 0 0 1 as the axis of joint 'free_rocker'" in (found.hint or "")
+    assert found.fix is not None
+
+
 def test_exchanged_frames_are_asked_about_without_assembled(tmp_path: Path) -> None:
     folder = edited(tmp_path, "digit_leg", "robot.v1.yaml")
     assert eurdf.check(folder).diagnostics == ()
@@ -192,7 +210,9 @@ def test_frame_is_found_by_name_where_no_pose_is_stated(tmp_path: Path) -> None:
         ("0.25", 0.2, "0.2"),
         ("0.15", 0.1735, None),
         ("0.3", 0.4, None),
-        ("12.5", 0.125, None),
+        ("12.5", 0.125, "0.125"),
+        ("-0.02", -0.2, "-0.2"),
+        ("12.5", 0.0125, None),
         ("-0.08425679893", -0.08425673893, "-0.08425673893"),
     ],
 )

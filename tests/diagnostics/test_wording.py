@@ -1,4 +1,4 @@
-"""What a command prints is no command of a workflow, whatever the names in files and paths are."""
+"""What a command prints is no command of a workflow, whatever names of files are; names that are meant."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ import pytest
 
 import eurdf
 from eurdf.commands.main import main
-from eurdf.diagnostics.wording import no_command
+from eurdf.diagnostics.fix import nearest
+from eurdf.diagnostics.wording import no_command, similar
 from eurdf_conformance.visible import visible
 
 NAME = "::error file=a::b"
@@ -93,3 +94,17 @@ def test_only_the_begin_of_a_line_is_changed(line: str, safe: str) -> None:
 
 def test_every_line_of_a_text_from_a_parser_is_no_command() -> None:
     assert visible("::a\n  ::b\nc ::d\n\n::e") == "\\x3a:a\n  \\x3a:b\nc ::d\n\n\\x3a:e"
+
+
+@pytest.mark.parametrize(
+    ("wrong", "known", "meant"),
+    [
+        ("left_ankle", ["left_knee", "left_ankle_motor"], ["left_ankle_motor"]),
+        ("left_ankle_motor", ["left_ankle", "left_knee_motor"], ["left_ankle"]),
+        ("left_knee_moto", ["left_knee", "left_knee_motor"], ["left_knee_motor"]),
+        ("leg", ["leg_ankle_", "leg_hip"], ["leg_hip"]),
+        ("left_leg", ["left_leg_ankle", "left_leg_hip"], ["left_leg_hip", "left_leg_ankle"]),
+    ],
+)
+def test_name_that_continues_another_is_nearer_than_three_edits(wrong: str, known: list[str], meant: list[str]) -> None:
+    assert nearest(wrong, similar(wrong, known)) == meant

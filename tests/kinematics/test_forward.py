@@ -117,7 +117,7 @@ def test_unreachable_coordinates_report_open_loops() -> None:
     robot = crank_and_rocker(4.5)  # 4.5 m of bars: the crank cannot point away from the ground pin
     q0 = assemble(robot, np.array([0.3, 0.6, -1.0])).q
     with pytest.raises(
-        NotClosable, match=r"cannot be closed at the given coordinates: closures stay open, 'end' by 1e\+03 mm"
+        NotClosable, match=r"cannot be closed at the given coordinates: closures stay open, 'end' by 1 m"
     ) as raised:
         forward_kinematics(robot, np.array([np.pi]), q0)
     assert isinstance(raised.value, EurdfError)

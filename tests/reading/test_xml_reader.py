@@ -287,6 +287,7 @@ def test_any_text_gives_document_or_error(pieces: list[str]) -> None:
         ("<robot/>\n<robot/>", (2, 1), "after the end of the root element", None),
         ("<robot é='ü'\n a='1' a='2'/>", (2, 8), "the attribute 'a' occurs twice", None),
         ("<robot é='ü' a=1/>", (1, 16), "must be quoted", None),
+        ("<robot a='b&c'/>", (1, 12), "'&' is not escaped", "&amp;"),
         ("<robot a='<'/>", (1, 11), "'<' is inside a tag", "&lt;"),
         ("<robot>\n <link\n <link/>\n</robot>", (3, 2), "'<' is inside a tag", "close the tag before it"),
         ("<robot>é &x; </robot>", (1, 10), "the entity '&x;' is unknown", "&amp;"),

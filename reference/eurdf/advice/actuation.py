@@ -166,9 +166,12 @@ def _motors(read: ReadRobot, moved: Sequence[str]) -> Iterator[Fix]:
 
 def _report_several(read: ReadRobot, analysis: Analysis, diagnostics: Diagnostics, causes: bool) -> None:
     """Report actuated joints with several velocities, of loops or named as a motor, which has one."""
-    actuators = frozenset(read.mechanism.actuators)
-    joints = {joint.name: joint for joint in read.mechanism.joints if joint.type.nv > 1 and joint.name in actuators}
-    suspect = LikelyMotors(read).named.union(*(loop.joints for loop in analysis.loops)) if joints else ()
+    actuated = frozenset(read.mechanism.actuators)
+    joints = {joint.name: joint for joint in read.mechanism.joints if joint.type.nv > 1 and joint.name in actuated}
+    if not joints:
+        return
+    motors = LikelyMotors(read)
+    suspect = motors.named.union(*(loop.joints for loop in analysis.loops))
     for entry in read.description.actuators:
         if (joint := joints.get(entry.joint)) is not None and joint.name in suspect:
             diagnostics.report(
@@ -176,7 +179,7 @@ def _report_several(read: ReadRobot, analysis: Analysis, diagnostics: Diagnostic
                 f"actuator '{joint.name}' has {joint.type.nv} velocities: the joint is {joint.type}",
                 read.description.document.place(entry.pointer),
                 None,
-                LikelyMotors(read).of_several(joint) if causes else (),
+                motors.of_several(joint) if causes else (),
             )
 
 

@@ -14,7 +14,7 @@ from eurdf.linking.actuators import name_in
 from eurdf.linking.counterparts import changes_between, is_opposite, renamed, words_of
 from eurdf.linking.robot_files import ReadRobot
 from eurdf.mechanism.joint import Joint
-from eurdf.writing.naming_conventions import conventions, find
+from eurdf.writing.naming_conventions import conventions, named_motors
 from eurdf.writing.yaml_edits import edited
 
 
@@ -25,7 +25,7 @@ class LikelyMotors:
         self._read = read
         self.listed = read.mechanism.actuators
         self._key = "name_mot" if read.mechanism.version == "1" else "actuators"
-        self.named = frozenset(find(read.urdf, conventions()).motors)
+        self.named = frozenset(named_motors(read.urdf, conventions().motors, []))
         self._single = {
             joint.name: joint for joint in read.mechanism.joints if joint.type.nv == 1 and joint.mimic is None
         }

@@ -103,7 +103,8 @@ def _report_assembled(
         causes, doubtful = _causes(read, robot, pose, _ASSEMBLED)
         if not unmoved and not any(fix.edits for fix in causes):
             found = closed_as_stated(read, robot, pose, q)
-            causes = [*causes[:1], *(replace(fix, edits=()) for fix in found)] if doubtful else [*found, *causes]
+            asked = [replace(fix, edits=()) for fix in found]
+            causes = [*causes[:1], *asked, *causes[1:]] if doubtful else [*found, *causes]
         hint, fixes = _asked(read, max(openings, key=lambda each: each.width).name, causes)
     diagnostics.report(
         "assembled-open",

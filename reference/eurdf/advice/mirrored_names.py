@@ -32,9 +32,8 @@ def _candidates(name: str) -> Iterator[str]:
     """The names that a name may have on the other side, the likeliest first."""
     words = [found.span() for found in _WORD.finditer(name)]
     yield from _changed(name, words)
-    letters = [found.span() for found in _LETTERS.finditer(name)]
+    sides = [[at for at in range(*found.span()) if name[at] in "lLrR"] for found in _LETTERS.finditer(name)]
     for last in (True, False):  # 'rl' is rear left rather than the right leg
-        sides = [[at for at in range(*span) if name[at] in "lLrR"] for span in letters]
         yield from _changed(name, [*words, *((at[-last], at[-last] + 1) for at in sides if at)])
     yield from _changed(name, [found.span() for found in _FIRST.finditer(name)])
 

@@ -7,7 +7,7 @@ several such changes; names, and the other side of the robot, decide between the
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from difflib import SequenceMatcher
@@ -24,6 +24,7 @@ from eurdf.diagnostics import Fix
 from eurdf.format.closure_model import NamedFrame
 from eurdf.format.urdf.data import UrdfJoint
 from eurdf.format.yaml_text import scalar
+from eurdf.linking.counterparts import changes_between, is_elsewhere, renamed
 from eurdf.linking.robot_files import ReadRobot
 from eurdf.mechanism.body import Anchor
 from eurdf.mechanism.pose import IDENTITY, Pose
@@ -57,8 +58,10 @@ def causes_of_open_loops(
             found.append(replace(slip, closed=closed))
         if steps > _MOST_STEPS:
             break
-    found.sort(key=lambda each: each.order)
-    return list({each.fix.edits or each.question: each for each in reversed(found)}.values())[::-1]
+    unlike: dict[object, Slip] = {}
+    for slip in sorted(found, key=lambda each: each.order):
+        unlike.setdefault(slip.fix.edits or slip.question, slip)
+    return list(unlike.values())
 
 
 def proposed(causes: Sequence[Slip], loops: int) -> list[Fix]:
@@ -177,12 +180,23 @@ def _other_parents(loops: OpenLoops) -> Iterator[Slip]:
                 continue
             now, then = (_fit(each, joint.child) for each in (joint.parent, link))
             rank = LIKELY if now < 0.0 <= then else GUESSED
-            if (there := joints.get(other_side(joint.name) or "")) is not None:
-                expected = other_side(there.parent) or there.parent
-                rank += AS_THERE * (expected == joint.parent) - (expected == link)
+            expected = _parent_as_elsewhere(joint, joints)
+            rank += AS_THERE * (expected == joint.parent) - (expected == link)
             edits = [(loops.in_urdf(joint.name, "parent", "link"), link)]
             what, change = f"the parent of joint '{joint.name}'", Change(parents={joint.name: link})
             yield written(rank, change, what, f"'{link}'", f"'{joint.parent}'", edits, score=then)
+
+
+def _parent_as_elsewhere(joint: UrdfJoint, joints: Mapping[str, UrdfJoint]) -> str | None:
+    """The parent that the same joint on the other side suggests, or all that have another number; None if they differ.
+
+    One other number says nothing: it may be that of the next joint in a chain.
+    """
+    if (there := joints.get(other_side(joint.name) or "")) is not None:
+        return other_side(there.parent) or there.parent
+    alike = ((each.parent, changes_between(each.name, joint.name)) for each in joints.values())
+    found = [renamed(parent, changes) for parent, changes in alike if is_elsewhere(changes)]
+    return found[0] if len(found) > 1 and len(set(found)) == 1 else None
 
 
 def _exchanged_origins(loops: OpenLoops) -> Iterator[Slip]:

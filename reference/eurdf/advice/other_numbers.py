@@ -23,6 +23,9 @@ from eurdf.mechanism.pose import AXES, IDENTITY, ORIGIN, Pose, Vector3
 # Nobody writes smaller numbers in mm or degrees.
 _LEAST_IN_UNIT = 1.0
 
+# In place of edits: a slip that any error explains is no more than a question.
+_NEVER_CERTAIN: Sequence[tuple[Token | None, str]] = ((None, ""),)
+
 
 @dataclass(frozen=True, slots=True)
 class _WrittenPose:
@@ -81,8 +84,8 @@ def _other_positions(loops: OpenLoops, placed: _WrittenPose, expected: Sequence[
             rank += AS_THERE * was - would_be
         change = placed.moved(loops, Pose((x, y, z), placed.pose.quaternion, placed.pose.rpy))
         what, edits = f"the position of {placed.what}", zip(placed.xyz, texts, strict=True)
-        # The shorter text is that with fewer changes.
-        score = -0.001 * len(" ".join(texts))
+        # Of slips of one rank, that with fewer changes is likelier.
+        score = -0.001 * abs(len("".join(texts)) - len("".join(old)))
         return written(rank, change, what, " ".join(texts), " ".join(old), edits, score=score, note=note)
 
     for unit, factor in OF_LENGTH.items() if max(map(abs, xyz)) >= _LEAST_IN_UNIT else ():
@@ -118,7 +121,8 @@ def _other_turns(loops: OpenLoops, placed: _WrittenPose, rpy: Vector3) -> Iterat
     for rank, angles, note in options:
         texts = [f"{angle + 0.0:.10g}" for angle in angles]
         if old:
-            texts = [was if float(was) == angle else text for was, text, angle in zip(old, texts, angles, strict=True)]
+            as_written = [{float(text): text for text in (negated(was), was)} for was in old]
+            texts = [those.get(angle, text) for those, text, angle in zip(as_written, texts, angles, strict=True)]
         roll, pitch, yaw = map(float, texts)
         change = placed.moved(loops, Pose.from_xyz_rpy(placed.pose.xyz, (roll, pitch, yaw)))
         edits = zip(placed.turns, texts, strict=True) if old else [(None, "")]
@@ -142,9 +146,11 @@ def _steps_along(loops: OpenLoops, side: Side, axis: Vector3) -> Iterator[float]
 def _written_poses(loops: OpenLoops) -> Iterator[_WrittenPose]:
     """The poses that the files state of joints of open loops, and of frames of their closures."""
     urdf, description = loops.read.urdf, loops.read.description
-    for name, sides in loops.joints.items():
+    first = {entry.name: entry.merges[0] for entry in description.joints if entry.merges}
+    for made, sides in loops.joints.items():
+        name = first.get(made, made)
         joint = urdf.joints.get(name)
-        if joint is None or loops.pose.joints[name].placement != joint.placement:
+        if joint is None or loops.pose.joints[made].placement != joint.placement:
             continue
         image = urdf.joints.get(other_side(name) or "")
         origin, turned = (loops.in_urdf(name, "origin", attribute) for attribute in ("xyz", "rpy"))
@@ -157,7 +163,7 @@ def _written_poses(loops: OpenLoops) -> Iterator[_WrittenPose]:
             sides,
             _numbers(origin.parts() if origin else ()),
             _numbers(turned.parts() if turned else ()),
-            name,
+            made,
         )
     added = {entry.name: entry for entry in description.frames}
     closures = {entry.name: entry for entry in description.closures}
@@ -226,6 +232,13 @@ def other_coordinates(loops: OpenLoops) -> Iterator[Slip]:
             new = [negated(token.text) if float(token.text) else token.text for token in old]
             change, what = _turned(loops, joint.name, -value), f"the axis of joint '{joint.name}'"
             yield written(POSSIBLE, change, what, " ".join(new), axis.text, zip(old, new, strict=True), score=-0.1)
+            words = [token.text for token in old]
+            for texts in sorted({*permutations(words)} - {tuple(words)}):
+                x, y, z = map(float, texts)
+                other_axis = replace(joint, axes=((x, y, z),)).transform((value,))
+                placement = joint.placement * other_axis * joint.transform((value,)).inverse()
+                change = Change(placements={joint.name: placement})
+                yield written(POSSIBLE, change, what, " ".join(texts), axis.text, zip(old, texts, strict=True))
         token = loops.in_yaml("configurations", name, joint.name)
         if token is None or not token.is_number:
             continue
@@ -269,9 +282,10 @@ def other_constraints(loops: OpenLoops) -> Iterator[Slip]:
             continue
         pointer, numbers, freer = loops.entry(index).pointer, closure.stated(), closure.with_orientation_free()
         if freer is not closure:
-            type_ = loops.in_yaml(*(("type", pointer[-1]) if pointer[0] == "closed_loop" else (*pointer, "type")))
             what, change = f"the type of closure '{closure.name}'", Change(constraints={index: freer})
-            yield written(RARE, change, what, freer.type, closure.type, [(type_, freer.type)])
+            yield written(
+                RARE, change, what, freer.type, closure.type, _NEVER_CERTAIN
+            )  # it closes whatever the angles are
         for key, sign in product((key for key, value in numbers.items() if isinstance(value, float)), (1.0, -1.0)):
             token = loops.in_yaml(*pointer, key)
             other = numbers[key] + sign * loops.pose.opening(index)

@@ -52,10 +52,15 @@ class PassiveMotions:
         the line, are multiples of one that only turns. Motions that differ by spins of single bodies count as one.
         """
         motions = self._unsprung(loop.motions)
-        if len(motions) > 1 and len(spins := self._spins(self._twists(motions))):
+        found = self._not_spins(motions)
+        if found and len(motions) > 1 and len(spins := self._spins(self._twists(motions))):
             rest = np.linalg.svd(spins)[2][len(spins) :]  # the combinations that are orthogonal to the spins
-            motions = self._combined(motions, rest)
-        turns = (_turns_about_one_line(self._twists([motion])[0], self._length) for motion in motions)
+            return self._not_spins(self._combined(motions, rest))
+        return found
+
+    def _not_spins(self, motions: Sequence[Motion]) -> list[Motion]:
+        twists = self._twists(motions) if motions else ()
+        turns = (_turns_about_one_line(each, self._length) for each in twists)
         return [motion for motion, is_spin in zip(motions, turns, strict=True) if not is_spin]
 
     def all_needing_actuators(self, analysis: Analysis) -> list[Motion]:

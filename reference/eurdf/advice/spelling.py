@@ -10,6 +10,9 @@ from decimal import Decimal
 OF_LENGTH = {"mm": Decimal("0.001"), "cm": Decimal("0.01"), "inches": Decimal("0.0254")}
 OF_ANGLE = {"degrees": Decimal(repr(math.pi / 180.0))}
 
+# By how many digits a decimal point moves.
+_MOVES = (1, -1, 2, -2)
+
 # Decimals beyond which nobody writes a number.
 _DECIMALS = 12
 
@@ -61,10 +64,14 @@ def negated(token: str) -> str:
 
 
 def with_one_slip(token: str, value: float, tolerance: float) -> str | None:
-    """The number as it is written, but for one digit or two that are exchanged, so that it has a value; else None.
+    """The number as it is written, but for one slip, so that it has a value; else None.
 
-    Two numbers with a single digit each say nothing of slips.
+    That is the place of the decimal point, a digit, or two that are exchanged. Two numbers with a single digit each say
+    nothing of slips of digits.
     """
+    moved = (format(Decimal(token).scaleb(places), "f") for places in _MOVES)
+    if (found := next((text for text in moved if abs(float(text) - value) <= tolerance), None)) is not None:
+        return found
     texts = [
         token[:i] + digit + token[i + more :] for i in range(len(token) + 1) for digit in _DIGITS for more in (0, 1)
     ]

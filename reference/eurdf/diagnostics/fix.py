@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cache
 
 from eurdf.diagnostics.lines import Lines
-from eurdf.diagnostics.wording import did_you_mean, edits, similar
+from eurdf.diagnostics.wording import continues, did_you_mean, edits, similar
 
 #: Names that are tried in the place of one that is unknown, at most.
 _FEW = 6
@@ -94,8 +94,8 @@ def misspelt(
 
 
 def nearest(wrong: str, names: Sequence[str]) -> Sequence[str]:
-    """Of some names, those that a wrong one is made to by as few edits, or one more."""
-    if len(names) < 2:
+    """Of some names, those that a wrong one is made to by as few edits, or one more; all if each continues it."""
+    if len(names) < 2 or all(continues(wrong, name) for name in names):
         return names
     counts = [edits(wrong, name) for name in names]
     return [name for name, count in zip(names, counts, strict=True) if count <= min(counts) + 1]

@@ -184,6 +184,7 @@ x-length-in-millimetres    A length is probably in millimetres, because it is la
 x-tiny-robot               No length of a robot with closures reaches a millimetre.
 x-open-at-neutral          The loops are open at neutral, and one change closes them exactly there.
 x-quaternion-order         A quaternion is probably in the order w, x, y, z.
+x-near-assembled           A configuration has nearly the name 'assembled', which none has.
 x-no-closure               A robot with actuators has no closure, but frames that are probably those of one.
 x-no-actuator              A robot with closures has no actuator.
 x-actuator-several         An actuated joint has several velocities; a motor has one.

@@ -12,6 +12,9 @@ _CLOSE = 20
 #: Names whose difflib ratios differ by at most this are about equally similar.
 _ABOUT = 0.1
 
+#: A name that is made to another by at most so many edits may be mistyped.
+_MISTYPED = 2
+
 #: Maximum number of pairs of letters that the search for the intended name compares.
 COMPARED = 40_000
 
@@ -65,7 +68,8 @@ def similar(wrong: str, known: Iterable[str], beside: str = "") -> list[str]:
     """The known names that are about equally similar to a misspelt one, the most similar first; empty if none is.
 
     If there are several, the first is the one most similar to ``beside``, the element that contains the wrong name: if
-    joint 'right_knee' mimics 'hip', it is 'right_hip', although 'left_hip' needs fewer added letters.
+    joint 'right_knee' mimics 'hip', it is 'right_hip', although 'left_hip' needs fewer added letters. If none is near,
+    names of which one begins with the other are more similar: 'left_ankle' is 'left_ankle_motor', not 'left_knee'.
 
     The time is bounded. If there are too many names, only those that share the first or second half of the wrong name
     are compared; this includes every name that differs in one place.
@@ -84,7 +88,14 @@ def similar(wrong: str, known: Iterable[str], beside: str = "") -> list[str]:
         candidates = [name for name in candidates if name.startswith(first) or name.endswith(second)][:most]
     close = difflib.get_close_matches(wrong, dict.fromkeys(candidates), n=_CLOSE)
     close = [name for name in close if _ratio(wrong, name) >= _ratio(wrong, close[0]) - _ABOUT]
+    if all(edits(wrong, name) > _MISTYPED for name in close):
+        close = sorted((name for name in candidates if continues(wrong, name)), key=len)[:_CLOSE] or close
     return sorted(close, key=partial(_ratio, beside), reverse=True) if beside else close
+
+
+def continues(one: str, other: str) -> bool:
+    """Whether one of two names begins with the other."""
+    return one.startswith(other) or other.startswith(one)
 
 
 def edits(one: str, other: str) -> int:

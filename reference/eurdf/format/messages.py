@@ -27,9 +27,10 @@ from eurdf.reading.yaml_reader import YamlDocument
 #: Maximum number of reported errors per file; a file with more is not a description.
 MOST = 100
 
-#: What to write in place of a joint type that the file cannot state.
+#: What to write in place of a joint type, or of axes, that the file cannot state.
 _JOINT_TYPE_HINTS = {
     "universal": "a universal joint needs its axes: {type: universal, axes: xy}",
+    "xyz": "does it turn about all three axes? then its type is 'spherical'",
     "helical": "a helical joint needs its pitch: {type: helical, pitch: 0.005}",
     **dict.fromkeys(
         ("revolute", "continuous", "prismatic", "planar", "floating"), "a joint without a type keeps its URDF type"
@@ -239,7 +240,8 @@ class _Messages:
         choices = f"{', '.join(others)} or {last}" if others else last
         message = f"{subject(pointer)} must be {choices}, not {described(value)}"
         if not isinstance(value, str):
-            return Diagnostic("wrong-type", message, self.place(pointer))
+            asked = "is the root fixed to the world, or does it float?" if pointer == ("root",) else None
+            return Diagnostic("wrong-type", message, self.place(pointer), asked)
         is_type = len(pointer) == 2 or pointer[-1] in ("type", "root")
         meant = type_meant(pointer[0], value) if is_type else None
         here = next((choice for choice in allowed if choice.casefold() == meant), None)
@@ -343,7 +345,8 @@ def _key_of_a_joint(pointer: Pointer) -> str | None:
 def _type_fix(document: YamlDocument, must: str, pointer: Pointer, value: Any) -> tuple[Fix, ...]:
     """What `_type_hint` says, as a fix."""
     if value is None:
-        return () if isinstance(pointer[-1], int) else tuple(removed(document, pointer, f"'{pointer[-1]}'"))
+        is_asked = isinstance(pointer[-1], int) or len(pointer) == 1
+        return () if is_asked else tuple(removed(document, pointer, f"'{pointer[-1]}'"))
     if must == "must be a list" and isinstance(value, str | int | float):
         items: list[Any] = re.split(r"[,\s]+", value.strip(", ")) if isinstance(value, str) else [value]
         if pointer[-1] in _VECTORS:
@@ -376,6 +379,8 @@ def _number(text: str) -> float | None:
 def _type_hint(must: str, pointer: Pointer, value: Any) -> str | None:
     """How to write what is probably meant, if it can be guessed."""
     if value is None:
+        if len(pointer) == 1:
+            return "is its value missing?"
         return None if isinstance(pointer[-1], int) else "remove the key if it has no value"
     if ("text" in must or "name" in must) and isinstance(value, bool | int | float):
         return "quote a name that looks like a number, true or false"
@@ -389,6 +394,6 @@ def _type_hint(must: str, pointer: Pointer, value: Any) -> str | None:
         number = _number(value)
         if number is not None:
             meant = number_meant(value)
-            unit = f"in {meant[1]}, " if meant and meant[1] else ""
-            return f"write the number {unit}as {repr(number).removesuffix('.0')}, without quotes"
+            why = f": {quoted(value)} in {meant[1]}" if meant and meant[1] else ""
+            return f"write the number as {repr(number).removesuffix('.0')}, without quotes{why}"
     return None

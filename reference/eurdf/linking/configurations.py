@@ -160,6 +160,8 @@ def _coordinates(
             f"{joint.type} joint '{joint.name}' has {len(values)} coordinates in configuration '{configuration}'; "
             f"it must have {len(names)}: {', '.join(names)}"
         )
+        if joint.type.is_axial and len(values) == 4 and abs(math.hypot(*values) - 1.0) <= _ROUNDED:
+            hint = f"is '{joint.name}: spherical' missing under 'joints'? these are the coordinates of a quaternion"
     elif start is not None:
         quaternion = values[start : start + 4]
         norm = math.sqrt(sum(value * value for value in quaternion))

@@ -289,9 +289,12 @@ class _Replacement(NamedTuple):
             keys = next(iter(stated))
             message = f"fixed joint '{joint.name}' cannot have the property '{keys[-1]}'"
             document, at = self.joints.reporter.document, entry.pointer
-            alone = list(stated) == [keys] and entry.type is None
-            fixes = removed(document, at if alone else (*at, *keys), f"'{entry.name if alone else keys[-1]}'")
-            self.report("joint-property", message, *keys, proposals=fixes)
+            if entry.type is None:
+                hint = "is its type in the URDF wrong, or the name of the joint?"
+                self.report("joint-property", message, *keys, hint=hint)
+            else:
+                fixes = removed(document, (*at, *keys), f"'{keys[-1]}'")
+                self.report("joint-property", message, *keys, proposals=fixes)
             return None
         changes: dict[str, tuple[float, ...]] = {}
         for keys, numbers in stated.items():

@@ -198,8 +198,9 @@ def _explain(text: str, problem: str, at: int) -> tuple[int, int, str, str | Non
 def _stray_character(text: str, at: int) -> tuple[int, int, str, str | None]:
     end = min(at + 1, len(text))
     character = text[at:end]
-    if text[at - 1 : at] == "&":
-        return at - 1, at, "a '&' is not escaped", "write &amp; for it"
+    single = text.rfind("&", 0, at)
+    if single >= 0 and _NAME.fullmatch(text, single + 1, at) and not text.startswith("#", single + 1):
+        return single, single + 1, "a '&' is not escaped", "write &amp; for it"
     if text[at - 2 : at] == "--" and text.rfind("<!--", 0, at) > text.rfind("-->", 0, at):
         return at - 2, at, "'--' is not allowed in a comment", None
     if text[:at].rstrip().endswith("="):

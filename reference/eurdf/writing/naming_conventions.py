@@ -179,7 +179,7 @@ def find(urdf: Urdf, convention: Conventions) -> Found:
     """Look for names that follow the conventions."""
     warnings: list[str] = []
     closures = tuple(_closures(urdf, convention.closures, warnings))
-    motors = tuple(_motors(urdf, convention.motors, warnings))
+    motors = tuple(named_motors(urdf, convention.motors, warnings))
     universals: dict[str, str] = {}
     for pattern, axes in convention.universals:
         universals |= dict.fromkeys(_replaced(urdf, (pattern,), "universal", warnings, universals), axes)
@@ -307,7 +307,8 @@ def _natural(name: str) -> list[tuple[int, str]]:
 # -- joints -------------------------------------------------------------------------------------------------------
 
 
-def _motors(urdf: Urdf, patterns: Sequence[re.Pattern[str]], warnings: list[str]) -> list[str]:
+def named_motors(urdf: Urdf, patterns: Sequence[re.Pattern[str]], warnings: list[str]) -> list[str]:
+    """The joints that patterns name as motors; why others are left out is added to the warnings."""
     named = [joint for joint in urdf.walk() if any(pattern.search(joint.name) for pattern in patterns)]
     if tuple(patterns) == conventions().motors:  # names of parts, which may be motors, are no names of joints
         named = [joint for joint in named if not _is_of_ball(joint.name, urdf)]

@@ -99,7 +99,7 @@ def _limit(
     """EU-URD-004, EU-URD-019: a joint with a range of motion has a ``limit``, whose ends are in order."""
     if element is None:
         if kind.is_ranged:
-            hint = "use type 'continuous' for a joint that rotates without limits" if kind == "revolute" else None
+            hint = "does it rotate without limits? then its type is 'continuous'" if kind == "revolute" else None
             proposals = partial(reader.retaggings_to, joint, "limit")
             message = f"{kind} joint '{name}' has no <limit>"
             reader.report("urdf-missing-element", message, joint, hint=hint, proposals=proposals)

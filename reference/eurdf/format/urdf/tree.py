@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import TypeVar
 
 from eurdf.diagnostics import quoted
@@ -81,10 +82,35 @@ def _parent_joints(reader: UrdfReader, joints: Sequence[UrdfJoint]) -> dict[str,
                 f"link '{joint.child}' is the child of two joints, '{other}' and '{joint.name}'",
                 next(joint.element.iterchildren("child")),
                 "link",
-                "keep one of the joints, and describe the other under 'closures' in the YAML file",
+                partial(_one_parent, joints, (parent_joint[joint.child], joint)),
             )
         parent_joint[joint.child] = joint
     return parent_joint
+
+
+def _one_parent(joints: Sequence[UrdfJoint], carriers: Sequence[UrdfJoint]) -> str:
+    """The hint on a link with two parents: whether one joint has it as its child by mistake, else how to write a loop.
+
+    The parent of a joint with parent and child exchanged is a root, and not the one that carries the most.
+    """
+    below: dict[str, list[str]] = {}
+    for joint in joints:
+        below.setdefault(joint.parent, []).append(joint.child)
+    roots = below.keys() - {joint.child for joint in joints}
+    exchanged = [joint for joint in carriers if joint.parent in roots]
+    if len(roots) < 2 or not exchanged:
+        return "keep one of the joints, and describe the other under 'closures' in the YAML file"
+
+    def carried(joint: UrdfJoint) -> int:
+        reached = {joint.parent: None}
+        stack = [joint.parent]
+        while stack:
+            new = [link for link in below.get(stack.pop(), ()) if link not in reached]
+            reached.update(dict.fromkeys(new))
+            stack += new
+        return len(reached)
+
+    return f"are parent and child of joint '{min(exchanged, key=carried).name}' exchanged?"
 
 
 def _is_acyclic(
