@@ -147,7 +147,7 @@ def test_docstring_has_links_shapes_and_errors(site: Path) -> None:
     text = _text(site / "api_closing.html")
     assert "eurdf.assemble(robot: Robot | RobotSource, q0: Named | None = None, *, hold: str" in text
     assert "q0: Where to start (nq,)" in text
-    assert "ValueError: q0 is not a configuration" in text
+    assert "ValueError: q0 or hold_at is not a configuration" in text
     assert "B<sub>J</sub> = B A⁺" in (site / "api_transmissions.html").read_text(encoding="utf-8")
     assert "progress: Callable[[int, int], None] | None = None" in _text(site / "api_batch.html")
 
