@@ -223,8 +223,12 @@ def test_error_ends_the_command_with_1(tmp_path: Path, capsys: pytest.CaptureFix
 
 def test_progress_is_shown_on_a_terminal(tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
+    at_once = (
+        "import sys; from eurdf.__main__ import start; from eurdf.commands import terminal; "
+        "terminal.progress_bar.__wrapped__.__defaults__ = (0.0,); sys.exit(start())"
+    )
     arguments = ["export", "kangaroo_leg", "--to", "mjcf", "--verify", "-o", str(tmp_path / "out")]
-    code, seen = on_a_terminal(["-m", "eurdf", *arguments])
+    code, seen = on_a_terminal(["-c", at_once, *arguments])
     assert code == 0
     assert "simulating" in seen
 
