@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from decimal import Decimal
 from functools import cache
 from pathlib import Path
@@ -178,6 +179,20 @@ def test_axis_is_found_away_from_neutral(tmp_path: Path) -> None:
     (found,) = eurdf.check(folder).diagnostics
     assert "0 1 0 in place of 0 0 1 as the axis of joint 'free_rocker'" in (found.hint or "")
     assert found.fix is not None
+
+
+def test_stated_root_is_no_cause(tmp_path: Path) -> None:
+    shutil.copytree(ROBOTS / "four_bar", tmp_path / "four_bar")
+    file = tmp_path / "four_bar" / "robot.yaml"
+    text = yaml.safe_load(file.read_text(encoding="utf-8"))
+    text |= {
+        "root": "floating",
+        "configurations": {"assembled": {"motor_crank": 0.3, "root_joint": [0, 0, 1, 0.6, 0, 0, 0.8]}},
+    }
+    file.write_text(yaml.safe_dump(text), encoding="utf-8")
+    (found,) = eurdf.check(file).errors
+    assert found.code == "assembled-open"
+    assert "root_joint" not in str(found.hint)
 
 
 def test_exchanged_frames_are_asked_about_without_assembled(tmp_path: Path) -> None:

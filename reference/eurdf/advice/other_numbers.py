@@ -216,13 +216,17 @@ def other_coordinates(loops: OpenLoops) -> Iterator[Slip]:
         return
     stated = mechanism.configurations[name]
     every = w_first(mechanism, stated)
-    for turned in (every, *({ball: values} for ball, values in every.items() if len(every) > 1)):
+    # The root joint, which is no joint of the mechanism, moves no loop.
+    moving = {ball: values for ball, values in every.items() if ball in loops.pose.joints}
+    alone = [{ball: values} for ball, values in moving.items() if len(every) > 1]
+    for turned in (every, *alone) if moving else ():
         edits: list[tuple[Token | None, str]] = []
         for ball, values in turned.items():
             tokens = [loops.in_yaml("configurations", name, ball, k) for k in range(len(values) - 4, len(values))]
             edits += [(tokens[k - 1], after.text) for k, after in enumerate(tokens) if after is not None]
         what = f"the quaternion of {' and '.join(map(repr, turned))} in '{name}'"
-        yield written(SURE, Change(coordinates=turned), what, "x, y, z, w", "w, x, y, z", edits)
+        change = Change(coordinates={ball: values for ball, values in turned.items() if ball in moving})
+        yield written(SURE, change, what, "x, y, z, w", "w, x, y, z", edits)
     for joint in (loops.pose.joints[each] for each in loops.joints):
         if len(joint.type.coordinates) != 1 or joint.name not in loops.pose.coordinates:
             continue
