@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 
+from eurdf.linking.counterparts import OTHER_SIDE, cased_as
+
 _WORD = re.compile("left|right", re.IGNORECASE)
 
 # One or two letters for a side, as in 'l_hip', 'LF_hip', 'hipR' and 'LHipYaw', and the first letter of a word: 'LARM'.
@@ -12,8 +14,6 @@ _LETTERS = re.compile(
     r"(?<![A-Za-z])[A-Za-z]{1,2}(?![A-Za-z])|(?<![A-Z])[A-Z]{1,2}(?=[A-Z][a-z])|(?<=[a-z])[LR](?![A-Za-z])"
 )
 _FIRST = re.compile(r"(?<![A-Za-z])[LRlr](?=[A-Za-z])")
-
-_OTHER = {"left": "right", "right": "left", "l": "r", "r": "l"}
 
 # Longer names have no side: the time grows with the square of the length.
 _LONGEST = 200
@@ -44,7 +44,5 @@ def _changed(name: str, spans: Sequence[_Span]) -> Iterator[str]:
         text = name
         for start, end in sorted(chosen, reverse=True):
             side = name[start:end]
-            other = _OTHER[side.lower()]
-            other = other.upper() if side.isupper() else other.capitalize() if side[0].isupper() else other
-            text = text[:start] + other + text[end:]
+            text = text[:start] + cased_as(side, OTHER_SIDE[side.lower()]) + text[end:]
         yield text

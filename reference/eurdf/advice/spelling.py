@@ -6,6 +6,8 @@ import math
 import re
 from decimal import Decimal
 
+from eurdf.linking.counterparts import OTHER_SIDE, cased_as
+
 #: What a number is multiplied by whose unit was taken for m, or for rad.
 OF_LENGTH = {"mm": Decimal("0.001"), "cm": Decimal("0.01"), "inches": Decimal("0.0254")}
 OF_ANGLE = {"degrees": Decimal(repr(math.pi / 180.0))}
@@ -20,7 +22,6 @@ _DIGITS = ("", ".", *"0123456789")
 _NUMBER = re.compile(r"-?(0|[1-9]\d*)(\.\d+)?")
 
 _SIDE = re.compile(r"(?<![a-z])(left|right|l|r)(?![a-z])", re.IGNORECASE)
-_OTHER = {"left": "right", "right": "left", "l": "r", "r": "l"}
 
 
 def side(name: str) -> str | None:
@@ -31,12 +32,7 @@ def side(name: str) -> str | None:
 
 def other_side(name: str) -> str | None:
     """The name with left and right exchanged; None if it has neither."""
-
-    def other(found: re.Match[str]) -> str:
-        word = _OTHER[found[1].lower()]
-        return word.upper() if found[1].isupper() else word.title() if found[1].istitle() else word
-
-    changed = _SIDE.sub(other, name)
+    changed = _SIDE.sub(lambda found: cased_as(found[1], OTHER_SIDE[found[1].lower()]), name)
     return None if changed == name else changed
 
 

@@ -17,6 +17,9 @@ _OPPOSITE = frozenset(
 
 _SIDES = frozenset().union(*_OPPOSITE)
 
+#: The words for left and right, each with the other one.
+OTHER_SIDE = {"left": "right", "right": "left", "l": "r", "r": "l"}
+
 # Those that number parts; x, y and z are directions.
 _LETTERS = frozenset("abcdefgh")
 
@@ -66,7 +69,8 @@ def renamed(name: str, changes: Changes) -> str:
         new = {index: by_word[word] for index, word in enumerate(words) if word in by_word}
     parts, end = [], 0
     for index, found in enumerate(_WORD.finditer(name)):
-        parts += [name[end : found.start()], _cased(found[0], new.get(index))]
+        word = found[0]
+        parts += [name[end : found.start()], cased_as(word, new[index]) if index in new else word]
         end = found.end()
     return "".join((*parts, name[end:]))
 
@@ -131,7 +135,6 @@ def other_frame(name: str, used: Iterable[Frames], names: Collection[str]) -> st
     return beside[0] if len(beside) == 1 else None
 
 
-def _cased(word: str, new: str | None) -> str:
-    if new is None:
-        return word
+def cased_as(word: str, new: str) -> str:
+    """A word in lower case, with capital letters as another one has them."""
     return new.upper() if word.isupper() else new.capitalize() if word[0].isupper() else new
