@@ -57,7 +57,7 @@ def advise_on_actuation(
             "x-no-actuator",
             f"the robot has {plural(len(mechanism.constraints), noun)} and no actuator",
             _place_of_key(read, key),
-            f"list the joints that its motors drive under '{_actuators_key(mechanism)}'",
+            f"list the joints that its motors drive under '{read.description.actuators_key}'",
             lambda: _motors(read, [joint.name for joint in mechanism.joints]) if causes else (),
         )
         return
@@ -303,10 +303,9 @@ def _report_uncontrolled(
     if not analysis.motions:
         return
     passive = PassiveMotions(robot)
-    in_loops = sum(len(loop.motions) for loop in analysis.loops)
     loose = [(loop, found) for loop in analysis.loops if (found := passive.needing_actuators(loop))]
     motions = [motion for _, found in loose for motion in found]
-    motions += [motion for motion in analysis.motions[in_loops:] if passive.needs_actuator(motion)]
+    motions += passive.outside_needing_actuators(analysis)
     if motions:
         count = len(motions)
         moved = list(dict.fromkeys(quoted(motion.joints, _NAMES_LISTED) for motion in motions))
@@ -314,7 +313,7 @@ def _report_uncontrolled(
         diagnostics.report(
             "x-uncontrolled-motion",
             f"{count} {'motion remains' if count == 1 else 'motions remain'} when every actuator is held: {shown}",
-            _place_of_key(read, _actuators_key(robot.mechanism)),
+            _place_of_key(read, read.description.actuators_key),
             None,
             lambda: _controlling(read, robot, passive, analysis.q, loose, motions) if causes else (),
         )
@@ -373,10 +372,6 @@ def _closures_key(mechanism: Mechanism) -> str:
     if mechanism.version == "1":
         return "closed_loop"
     return "closures" if mechanism.closures else "couplings"
-
-
-def _actuators_key(mechanism: Mechanism) -> str:
-    return "name_mot" if mechanism.version == "1" else "actuators"
 
 
 def _place_of_key(read: ReadRobot, key: str) -> Place:

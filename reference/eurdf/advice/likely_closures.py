@@ -45,7 +45,7 @@ def advise_on_missing_closures(read: ReadRobot, diagnostics: Diagnostics, causes
         diagnostics.report(
             "x-no-closure",
             f"the robot has no closure, but frames whose names pair, or that are at one point: {frames}",
-            read.description.document.place(("name_mot" if read.mechanism.version == "1" else "actuators",), True),
+            read.description.document.place((read.description.actuators_key,), True),
             None,
             forgotten_closures(read) if causes else (),
         )

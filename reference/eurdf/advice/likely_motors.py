@@ -24,7 +24,7 @@ class LikelyMotors:
     def __init__(self, read: ReadRobot) -> None:
         self._read = read
         self.listed = read.mechanism.actuators
-        self._key = "name_mot" if read.mechanism.version == "1" else "actuators"
+        self._key = read.description.actuators_key
         self.named = frozenset(named_motors(read.urdf, conventions().motors, []))
         self._single = {
             joint.name: joint for joint in read.mechanism.joints if joint.type.nv == 1 and joint.mimic is None

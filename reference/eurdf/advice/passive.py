@@ -65,13 +65,14 @@ class PassiveMotions:
 
     def all_needing_actuators(self, analysis: Analysis) -> list[Motion]:
         """The uncontrolled motions of a robot, in its loops and outside of them, except those that need no actuator."""
-        in_loops = sum(len(loop.motions) for loop in analysis.loops)
         found = [motion for loop in analysis.loops for motion in self.needing_actuators(loop)]
-        return [*found, *filter(self.needs_actuator, analysis.motions[in_loops:])]
+        return [*found, *self.outside_needing_actuators(analysis)]
 
-    def needs_actuator(self, motion: Motion) -> bool:
-        """Whether a motion outside of the loops is neither against a spring nor one of the root or a wheel."""
-        return bool(self._unsprung([motion])) and not self._is_root_or_wheel(motion)
+    def outside_needing_actuators(self, analysis: Analysis) -> list[Motion]:
+        """Those outside of the loops: neither against a spring nor motions of the root or a wheel."""
+        in_loops = sum(len(loop.motions) for loop in analysis.loops)
+        outside = analysis.motions[in_loops:]
+        return [each for each in outside if self._unsprung([each]) and not self._is_root_or_wheel(each)]
 
     def _unsprung(self, motions: Sequence[Motion]) -> Sequence[Motion]:
         """Of motions at one configuration, and all that they combine to, those that stretch no spring."""

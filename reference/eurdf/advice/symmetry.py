@@ -29,7 +29,7 @@ _AGREEING = 3
 # Differences of lengths are relative to at least this part of how far the robot reaches from its root.
 _SHORT = 0.02
 
-# How a point is told.
+# The text of a point.
 _POINT = "[{}] m"
 
 # Differences that are named.
@@ -210,8 +210,8 @@ class _Sides:
                 continue
             if actuated:
                 a, b = ("an actuator" if name in actuated else "no actuator" for name in names)
-                key = "name_mot" if self._mechanism.version == "1" else "actuators"
-                place = partial(self._read.description.document.place, (key,), True)
+                description = self._read.description
+                place = partial(description.document.place, (description.actuators_key,), True)
                 yield _Fact(_STRUCTURE, "role of joint", names, ("{}", a, b), float(a != b), place)
             yield from self._of_pair(one, two)
 

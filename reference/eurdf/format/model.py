@@ -134,6 +134,11 @@ class Description(Version2):
         return self.extended_urdf
 
     @property
+    def actuators_key(self) -> str:
+        """The key that lists the actuators."""
+        return "name_mot" if self.version == "1" else "actuators"
+
+    @property
     def references(self) -> tuple[FrameReference, ...]:
         """The frames of the closures, and those that are added."""
         return (*(side for closure in self.closures for side in closure.frames), *self.frames)
