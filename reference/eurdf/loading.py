@@ -272,10 +272,13 @@ def check_texts(texts: Mapping[str, str], path: RobotSource, urdf: RobotSource |
 
 
 def _findings(read: ReadRobot, mesh_files: _MeshFiles, find: Mapping[str, Any], *, causes: bool = True) -> Evidence:
-    """Add what is found after reading to the diagnostics of a robot; what it says of itself with them.
+    """Add what is found after reading to the diagnostics of a robot.
 
     Mesh files are found as ``find`` says, and not read again for the same text of a URDF. Causes are proposed only if
     they are asked for.
+
+    Returns:
+        What a trial compares.
     """
     diagnostics = read.diagnostics
     refused = diagnostics.refused  # without meshes, which the kinematics does not need

@@ -1,4 +1,4 @@
-"""Whether a robot is as good after a fix as it says itself: a fix that is not is no fix."""
+"""Whether a robot is at least as good after a fix, by the checks of this package; otherwise it is no fix."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def is_of_the_text(code: str) -> bool:
 
 @dataclass(frozen=True)
 class Evidence:
-    """What a robot says of itself.
+    """What a check finds out about a robot, to compare it with the same robot after a fix.
 
     Attributes:
         counts: The number of diagnostics of each code.

@@ -69,7 +69,7 @@ class Diagnostic:
         message: What is wrong, in one sentence; names are shortened if it is longer than `LONGEST`.
         hint: What to do about it, or None; shortened likewise. It is an imperative if that is certain, else a question;
             by default, what the proposals ask.
-        fix: The edits that do it; None unless a trial showed that with them the robot is as good as it says itself.
+        fix: The edits that do it; None unless a trial showed that they mend it, and that nothing else becomes worse.
         proposals: Fixes that have not been tried, the likeliest first.
     """
 
