@@ -16,6 +16,7 @@ if not FACTS:
 #: Errors of the published files: everything that `check` finds, but for the meshes that were left out.
 ERRORS = {name: {"urdf-no-range"} for name in FACTS}
 ERRORS["kangaroo_like"] |= {"closure-cannot-close"}
+ERRORS["5bar_linkage"] |= {"x-implausible-inertia"}  # its sphere weighs 654 t
 
 
 @pytest.fixture(scope="module")
