@@ -21,7 +21,7 @@ from eurdf_conformance.protocol.message import Accepted, CanonicalRobot, Rejecte
 from eurdf_conformance.runner.outcome import Answered
 from eurdf_conformance.runner.session import Session
 
-JAVASCRIPT = ROOT / "conformance" / "eurdf_conformance" / "adapters" / "javascript"
+JAVASCRIPT = ROOT / "js"
 
 #: How the parser in JavaScript rejects a description as EU-YML-012 permits: inside quotes, a line without indentation.
 PERMITTED = ('yaml: Missing closing "quote', "yaml: Missing closing 'quote")
@@ -96,6 +96,6 @@ def _compare(name: str, given: CanonicalRobot | None, expected: CanonicalRobot, 
 @cache
 def javascript() -> Session:
     """The parser in JavaScript, which is started once."""
-    session = Session(f"cmd:node {JAVASCRIPT / 'main.mjs'}")
+    session = Session(f"cmd:node {JAVASCRIPT / 'adapter' / 'main.js'}")
     atexit.register(session.stop)
     return session

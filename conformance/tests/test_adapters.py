@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 import shutil
 from collections.abc import Callable, Sequence
@@ -12,7 +11,6 @@ from typing import Any
 
 import pytest
 
-from eurdf_conformance import adapters
 from eurdf_conformance.adapters import example
 from eurdf_conformance.adapters.reference import Reference
 from eurdf_conformance.certificate.certificate import read_certificate
@@ -33,6 +31,7 @@ from eurdf_conformance.runner.answer import read_answer
 from eurdf_conformance.runner.outcome import Answered, Malformed, Misplaced, Outcome
 from eurdf_conformance.runner.session import Session
 from support.every_joint import CONFIGURATION, write_every_joint
+from support.processes import JAVASCRIPT as PACKAGE
 from support.processes import MODULES, why_not_installed
 from support.session import SharedRun
 
@@ -207,27 +206,17 @@ def test_the_conversation_on_the_page_keeps_the_protocol() -> None:
         assert not isinstance(found, Malformed | Misplaced), str(found)
 
 
-PARSER = Path(adapters.__file__).with_name("javascript")
 MISSING = why_not_installed("yaml", "saxes")
 LEVELS = ("accept", "structure", "kinematics", "dynamics")
 
 
-def test_the_tests_install_what_the_parser_declares() -> None:
-    declared = json.loads((PARSER / "package.json").read_text(encoding="utf-8"))["dependencies"]
-    installed = json.loads((MODULES.parent / "package.json").read_text(encoding="utf-8"))["dependencies"]
-    assert declared.items() <= installed.items()
-
-
 @pytest.mark.slow
 @pytest.mark.skipif(bool(MISSING), reason=MISSING)
-def test_the_javascript_parser_is_certified_at_the_levels_it_claims(
-    tmp_path: Path, shared_run: Callable[..., SharedRun]
-) -> None:
-    folder = tmp_path / "extended-urdf"
-    shutil.copytree(PARSER, folder, ignore=shutil.ignore_patterns("node_modules"))
-    (folder / "node_modules").symlink_to(MODULES)
+def test_the_javascript_parser_is_certified_at_the_levels_it_claims(shared_run: Callable[..., SharedRun]) -> None:
     # The newest version, which has few cases; the workflow of the repository certifies it for all of them.
-    done = shared_run("--parser", f"cmd:node {folder / 'main.mjs'}", "--seed", "0", "--format-version", "2.1")
+    done = shared_run(
+        "--parser", f"cmd:node {PACKAGE / 'adapter' / 'main.js'}", "--seed", "0", "--format-version", "2.1"
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     certificate = read_certificate(Path(done.certificate))
     assert certificate.failures == ()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -17,7 +16,7 @@ from benchmarks.fuzz.case import Case, case_of, read_case
 from benchmarks.fuzz.finding import Finding, minimized
 from benchmarks.fuzz.watched import Outcome, Watched
 from eurdf_conformance.protocol.reply import rejected
-from support.processes import MODULES, why_not_installed
+from support.processes import why_not_installed
 
 MISSING = why_not_installed("yaml", "saxes")
 
@@ -79,13 +78,8 @@ def test_case_that_only_waits_is_reported() -> None:
 
 
 @pytest.fixture
-def javascript(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """The parser in JavaScript, with the packages that it imports."""
-    folder = tmp_path / "javascript"
-    shutil.copytree(parsers.JAVASCRIPT, folder, ignore=shutil.ignore_patterns("node_modules"))
-    (folder / "node_modules").symlink_to(MODULES)
-    monkeypatch.setattr(parsers, "JAVASCRIPT", folder)
-    parsers.javascript.cache_clear()
+def javascript() -> Iterator[None]:
+    """The parser in JavaScript, stopped at the end."""
     yield
     parsers.javascript().stop()
     parsers.javascript.cache_clear()

@@ -11,8 +11,9 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from types import FrameType
+
+from support.places import ROOT
 
 
 def on_a_terminal(argv: list[str], columns: int = 80) -> tuple[int, str]:
@@ -57,15 +58,16 @@ def watchdog(seconds: float = SECONDS) -> Iterator[None]:
         signal.signal(signal.SIGPROF, before)
 
 
-#: Where ``npm install --prefix tests/support/javascript`` installs them.
-MODULES = Path(__file__).parent / "javascript" / "node_modules"
+#: The package in JavaScript, and where ``npm install --prefix js`` installs what it and the tests import.
+JAVASCRIPT = ROOT / "js"
+MODULES = JAVASCRIPT / "node_modules"
 
 
 def why_not_installed(*packages: str) -> str:
     """Why a program for Node.js that imports some packages cannot be run; empty if it can."""
     if shutil.which("node") is None:
-        return "Node.js is not on the PATH: install it, then npm install --prefix tests/support/javascript"
+        return "Node.js is not on the PATH: install it, then npm install --prefix js"
     missing = [package for package in packages if not (MODULES / package).is_dir()]
     if missing:
-        return f"{', '.join(missing)} is not installed: npm install --prefix tests/support/javascript"
+        return f"{', '.join(missing)} is not installed: npm install --prefix js"
     return ""

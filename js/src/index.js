@@ -1,0 +1,1 @@
+export { readRobot } from "./reading/robot.js";
