@@ -15,6 +15,7 @@ from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import build_robot
 from robots.builder import Cylinder, Drawing, Motor, ball, revolute, write
 from support.described import LIMITED
+from support.mechanisms import one_loop
 from support.plain_urdf import inertial, joint_element, link_element
 from support.plain_urdf import robot as urdf_of
 from support.wild import WILD, needs_wild
@@ -241,3 +242,13 @@ def test_robot_that_cannot_close_is_refused(tmp_path):
     robot = build_robot(replace(robot.mechanism, closures=(far,)), geometry=False)
     with pytest.raises(eurdf.errors.NotClosable):
         eurdf.sweep(robot, "crank")
+
+
+def test_actuator_of_rigid_loops_does_not_move():
+    robot = one_loop(["revolute", "prismatic", "revolute", "revolute", "revolute"], "6d", 0)
+    assert eurdf.analyze(robot).mobility == 0
+    found = eurdf.sweep(robot, "j1", steps=4)
+    for path in (found.lower, found.upper):
+        assert path.end == "dead point"
+        assert len(path.configurations) == 1
+        assert path.residual < 1e-12

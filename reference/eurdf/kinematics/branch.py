@@ -18,7 +18,7 @@ from eurdf.array import Matrix, Vector
 from eurdf.kinematics.position_limit import PositionLimits
 from eurdf.kinematics.problem import Problem
 from eurdf.kinematics.rank import numerical_rank
-from eurdf.kinematics.tolerances import BRANCH, ROUNDED_CORRECTION, SAME
+from eurdf.kinematics.tolerances import BRANCH, CLOSED, KEPT, ROUNDED_CORRECTION, SAME
 from eurdf.mechanism.joint import LIMIT_TOLERANCE
 
 if TYPE_CHECKING:
@@ -128,6 +128,9 @@ class Branch:
         if part > _MOST_CORRECTION:
             return None
         there = self.at(q, part)
+        # Loops that cannot follow are open by more, in spite of the corrections.
+        if there.residual > max(KEPT, here.residual, min(2.0 * here.residual, CLOSED)):
+            return None
         change = float(np.linalg.norm((there.K - here.K)[:, self._passive]))
         return there if change <= here.smallest + there.smallest else None
 

@@ -24,6 +24,8 @@ FOLLOWED = 1e-11
 START = 1e-12
 #: The same of steps on a branch, where the Jacobian is that from before the step.
 BRANCH = 1e-13
+#: A step on a branch is too long if it leaves a larger row of the residual, m or rad, unless it was as large before.
+KEPT = 1e-9
 #: A correction below this, dimensionless, is rounding, though redundant rows that contradict each other stay open.
 ROUNDED_CORRECTION = 1e-14
 #: A motion continues if it keeps this residual, dimensionless, or ten times that at its start.
