@@ -5,6 +5,7 @@ export const IDENTITY = [
   [0, 1, 0],
   [0, 0, 1],
 ];
+export const Z = [0, 0, 1];
 export const NO_MOTION = { R: IDENTITY, p: [0, 0, 0] };
 
 export const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
