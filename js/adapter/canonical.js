@@ -25,8 +25,10 @@ export function canonical(robot) {
 function jointOf({ name, type, parent, child, lower, upper, velocity, effort, damping, friction, armature, ...joint }) {
   const spring = joint.stiffness && { stiffness: joint.stiffness, rest: joint.rest };
   const limits = { lower, upper, velocity, effort };
-  return { name, type, parent, child, ...limits, damping, friction, armature, ...spring, mimic: joint.mimic };
+  return { name, type, parent, child, ...limits, damping, friction, armature, ...spring, mimic: mimicOf(joint) };
 }
+
+const mimicOf = ({ mimic }) => mimic && { joint: mimic.joint, multiplier: mimic.multiplier, offset: mimic.offset };
 
 function closureOf({ name, type, frames: [a, b], axes, length, compliance }) {
   const isRigid = !compliance || (compliance.linear === 0 && compliance.angular === 0);

@@ -1,44 +1,8 @@
 // The parser behind the protocol: one request a line on standard input, one answer a line on standard output.
 // --parser="cmd:node main.js"
 
-import { canonical } from "./canonical.js";
-import { Invalid } from "../src/reading/invalid.js";
-import { evaluate } from "./quantities.js";
-import { readRobot } from "../src/reading/robot.js";
-
-const LEVELS = ["accept", "structure", "kinematics", "dynamics"];
-const STARTED = {
-  outcome: "started",
-  protocol: "1.0",
-  parser: { name: "extended-urdf", version: "0.1.0", language: "JavaScript" },
-  claims: { 1: LEVELS, 2: LEVELS, 2.1: LEVELS },
-};
-
-let robot; // of the last `load`, if it was accepted
-
-const answers = {
-  start: () => STARTED,
-  load: ({ description, urdf }) => {
-    robot = undefined;
-    robot = readRobot(description, urdf);
-    return { outcome: "accepted", robot: canonical(robot), issues: [] };
-  },
-  evaluate: (request) => {
-    if (!robot) throw new Error("the last load did not accept a robot");
-    const values = request.configurations.map((each) => evaluate(robot, each, request.frames, request.quantities));
-    return { outcome: "evaluated", values };
-  },
-  stop: () => ({ outcome: "stopped" }),
-};
-
-function answer(request) {
-  try {
-    return answers[request.command](request);
-  } catch (error) {
-    if (error instanceof Invalid) return { outcome: "rejected", issues: [{ message: error.message }] };
-    return { outcome: "errored", message: String(error.stack) };
-  }
-}
+import { answer } from "./answers.js";
+import { textsAt } from "./files.js";
 
 /** Lines end at a line feed alone, whatever other separators a name contains. */
 async function* lines(stream) {
@@ -56,6 +20,6 @@ async function* lines(stream) {
 
 for await (const line of lines(process.stdin)) {
   const request = JSON.parse(line);
-  process.stdout.write(`${JSON.stringify({ id: request.id, ...answer(request) })}\n`);
+  process.stdout.write(`${answer(request, textsAt)}\n`);
   if (request.command === "stop") break;
 }

@@ -1,1 +1,2 @@
-export { readRobot } from "./reading/robot.js";
+export { closuresOfDialects } from "./reading/dialects.js";
+export { read, urdfOf } from "./reading/robot.js";

@@ -1,6 +1,7 @@
 """The registry: ``python -m spec.site.registry`` writes the clauses and the codes of the text to ``spec/clauses.json``.
 
-It has no references to clauses: `clauses_with_references` computes them.
+It also writes the codes as a module of the package in JavaScript. The registry has no references to clauses:
+`clauses_with_references` computes them.
 """
 
 from __future__ import annotations
@@ -17,6 +18,9 @@ from spec.site.clause import SPEC, Chapter, read_chapters, read_clauses, read_wi
 from spec.site.example import read_diagnostics
 
 CLAUSES = SPEC / "clauses.json"
+
+#: The phase, severity and clause of each code, for the package in JavaScript.
+CODES = SPEC.parent / "js" / "src" / "reading" / "codes.js"
 
 #: Every id ever used, one per line: an id is never reused.
 IDS = SPEC / "ids.txt"
@@ -96,6 +100,21 @@ def registry_text(content: dict[str, Any]) -> str:
     return f'{{\n  "$schema": {_line(content["$schema"])},\n{lists}\n}}\n'
 
 
+def codes_text(content: dict[str, Any]) -> str:
+    """The codes of a registry as a module in JavaScript."""
+    parts = ("phase", "severity", "clause")
+    rows = "".join(
+        f"  [{_line(entry['code'])}, {_object({part: entry[part] for part in parts})}],\n"
+        for entry in content["diagnostics"]
+    )
+    head = "// Written by `python -m spec.site.registry`, from the specification."
+    return f"{head}\n\nexport const CODES = new Map([\n{rows}]);\n"
+
+
+def _object(entry: dict[str, str]) -> str:
+    return "{ " + ", ".join(f"{name}: {_line(value)}" for name, value in entry.items()) + " }"
+
+
 def _line(value: Any) -> str:
     return json.dumps(value, ensure_ascii=False)
 
@@ -106,9 +125,10 @@ def read_ids(path: Path = IDS) -> list[str]:
 
 
 def main() -> None:
-    """Write the registry, and add new ids to the list, which only grows."""
+    """Write the registry and the codes, and add new ids to the list, which only grows."""
     content = current_registry()
     CLAUSES.write_text(registry_text(content), encoding="utf-8")
+    CODES.write_text(codes_text(content), encoding="utf-8")
     ids = {entry["id"] for kind in ("clauses", "withdrawn") for entry in content[kind]}
     IDS.write_text("".join(f"{given}\n" for given in sorted(ids | set(read_ids()))), encoding="utf-8")
 

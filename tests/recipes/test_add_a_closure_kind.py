@@ -3,7 +3,7 @@
 The class goes into a file of its own in `eurdf.closures`, with a line in `MODULES` there; its clauses into
 `spec/closures.md`, its residual into the oracle, and cases into the suite. A format to export to that can say it gets a
 row in its ``facts.py`` and states it in its ``write.py``; Pinocchio's models are in `eurdf.pinocchio.constraint`, and
-the live pages of the site in ``viewing/live/mechanism.js``.
+the residual in JavaScript in ``js/src/mechanism/constraints.js``.
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ import pytest
 
 from eurdf.diagnostics import REGISTRY
 from spec.site.clause import SPEC, Chapter, Clause, Withdrawn, keywords, read_chapters, read_clauses, read_withdrawn
-from spec.site.registry import CLAUSES, IDS, SCHEMA, current_registry, read_ids, registry_text
+from spec.site.registry import CLAUSES, CODES, IDS, SCHEMA, codes_text, current_registry, read_ids, registry_text
 from support.places import ROOT
 
 ID = re.compile(r"EU-[A-Z]{3}-\d{3}")
@@ -95,6 +95,7 @@ def test_normative_words_are_capitals_outside_code(text: str, words: list[str]) 
 
 def test_clause_registry_is_current() -> None:
     assert CLAUSES.read_text(encoding="utf-8") == registry_text(current_registry()), "python -m spec.site.registry"
+    assert CODES.read_text(encoding="utf-8") == codes_text(current_registry()), "python -m spec.site.registry"
 
 
 def test_registry_matches_its_schema_strictly() -> None:

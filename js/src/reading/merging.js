@@ -1,6 +1,18 @@
 // Three joints that become one spherical joint: the section on merging, EU-JNT-011 to -014, -022 and -024.
 
-import { NO_MOTION, add, apply, compose, cross, dot, norm, scale, subtract, transpose, unit } from "../mechanism/spatial.js";
+import {
+  NO_MOTION,
+  add,
+  apply,
+  compose,
+  cross,
+  dot,
+  norm,
+  scale,
+  subtract,
+  transpose,
+  unit,
+} from "../mechanism/spatial.js";
 
 const LIGHT = 1e-5; // kg
 const FAR = 1e-4; // m
@@ -19,29 +31,40 @@ const ASSIGNMENTS = [
 
 export const areParallel = (a, b) => norm(cross(unit(a), unit(b))) < PARALLEL;
 
-/** Why three joints cannot merge, or null. `childrenOf` maps a link to its joints, `held` has links of closures. */
+/**
+ * Why three joints cannot merge: [code, message], or null. `childrenOf` maps a link to its joints, `held` has links of
+ * closures.
+ */
 export function whyNotMerged(joints, types, links, childrenOf, held) {
-  if (!joints.every((joint) => types.includes(joint.type))) return `only joints that are ${types.join(" or ")} merge`;
-  for (const i of [0, 1]) {
-    const link = joints[i].child;
-    const below = childrenOf.get(link);
-    if (below.length !== 1 || below[0] !== joints[i + 1]) return `'${link}' is not the parent of the next joint only`;
-    if (links.get(link).mass >= LIGHT) return `'${link}' has a mass of ${LIGHT} kg or more`;
-    if (held.has(link)) return `a closure has a frame on '${link}'`;
+  const wrong = joints.find((joint) => !types.includes(joint.type));
+  if (wrong) return ["merge-not-chain", `joint '${wrong.name}' is ${wrong.type}, not ${types.join(" or ")}`];
+  const between = [0, 1].map((i) => joints[i].child);
+  const broken = between.find(
+    (link, i) => childrenOf.get(link).length !== 1 || childrenOf.get(link)[0] !== joints[i + 1],
+  );
+  if (broken !== undefined) return ["merge-not-chain", `link '${broken}' is not the parent of the next joint alone`];
+  const heavy = between.find((link) => links.get(link).mass >= LIGHT);
+  if (heavy !== undefined) {
+    return [
+      "merge-inertia",
+      `link '${heavy}' between them has a mass of ${links.get(heavy).mass} kg, not below ${LIGHT} kg`,
+    ];
   }
+  const closed = between.find((link) => held.has(link));
+  if (closed !== undefined) return ["merge-closure-frame", `a closure has a frame on link '${closed}' between them`];
   const { axes, centre, points } = chainAtZero(joints);
-  if (
-    [
-      [0, 1],
-      [0, 2],
-      [1, 2],
-    ].some(([i, j]) => areParallel(axes[i], axes[j]))
-  )
-    return "two of the axes are parallel";
+  const parallel = [
+    [0, 1],
+    [0, 2],
+    [1, 2],
+  ].find(([i, j]) => areParallel(axes[i], axes[j]));
+  if (parallel) {
+    const [a, b] = parallel.map((i) => `'${joints[i].name}'`);
+    return ["joint-axes-parallel", `the axes of ${a} and ${b} are parallel`];
+  }
   const distances = points.map((point, i) => norm(cross(subtract(centre, point), axes[i])));
-  return distances.every((distance) => distance <= FAR)
-    ? null
-    : `an axis is ${Math.max(...distances)} m from the centre`;
+  if (distances.every((distance) => distance <= FAR)) return null;
+  return ["merge-axes", `an axis misses the centre by ${Math.max(...distances)} m, more than ${FAR} m`];
 }
 
 /** Poses (in the parent link of the first joint) and axes of the chain at zero, and P. */

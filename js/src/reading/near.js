@@ -2,12 +2,27 @@
 
 const lower = (name) => [...name].map((each) => (each >= "A" && each <= "Z" ? each.toLowerCase() : each));
 
+/** How many characters a name has. */
+function lengthOf(name) {
+  let length = name.length;
+  for (let i = 1; i < name.length; i += 1) if (name.codePointAt(i - 1) > 0xffff) length -= 1;
+  return length;
+}
+
 /** Whether `name`, which is not `known`, is near it. */
 export function isNear(name, known) {
-  const most = [...known].length < 5 ? 1 : 2;
-  const a = lower(name);
-  const b = lower(known);
-  return Math.abs(a.length - b.length) <= most && edits(a, b) <= most;
+  const length = lengthOf(known);
+  const most = length < 5 ? 1 : 2;
+  if (name.length > 2 * (length + most)) return false; // a name may have megabytes
+  return Math.abs(lengthOf(name) - length) <= most && edits(lower(name), lower(known)) <= most;
+}
+
+/** A hint with the first known name that `name` is near. */
+export function meant(name, known) {
+  return () => {
+    const right = [...known].find((each) => isNear(name, each));
+    return right === undefined ? null : `did you mean '${right}'?`;
+  };
 }
 
 function edits(a, b) {

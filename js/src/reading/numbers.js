@@ -1,26 +1,17 @@
-// The bounds of the numbers in both files, EU-FIL-005 and -006.
-
-import { fail } from "./invalid.js";
+// The bounds of the numbers in both files, EU-FIL-005 and -006. A number is of one of these kinds: `divisor`, which
+// others are divided by; `lower` and `upper`, limits that are none beyond the bound; or undefined.
 
 const LARGEST = 1e15;
 const SMALLEST = 1e-15;
 
-export function bounded(number, where) {
-  if (Math.abs(number) > LARGEST) fail(`${where} is ${number}, beyond ${LARGEST} in size`);
-  return number;
+/** Whether a limit is so large that it is none. */
+export function isNone(number, kind) {
+  return (kind === "lower" && number < -LARGEST) || (kind === "upper" && number > LARGEST);
 }
 
-/** A number that others are divided by; 0 is left to the caller. */
-export function divisor(number, where) {
-  if (number !== 0 && Math.abs(number) < SMALLEST) fail(`${where} is ${number}, below ${SMALLEST} in size`);
-  return bounded(number, where);
-}
-
-/** A limit, or null where the number is so large that it is none. */
-export function lowerLimit(number, where) {
-  return number < -LARGEST ? null : bounded(number, where);
-}
-
-export function upperLimit(number, where) {
-  return number > LARGEST ? null : bounded(number, where);
+/** The sizes that are allowed, if that of a number is not one of them; or null. */
+export function allowedSizes(number, kind) {
+  const isRight = isNone(number, kind) || Math.abs(number) <= LARGEST;
+  if (kind !== "divisor") return isRight ? null : "at most 1e15 in size";
+  return isRight && (number === 0 || Math.abs(number) >= SMALLEST) ? null : "from 1e-15 to 1e15 in size";
 }

@@ -1,9 +1,9 @@
 // Limits, damping, friction, armature and springs of a joint in the model, EU-JNT-009, -010, -020, -021, -027, -029.
 
-import { fail } from "./invalid.js";
 import { JOINT_TYPES } from "../mechanism/joint_types.js";
 
 const BY_VELOCITY = ["velocity", "effort", "damping", "friction"];
+const OWN = ["damping", "friction", "armature", "stiffness", "rest"]; // the others are in `limits`
 const UNLIMITED = { velocity: null, effort: null, damping: 0, friction: 0 };
 
 /** Properties that the URDF gives a joint of the model. `sources`: the URDF joint of each velocity. */
@@ -41,27 +41,49 @@ function perRadian(properties, { lower, upper }, k) {
   };
 }
 
-/** Replaces properties by those that the description states. */
-export function applyStated(joint, change) {
-  const { coordinates, velocities, limited } = JOINT_TYPES[joint.type];
-  const stated = { ...change.limits };
-  for (const key of ["damping", "friction", "armature", "stiffness", "rest"])
-    if (key in change) stated[key] = change[key];
+/** Replaces properties by those that the description states, unless these have an error. */
+export function applyStated(joint, change, diagnostics) {
+  if (change.isFaulty) return;
+  const stated = {};
+  for (const [key, value] of Object.entries(change)) {
+    if (key === "limits") Object.assign(stated, value);
+    else if (OWN.includes(key)) stated[key] = value;
+  }
+  delete stated.node;
+  const placeOf = (key) => (OWN.includes(key) ? change.node : change.node.get("limits")).get(key);
   for (const [key, value] of Object.entries(stated)) {
-    const where = `joint '${joint.name}', which is ${joint.type},`;
-    if (joint.type === "fixed") fail(`${where} cannot have a property`);
-    const perCoordinate = ["lower", "upper", "stiffness", "rest"].includes(key);
-    if ((key === "lower" || key === "upper") && !limited) fail(`${where} has no position limits`);
-    if (perCoordinate && coordinates.length !== velocities) fail(`${where} has no springs`);
-    if ((key === "stiffness" || key === "rest") && joint.type === "planar") fail(`${where} has no springs`);
-    const count = perCoordinate ? coordinates.length : velocities;
-    const list = Array.isArray(value) ? value : Array(count).fill(value);
-    if (list.length !== count) fail(`${where} needs ${count} numbers for ${key}, not ${list.length}`);
-    joint[key] = list;
+    const why = whyUnfit(joint.type, key, value);
+    if (why) {
+      joint.isFaulty = true;
+      const message = `${key} of joint '${joint.name}' does not fit: ${why}`;
+      diagnostics.report("joint-property", placeOf(key), message, "remove it, or write what its type has");
+      return;
+    }
+    joint[key] = Array.isArray(value) ? value : Array(countOf(joint.type, key)).fill(value);
   }
   if (joint.stiffness) joint.rest ??= joint.stiffness.map(() => 0);
   const isReversed = (lower, i) => lower !== null && joint.upper[i] !== null && lower > joint.upper[i];
-  if (("lower" in stated || "upper" in stated) && joint.lower.some(isReversed)) {
-    fail(`joint '${joint.name}' has a lower limit that is greater than its upper limit`);
-  }
+  const i = joint.lower.findIndex(isReversed);
+  if (i < 0 || !("lower" in stated || "upper" in stated)) return;
+  joint.isFaulty = true;
+  const message = `the lower limit of joint '${joint.name}' is ${joint.lower[i]}, above its upper limit, ${joint.upper[i]}`;
+  const hint = "state both limits, in rad or m; one that is not stated is that of the URDF";
+  diagnostics.report("joint-limits-reversed", placeOf("lower" in stated ? "lower" : "upper"), message, hint);
+}
+
+const isPerCoordinate = (key) => ["lower", "upper", "stiffness", "rest"].includes(key);
+
+const countOf = (type, key) =>
+  isPerCoordinate(key) ? JOINT_TYPES[type].coordinates.length : JOINT_TYPES[type].velocities;
+
+/** EU-JNT-009: why a joint of a type cannot have a property, or null. */
+function whyUnfit(type, key, value) {
+  const { coordinates, velocities, limited } = JOINT_TYPES[type];
+  if (type === "fixed") return "a fixed joint has no properties";
+  if ((key === "lower" || key === "upper") && !limited) return `a ${type} joint has no position limits`;
+  if (isPerCoordinate(key) && (coordinates.length !== velocities || type === "planar"))
+    return `a ${type} joint has no springs`;
+  const count = countOf(type, key);
+  if (!Array.isArray(value) || value.length === count) return null;
+  return `it has ${value.length} numbers, and a ${type} joint needs ${count}`;
 }
