@@ -97,6 +97,19 @@ def test_suite_is_installed_from_package_origin(
     assert extras.install_suite_command() == command.replace("CHECKOUT", str(folder))
 
 
+def test_page_is_built_in_a_checkout_and_by_installation_elsewhere(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.chdir(ROOT)
+    assert extras.build_page_command() == "npm install --prefix js && npm run build --prefix js"
+    monkeypatch.chdir(tmp_path)
+    assert extras.build_page_command().endswith(f'npm run build --prefix "{ROOT / "js"}"')
+    monkeypatch.setattr(extras, "_CHECKOUT", tmp_path)
+    for origin, name in (({"url": tmp_path.as_uri(), "dir_info": {}}, f'"{tmp_path}"'), (None, "eurdf")):
+        installed_from(monkeypatch, origin)
+        assert extras.build_page_command() == f"pip install --force-reinstall --no-deps {name}"
+
+
 @pytest.mark.parametrize(
     ("names", "packages"),
     [(["hypothesis", "ruamel.yaml", "xdist"], "hypothesis ruamel.yaml pytest-xdist"), (["eurdf"], str(ROOT))],

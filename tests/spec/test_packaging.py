@@ -55,6 +55,14 @@ def test_addresses_and_versions_agree() -> None:
     corpus = ROOT / "conformance" / "eurdf_conformance" / "corpus" / "package"
     npm = json.loads((corpus / "package.json").read_text(encoding="utf-8"))
     assert (npm["homepage"], npm["repository"]) == (SUITE["urls"]["Documentation"], urls["Source"])
+    js = json.loads((ROOT / "js" / "package.json").read_text(encoding="utf-8"))
+    assert js["homepage"] == urls["Documentation"]
+    assert js["repository"] == {"type": "git", "url": f"git+{urls['Source']}.git", "directory": "js"}
+    vscode = json.loads((ROOT / "editors" / "vscode" / "package.json").read_text(encoding="utf-8"))
+    assert (vscode["homepage"], vscode["bugs"]["url"]) == (urls["Documentation"], urls["Issues"])
+    assert vscode["repository"] == {**js["repository"], "url": f"{urls['Source']}.git", "directory": "editors/vscode"}
+    answers = (ROOT / "js" / "adapter" / "answers.js").read_text(encoding="utf-8")
+    assert f'name: "{js["name"]}", version: "{js["version"]}"' in answers
     assert project(corpus)["urls"] == {"Documentation": npm["homepage"], "Source": npm["repository"]}
 
 

@@ -39,6 +39,16 @@ def install_suite_command() -> str:
     return f'{_pip()} install "{folder / "conformance"}"'
 
 
+def build_page_command() -> str:
+    """The command that builds the page of robots: with Node.js in a checkout, by another installation elsewhere."""
+    if (_CHECKOUT / "js" / "build.js").is_file():
+        js = "js" if _is_here(_CHECKOUT) else f'"{_CHECKOUT / "js"}"'
+        return f"npm install --prefix {js} && npm run build --prefix {js}"
+    folder, _ = _installed_from(distribution("eurdf"))
+    origin = "eurdf" if folder is None else f'"{folder}"'
+    return f"{_pip()} install --force-reinstall --no-deps {origin}"
+
+
 def _installed_from(package: Distribution) -> tuple[Path | None, bool]:
     """The folder that a package was installed from, None for an archive; whether it is used from there (PEP 610)."""
     origin = json.loads(package.read_text("direct_url.json") or "{}")
