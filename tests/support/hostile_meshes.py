@@ -202,7 +202,7 @@ def _secret(suffix: str, marker: bytes) -> bytes:
     if suffix == ".obj":
         return f"# {marker.decode()}\nv {x!r} {y!r} {z!r}\n".encode() + _FACES.replace(b"f 1 2 3", b"f 1 2 3\nf 2 3 4")
     if suffix == ".dae":
-        return _collada(triangle, f"<extra>{marker.decode()}</extra>")
+        return collada(triangle, f"<extra>{marker.decode()}</extra>")
     if suffix == ".mtl":
         return b"newmtl red\nKd 1 0 0\n# " + marker
     if suffix == ".xml":
@@ -210,7 +210,8 @@ def _secret(suffix: str, marker: bytes) -> bytes:
     return marker + struct.pack("<6f", 1, 0, 0, 0, 1, 0)
 
 
-def _collada(numbers: str, extra: str) -> bytes:
+def collada(numbers: str, extra: str) -> bytes:
+    """A COLLADA file with one triangle, and another element before it."""
     return f"""<?xml version="1.0"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">{extra}
 <library_geometries><geometry id="g"><mesh>
@@ -247,7 +248,7 @@ def _carried(carrier: str, name: str, file: Path) -> dict[Path, bytes]:
         return {file: head + b"end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"}
     if carrier == "dae":
         image = f'<library_images><image id="i"><init_from>{quoteattr(name)[1:-1]}</init_from></image></library_images>'
-        return {file: _collada("0 0 0 1 0 0 0 1 0", image)}
+        return {file: collada("0 0 0 1 0 0 0 1 0", image)}
     if carrier == "3ds":
         return {file: b"MM" + b"\x00\xa3" + struct.pack("<I", 7 + len(data)) + data + b"\0"}
     return {file: (b"mtllib " if carrier == "obj" else b"mt\\\nl\\lib ") + data + b"\n" + _FACES}
