@@ -29,6 +29,8 @@ napoleon_attr_annotations = False
 
 myst_enable_extensions = ["attrs_inline", "colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 4
+# "page" leads to a page that Sphinx does not make.
+myst_url_schemes = {**dict.fromkeys(("http", "https", "mailto")), "page": "{{path}}"}
 
 html_theme = "furo"
 html_baseurl = address("Documentation") + "/"

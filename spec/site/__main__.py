@@ -14,6 +14,7 @@ from sphinx.cmd.build import main as sphinx_build
 from eurdf.collection import collection_names
 from spec.site.clause import SPEC
 from spec.site.diagnostics import write_diagnostic_pages
+from spec.site.drop import write_drop_page
 from spec.site.links import site_errors
 from spec.site.pages import gather
 from spec.site.robots import write_robot_pages
@@ -44,6 +45,7 @@ def build(output: Path, builder: str = "html", source: Path = SPEC, robots: Sequ
         failed = sphinx_build(["-b", builder, *options, pages, str(output)])
     if failed or builder != "html":
         return failed
+    write_drop_page(output)
     errors = site_errors(output)
     for error in errors:
         print(error, file=sys.stderr)

@@ -31,6 +31,9 @@ FOLDERS = ("spec", "docs")
 #: code host would show as code.
 BELOW = {"export.md": "export_*.md"}
 
+#: The page that checks a dropped robot, as a file of the repository.
+DROP_PAGE = "js/page/drop.html"
+
 # The target of a link or picture out of the folder of the page, or of a link to a page in a folder below, without its
 # anchor.
 _OUTSIDE = re.compile(r"(?<=\]\()(?:\.\./(?P<path>[^)#\s]+)|(?P<below>\w+/[^)#\s]+\.md))")
@@ -98,6 +101,8 @@ def on_the_site(target: str, pages: Path) -> str | None:
         pages: The folder that Sphinx reads pages from.
     """
     path = Path(target)
+    if target == DROP_PAGE:
+        return f"page:{path.name}"
     if path.parts[0] == "robots" and path.name in ("robots", "README.md"):
         robot = path.parent.name
         page = f"robots/{robot}.md" if robot not in ("", "robots") else "robots/index.md"
