@@ -17,12 +17,14 @@ from typing import Any
 from docutils import nodes
 from docutils.nodes import Node
 from sphinx.application import Sphinx
+from sphinx.config import Config
 from sphinx.util.docutils import SphinxDirective
 
 import eurdf
 from eurdf.commands.main import main as run_command
 from eurdf.viewing.graph import graph_svg
-from eurdf.viewing.live_robot import SCRIPTS, STYLE, live_view
+from eurdf.viewing.live_robot import live_view, page_robot
+from eurdf.viewing.page_files import page_path
 from spec.site.clause import ROOT
 from spec.site.pages import on_the_site
 
@@ -32,8 +34,8 @@ FOLDER = "robots"
 _INTRODUCTION = """\
 # Robots
 
-Open a robot and move its actuators: the loops stay closed. Each robot is also a folder of files to start from, and a
-name that the commands know: `eurdf view digit_leg`.
+Open a robot, and drag a part or move an actuator: the loops stay closed. Each robot is also a folder of files to start
+from, and a name that the commands know: `eurdf view digit_leg`.
 """
 
 _LIVE = "eu-live-robot"  # class of the element with a robot that moves
@@ -136,24 +138,27 @@ class LiveRobotDirective(SphinxDirective):
 
     def run(self) -> list[Node]:
         """The robot, and what replaces it."""
-        robot = eurdf.load(ROOT / FOLDER / self.arguments[0])
-        shown: list[Node] = [nodes.raw("", live_view(robot), format="html", classes=[_LIVE])]
+        view = live_view(page_robot(ROOT / FOLDER / self.arguments[0]))
+        shown: list[Node] = [nodes.raw("", view, format="html", classes=[_LIVE])]
         if self.content:
             start, end = (nodes.raw("", tag, format="html") for tag in ("<noscript>", "</noscript>"))
             shown += [start, *self.parse_content_to_nodes(), end]
         return shown
 
 
-def _add_scripts(app: Sphinx, page: str, template: str, context: dict[str, Any], tree: nodes.document | None) -> None:
-    """Load the scripts and the style of live robots on the pages that have one."""
+def _add_script(app: Sphinx, page: str, template: str, context: dict[str, Any], tree: nodes.document | None) -> None:
+    """Load the script and the style of live robots on the pages that have one."""
     if tree is not None and any(_LIVE in raw["classes"] for raw in tree.findall(nodes.raw)):
-        app.add_css_file(STYLE.name)
-        for script in SCRIPTS:
-            app.add_js_file(script.name, loading_method="defer")
+        app.add_css_file("page.css")
+        app.add_js_file("page.js", loading_method="defer")
+
+
+def _publish(app: Sphinx, config: Config) -> None:
+    config.html_static_path += [str(page_path(name)) for name in ("page.js", "page.css")]
 
 
 def setup(app: Sphinx) -> None:
-    """Add the directive, and publish the scripts and the style of the pages."""
+    """Add the directive, and publish the script and the style of the pages."""
     app.add_directive("live-robot", LiveRobotDirective)
-    app.connect("html-page-context", _add_scripts)
-    app.connect("config-inited", lambda _, config: config.html_static_path.append(str(STYLE.parent)))
+    app.connect("html-page-context", _add_script)
+    app.connect("config-inited", _publish)

@@ -13,7 +13,6 @@ from lxml import html
 
 import eurdf
 from eurdf.diagnostics import REGISTRY
-from eurdf.viewing.live_robot import SCRIPTS
 from spec.site.citation import case_citations
 from spec.site.clause import ROOT, SPEC, read_chapters, read_clauses
 from spec.site.pages import address
@@ -58,22 +57,30 @@ def test_pages_of_docs_are_on_the_site(site: Path) -> None:
 
 def test_first_screen_moves_and_leads_on(site: Path) -> None:
     page = (site / "index.html").read_text(encoding="utf-8")
-    first = page[page.index("eu-start") : page.index("robot.yaml")]
+    first = page[page.index("eu-start") : page.index("robot.yaml", page.index("</noscript>"))]
     robot, without_scripts = first.split("<noscript>")
-    scripts = [site / "_static" / script.name for script in SCRIPTS]
-    assert all(f'src="_static/{script.name}' in page for script in scripts)
-    assert len(robot) + sum(script.stat().st_size for script in scripts) < 150_000
+    assert 'src="_static/page.js' in page
+    assert len(robot) < 40_000
     assert '<img alt="The foot of Digit' in without_scripts
     assert 'src="_images/digit_leg.webp"' in without_scripts
-    assert "live_page.js" not in (site / "tutorial.html").read_text(encoding="utf-8")
-    targets = ("robots/digit_leg.html", "tutorial.html", "robots/index.html", "scope.html", "write_an_adapter.html")
+    assert "page.js" not in (site / "tutorial.html").read_text(encoding="utf-8")
+    targets = (
+        "robots/digit_leg.html",
+        "robots/index.html",
+        "drop.html",
+        "tutorial.html",
+        "scope.html",
+        "write_an_adapter.html",
+    )
     assert [target for target in targets if f'href="{target}"' not in first] == []
 
 
 def test_robot_page_shows_motion_figures_graph_and_files(site: Path) -> None:
     page = (site / "robots/digit_leg.html").read_text(encoding="utf-8")
     data = page[page.index('<script type="application/json">') + 32 :]
-    assert len(json.loads(data[: data.index("</script>")])["sliders"]) == 6
+    files = json.loads(data[: data.index("</script>")])
+    for key, name in (("urdf", "robot.urdf"), ("description", "robot.yaml")):
+        assert files[key]["text"] == (ROOT / "robots/digit_leg" / name).read_text(encoding="utf-8")
     text = _text(site / "robots/digit_leg.html")
     for shown in ("Where the figures come from", "mobility 9 degrees of freedom", "achilles (6d)"):
         assert shown in text
@@ -315,7 +322,8 @@ def test_robot_moves_on_its_page_from_a_file_and_offline(tmp_path: Path) -> None
         for index, value in enumerate(("0.2", "-0.1")):
             motors.nth(index).fill(value)
         moved = page.evaluate(
-            "(({motion}) => [motion.value(0), motion.value(1)])(document.querySelector('.eu-live').page)"
+            "(({ session }) => session.coordinates.map((each) => session.value(each)))"
+            "(document.querySelector('.eu-live').view)"
         )
         assert moved == pytest.approx([0.2, -0.1], abs=1e-12)
         assert float(page.locator(".eu-live-status").get_attribute("data-residual")) < 1e-9
