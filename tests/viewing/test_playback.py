@@ -1,63 +1,67 @@
-"""What plays in the viewer: a range of motion, a trajectory, gravity."""
+"""What plays in the viewer: a trajectory, gravity."""
 
 from __future__ import annotations
 
 import time
-from itertools import islice
 
 import numpy as np
 import pytest
 
 import eurdf
 from eurdf.viewing.playback import (
+    FRAME,
+    GravityPlayback,
     Trajectory,
-    gravity_frames,
+    TrajectoryPlayback,
     read_trajectory,
     steps_with_room,
-    sweep_frames,
-    trajectory_frames,
 )
-from eurdf.viewing.session import Session
 
 
-def silent(message: str) -> None:
-    """Shows nothing."""
+class Shown:
+    """A robot that is shown nowhere."""
 
+    def __init__(self, robot: eurdf.Robot) -> None:
+        self.robot = robot
+        self.q = self.first = eurdf.assemble(robot).q
 
-def test_sweep_moves_the_actuator_with_loops_closed_and_repeats() -> None:
-    session = Session(eurdf.load("unitree_g1_ankle"))
-    said: list[str] = []
-    frames = sweep_frames(session, 0, said.append)
-    values = []
-    for seconds in islice(frames, 300):
-        assert 0.0 < seconds < 0.1
-        values.append(session.value(0))
-        assert session.residual < 1e-9
-    assert min(values) < -0.3 < 0.1 < max(values)
-    assert "passive limit of 'free_roll'" in said[0]
+    def go_to(self, q: np.ndarray) -> None:
+        self.q = np.array(q)
+
+    @property
+    def residual(self) -> float:
+        return float(np.abs(eurdf.residual(self.robot, self.q)).max(initial=0.0))
 
 
 def test_trajectory_brings_joints_where_the_file_says() -> None:
     robot = eurdf.load("four_bar")
     trajectory = read_trajectory("time,motor_crank\n0,0.0\n0.5, 0.2\n\n0.75,0.3\n", robot)
     assert trajectory.times == (0.0, 0.5, 0.75)
-    session = Session(robot)
-    frames = trajectory_frames(session, trajectory, silent)
-    for value, seconds in zip((0.0, 0.2, 0.3), (0.5, 0.25, 0.0), strict=True):
-        assert 0.0 <= next(frames) <= seconds
-        assert session.value(0) == pytest.approx(value, abs=1e-12)
-        assert session.residual < 1e-9
-    with pytest.raises(StopIteration):
-        next(frames)
+    shown = Shown(robot)
+    playback = TrajectoryPlayback(shown, trajectory)
+    values = {0.0: 0.0}
+    for seconds in playback.frames():
+        assert 0.0 <= seconds <= FRAME
+        if seconds:  # a frame, not a row that is computed
+            values[playback.time] = robot.joint_positions(shown.q)["motor_crank"][0]
+        assert shown.residual < 1e-9
+    values[playback.time] = robot.joint_positions(shown.q)["motor_crank"][0]
+    times = sorted(values)
+    assert np.diff(times) == pytest.approx(FRAME, abs=FRAME / 2.0)
+    for time_, value in values.items():  # each row from its time on
+        assert value == pytest.approx(0.3 if time_ >= 0.75 else 0.2 if time_ >= 0.5 - 1e-9 else 0.0, abs=1e-12)
+    playback.time = 0.6
+    assert all(seconds == 0.0 for seconds in playback.at_time())
+    assert robot.joint_positions(shown.q)["motor_crank"] == pytest.approx((0.2,))
 
 
 def test_trajectory_out_of_reach_says_when() -> None:
     robot = eurdf.load("slider_crank")
     slider = next(joint.name for joint in robot.mechanism.joints if joint.type == "prismatic")
-    frames = trajectory_frames(Session(robot), Trajectory((0.0, 1.5), ({}, {slider: (10.0,)})), silent)
-    next(frames)
+    playback = TrajectoryPlayback(Shown(robot), Trajectory((0.0, 1.5), ({}, {slider: (10.0,)})))
     with pytest.raises(ValueError, match=r"the trajectory stops at time 1\.5 s: "):
-        next(frames)
+        list(playback.frames())
+    assert playback.time == pytest.approx(1.5)
 
 
 @pytest.mark.parametrize(
@@ -90,38 +94,41 @@ def test_joint_with_several_coordinates_has_a_column_for_each() -> None:
         read_trajectory(f"time,{columns.rpartition(',')[0]}\n0,0,0,0\n", robot)
 
 
-def fall(session: Session, shown: int, **options: bool) -> None:
+def fall(shown: Shown, frames: int, **options: bool) -> GravityPlayback:
     """Let a robot fall for a number of frames that are shown."""
-    said: list[str] = []
-    frames = gravity_frames(session, said.append, **{"dissipation": False, **options})
-    while len(said) < shown:
-        assert 0.0 <= next(frames) <= 1.0 / 30.0
-    frames.close()
+    playback = GravityPlayback(shown, **{"dissipation": False, "held": False, **options})
+    waits, count, before = playback.frames(), 0, 0.0
+    while count < frames:
+        assert 0.0 <= next(waits) <= FRAME
+        count += playback.time != before
+        before = playback.time
+    waits.close()
+    return playback
 
 
 def test_gravity_moves_as_a_simulation_and_stops_where_the_user_moves() -> None:
     robot = eurdf.load("four_bar")
-    session = Session(robot)
-    said: list[str] = []
-    frames = gravity_frames(session, said.append, dissipation=False)
-    while len(said) < 8:
+    shown = Shown(robot)
+    playback = GravityPlayback(shown, dissipation=False, held=False)
+    frames = playback.frames()
+    while playback.time < 0.1:
         next(frames)
-    expected = eurdf.simulate(robot, session.first, duration=0.3, step=1.0 / 900.0)
-    assert np.abs(expected.q - session.q).max(axis=1).min() < 1e-6
-    assert np.abs(session.q - session.first).max() > 1e-3
-    session.reset()  # the user's hand takes its velocity
-    while len(said) < 9:
+    expected = eurdf.simulate(robot, shown.first, duration=0.3, step=1.0 / 900.0)
+    assert np.abs(expected.q[round(900.0 * playback.time)] - shown.q).max() < 1e-6
+    assert np.abs(shown.q - shown.first).max() > 1e-3
+    shown.q = shown.first  # the user's hand takes its velocity
+    while playback.time == 0.0 or np.array_equal(shown.q, shown.first):
         next(frames)
-    assert np.abs(expected.q[1:31] - session.q).max(axis=1).min() < 1e-6
+    assert np.abs(expected.q[round(900.0 * playback.time)] - shown.q).max() < 1e-6
 
 
 def test_fast_motion_under_gravity_keeps_loops_closed() -> None:
-    session = Session(eurdf.load("kangaroo_leg", geometry=False))
-    said: list[str] = []
-    for seconds in gravity_frames(session, said.append, dissipation=True):
+    shown = Shown(eurdf.load("kangaroo_leg", geometry=False))
+    playback = GravityPlayback(shown, dissipation=True, held=False)
+    for seconds in playback.frames():
         time.sleep(seconds)
-        assert session.residual < 1e-4
-        if said and float(said[-1].split()[1]) > 0.3:  # where steps of 1.1 ms diverge
+        assert shown.residual < 1e-4
+        if playback.time > 0.3:  # where steps of 1.1 ms diverge
             break
 
 
@@ -140,15 +147,15 @@ def test_floating_robot_keeps_its_base_until_it_is_released() -> None:
     """Upside down, what hangs from the base falls as with a fixed base and gravity upwards."""
     floating, fixed = eurdf.load("digit_leg", root="floating"), eurdf.load("digit_leg", root="fixed")
     fixed.model.gravity.linear = -fixed.model.gravity.linear
-    session = Session(floating)
+    shown = Shown(floating)
     turned = np.array((0.5, -1.0, 2.0, 1.0, 0.0, 0.0, 0.0))  # half a turn about x
-    session.show(np.concatenate((turned, session.q[7:])))
-    begin = session.q
-    fall(session, 5, held=True)
-    assert (session.q[:7] == turned).all()
+    shown.go_to(np.concatenate((turned, shown.q[7:])))
+    begin = shown.q
+    fall(shown, 5, held=True)
+    assert (shown.q[:7] == turned).all()
     expected = eurdf.simulate(fixed, begin[7:], duration=0.1, step=1.0 / 900.0)
-    assert np.abs(expected.q - session.q[7:]).max(axis=1).min() < 1e-6
-    assert np.abs(session.q - begin).max() > 1e-5
-    session.show(begin)
-    fall(session, 5, held=False)
-    assert session.q[2] < begin[2]
+    assert np.abs(expected.q - shown.q[7:]).max(axis=1).min() < 1e-6
+    assert np.abs(shown.q - begin).max() > 1e-5
+    shown.go_to(begin)
+    fall(shown, 5, held=False)
+    assert shown.q[2] < begin[2]

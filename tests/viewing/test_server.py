@@ -1,247 +1,190 @@
-"""What the server of the viewer sends: the bodies are where forward kinematics has them, whatever the user does."""
+"""The server of the viewer: who may connect, what it serves, and what it does with wrong messages."""
 
 from __future__ import annotations
 
-import re
-import threading
-from collections.abc import Callable
+import http.client
+import socket
+import struct
+import sys
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
-import numpy as np
-import pinocchio as pin
 import pytest
 
 import eurdf
-from eurdf.viewing import playback
-from support.places import ROBOTS
-from support.viewer_client import ViewerClient, differ
+from eurdf.commands.main import main
+from eurdf.viewing.server import is_allowed
 
-pytest.importorskip("viser", reason="viser is not installed: pip install -e '.[view]'")
+pytest.importorskip("websockets", reason="websockets is not installed: pip install -e '.[view]'")
 
-# Error of a pose, m or of a quaternion.
-_EXACT = 1e-6
-_MOVED = 1e-4
+from websockets.exceptions import InvalidStatus
 
-
-def copied(robot: str, folder: Path) -> Path:
-    for name in ("robot.urdf", "robot.yaml"):
-        (folder / name).write_text((ROBOTS / robot / name).read_text())
-    return folder
+from support.viewer_client import ViewerClient
 
 
-def expected(robot: eurdf.Robot, q: np.ndarray) -> list[tuple[float, ...]]:
-    """Poses of the bodies by Pinocchio alone."""
-    model = robot.model.copy()
-    data = model.createData()
-    pin.framesForwardKinematics(model, data, q)
-    ids = [model.getFrameId(body.name, pin.FrameType.BODY) for body in robot.mechanism.bodies]
-    poses = [pin.SE3ToXYZQUAT(data.oMf[frame]) for frame in ids]
-    return [(*pose[:3], pose[6], *pose[3:6]) for pose in poses]
+@pytest.fixture(scope="module")
+def viewer() -> Iterator[eurdf.viewing.Viewer]:
+    with eurdf.view("four_bar", port=0) as viewer:
+        yield viewer
 
 
-class Watched:
-    """A viewer, and a page of it that is compared after each step."""
+def got(viewer: eurdf.viewing.Viewer, path: str, **headers: str) -> tuple[int, http.client.HTTPMessage, bytes]:
+    connection = http.client.HTTPConnection("127.0.0.1", int(viewer.url.rpartition(":")[2]), timeout=20)
+    connection.putrequest("GET", path, skip_host="Host" in headers)
+    for name, value in headers.items():
+        connection.putheader(name, value)
+    connection.endheaders()
+    answer = connection.getresponse()
+    found = answer.status, answer.headers, answer.read()
+    connection.close()
+    return found
 
-    def __init__(self, viewer: eurdf.viewing.Viewer, page: ViewerClient) -> None:
-        self.viewer, self.page = viewer, page
-        self.before = page.bodies(1)
 
-    def step(self, act: Callable[[], Any], *, moves: bool = True, until: Callable[[], Any] = lambda: True) -> None:
-        """Do something; then the page has each body where it is, and elsewhere than before if the step moves it."""
-        self.before = self.page.bodies(1)
-        act()
-
-        def arrived() -> bool:
-            now = self.page.bodies(1)
-            is_there = differ(now, expected(self.viewer.robot, self.viewer.q)) < _EXACT
-            return bool(until()) and is_there and (not moves or differ(now, self.before) > _MOVED)
-
-        self.page.wait_for(arrived)
-
-    def play(self, label: str) -> None:
-        """Play something until the robot has moved, and pause."""
-        before = self.page.bodies(1)
-        self.page.click(label)
-        self.page.wait_for(lambda: differ(self.page.bodies(1), before) > _MOVED)
-        self.step(lambda: self.page.click("pause"), moves=False, until=lambda: self.page.control("continue"))
+def test_page_is_served_to_this_machine_alone(viewer: eurdf.viewing.Viewer) -> None:
+    assert viewer.url.startswith("http://127.0.0.1:")
+    status, headers, page = got(viewer, "/")
+    assert (status, headers["Content-Type"]) == (200, "text/html; charset=utf-8")
+    assert b"<html" in page
+    for file in ("/live.js", "/live.css", "/page.css"):
+        assert file.encode() in page
+        status, headers, _ = got(viewer, file)
+        assert status == 200
+        assert "script-src 'self';" in headers["Content-Security-Policy"]
+    with socket.socket() as other:  # another address of this machine
+        other.settimeout(1.0)
+        assert other.connect_ex(("127.0.0.2", int(viewer.url.rpartition(":")[2]))) != 0
 
 
 @pytest.mark.parametrize(
-    ("robot", "root"),
+    "path",
     [
-        ("four_bar", None),
-        ("stewart_platform", None),
-        ("unitree_g1_ankle", None),
-        ("kangaroo_leg", None),
-        ("digit_leg", "floating"),
-        ("double_wishbone", None),  # with springs
+        "/robot.urdf",
+        "/../viewer.py",
+        "/live.js/../../viewer.py",
+        "/%2e%2e/viewer.py",
+        "/mesh/0/0/0",
+        "/mesh/0/0/../../..",
+        "/etc/passwd",
     ],
 )
-def test_bodies_are_sent_where_they_are(robot: str, root: str | None, tmp_path: Path) -> None:
-    folder = copied(robot, tmp_path)
-    with (
-        eurdf.view(folder, port=0, options={"root": root, "geometry": False}) as viewer,
-        ViewerClient(viewer.url) as page,
-    ):
-        times_collapsed = [0]
-
-        def watch(page: ViewerClient) -> None:
-            times_collapsed[0] += page.without_place(1)
-
-        page.on_message = watch
-        watched = Watched(viewer, page)
-        step, session = watched.step, viewer._first.session
-        step(lambda: None, moves=False)
-        first = page.bodies(1)
-
-        slider = next(each for each in session.sliders if each.upper > each.lower)
-        index = session.sliders.index(slider)
-        label = f"{slider.label} ({slider.unit})"
-        part = 0.05 * (slider.upper - slider.lower)
-        other = session.value(index) + (part if session.value(index) + part < slider.upper else -part)
-        step(lambda: page.set(label, other))
-        step(lambda: page.click("reset"))
-        assert differ(page.bodies(1), first) < _EXACT
-
-        step(lambda: page.set(label, other))
-        most = int(np.argmax(np.abs(np.array(page.bodies(1)) - first)[:, :3].max(axis=1)))
-        frame = viewer.robot.mechanism.bodies[most].name
-        page.set("drag frame", frame)
-        step(lambda: page.drag(first[most][:3]))
-
-        csv = tmp_path / "walk.csv"
-        begin = session.value(index)
-        csv.write_text(f"time,{slider.joint}\n0,{begin}\n0.02,{0.5 * (begin + other)}\n0.04,{other}\n")
-        step(lambda: viewer.replay(csv), until=lambda: page.says("trajectory: 0.040 s"))
-
-        watched.play("sweep")
-        watched.play("gravity")
-        step(lambda: page.click("reset"))
-
-        step(lambda: viewer.show(viewer.robot.tree.integrate(viewer.q, np.full(viewer.robot.tree.nv, 0.01))))
-        step(lambda: page.click("assemble"), until=lambda: page.says("loops are closed"))
-
-        page.set("name", "mine")
-        step(lambda: page.click("save as configuration"), moves=False, until=lambda: page.says("saved configuration"))
-        page.wait_for(lambda: page.value("configuration") == "mine")
-        saved = page.bodies(1)
-        step(lambda: page.set(label, other))
-        step(lambda: page.click("go to configuration"))
-        assert differ(page.bodies(1), saved) < _EXACT
-
-        urdf, yaml = folder / "robot.urdf", folder / "robot.yaml"
-        heavier = re.sub(r'mass value="([^"]*)"', r'mass value="1\1"', urdf.read_text(), count=1)
-        before = viewer.robot
-        step(lambda: urdf.write_text(heavier), moves=False, until=lambda: page.says("this is the robot now"))
-        assert viewer.robot is not before
-        assert page.value("drag frame") == frame
-        assert page.value("configuration") == "mine"
-        session = viewer._first.session
-        page.wait_for(lambda: np.allclose(page.nodes["/gizmo"]["position"], page.bodies(1)[most][:3], atol=1e-5))
-        step(lambda: page.set(label, other))
-
-        good = yaml.read_text()
-        step(lambda: yaml.write_text(good + "unknown: 1\n"), moves=False, until=lambda: page.says("have errors"))
-        step(lambda: page.click("reset"))
-        step(lambda: yaml.write_text(good), moves=False, until=lambda: page.says("this is the robot now"))
-        step(lambda: page.set(label, other))
-
-        second = viewer.add(eurdf.load("bennett", geometry=False), xyz=(0.0, 1.0, 0.0))
-        for angle in (0.1, 0.4):
-            second.show(eurdf.forward_kinematics(second.robot, {"motor_a": angle}))
-            page.wait_for(lambda: differ(page.bodies(2), expected(second.robot, second.q)) < _EXACT)
-        step(lambda: None, moves=False)
-        assert times_collapsed == [0]
+def test_no_other_file_is_served(viewer: eurdf.viewing.Viewer, path: str) -> None:
+    assert got(viewer, path)[0] == 404
 
 
-def test_small_motions_are_sent_too(tmp_path: Path) -> None:
-    """Far from the origin, too, where a step is a small part of a coordinate."""
-    with (
-        eurdf.view(copied("four_bar", tmp_path), port=0, options={"root": "floating"}) as viewer,
-        ViewerClient(viewer.url) as page,
-    ):
-        q = viewer.q
-        for position in (100.0, 100.0005, 100.0001):
-            q[0] = position
-            viewer.show(q)
-            page.wait_for(lambda: differ(page.bodies(1), expected(viewer.robot, viewer.q)) < _EXACT)
+def test_meshes_of_the_robot_are_served(tmp_path: Path) -> None:
+    stl = bytes(80) + struct.pack("<I12fH", 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0)
+    (tmp_path / "part.stl").write_bytes(stl)
+    (tmp_path / "other.stl").write_bytes(stl)
+    shape = '<visual><geometry><mesh filename="part.stl"/></geometry></visual>'
+    (tmp_path / "robot.urdf").write_text(f'<robot name="r"><link name="a">{shape}</link></robot>')
+    with eurdf.view(tmp_path / "robot.urdf", port=0) as viewer, ViewerClient(viewer.url) as page:
+        model = page.wait_for(lambda: page.last("model", 0))
+        assert list(model["meshes"]) == ["part.stl"]
+        assert got(viewer, model["meshes"]["part.stl"])[2] == stl
 
 
-def test_saving_is_no_foreign_change_and_asks_before_it_replaces(tmp_path: Path) -> None:
-    folder = copied("digit_leg", tmp_path)
-    yaml = folder / "robot.yaml"
-    with (
-        eurdf.view(folder, port=0, options={"geometry": False}) as viewer,
-        ViewerClient(viewer.url) as page,
-    ):
-        before, robot = yaml.read_text(), viewer.robot
-        page.set("drag frame", "foot")
-        page.wait_for(lambda: "/gizmo" in page.nodes)
-        slider = viewer._first.session.sliders[0]
-        page.set(f"{slider.label} ({slider.unit})", 0.1)
-        page.wait_for(lambda: np.abs(viewer.q - viewer._first.session.first).max() > 1e-3)
-        assert page.value("name") == "pose_1"
-        page.set("name", "assembled")
-        page.click("save as configuration")
-        page.wait_for(lambda: page.says("already has a different configuration &#x27;assembled&#x27;"))
-        assert yaml.read_text() == before
-        page.click("replace 'assembled'")
-        page.wait_for(lambda: page.says("saved configuration &#x27;assembled&#x27;"))
-        assert yaml.read_text() != before
-        page.click("save as configuration")
-        page.wait_for(lambda: page.says("saved configuration &#x27;pose_1&#x27;"))
-        page.wait_for(lambda: page.value("name") == "pose_2")
-        assert not viewer._page.files.has_changed
-        assert viewer.robot is robot
-        assert page.value("drag frame") == "foot"
-        assert "/gizmo" in page.nodes
+def test_name_that_leads_here_from_elsewhere_is_refused() -> None:
+    """A site can let its name lead to any address: then the origin of its page is the host that the page asks for."""
+    with eurdf.view("four_bar", host="0.0.0.0", port=0) as viewer:
+        port = int(viewer.url.rpartition(":")[2])
+
+        def answer(name: str) -> str:
+            with (
+                socket.create_connection(("127.0.0.1", port)) as route,
+                ViewerClient(f"http://{name}:{port}", sock=route) as page,
+            ):
+                return page.wait_for(lambda: page.last("model", 0))["urdf"]
+
+        for own in ("localhost", "127.0.0.1", "192.0.2.7", "[::1]", socket.gethostname()):
+            assert "<robot" in answer(own)
+        for other in ("evil.example", "localhost.evil.example", f"{socket.gethostname()}.evil.example"):
+            with pytest.raises(InvalidStatus, match="403"):
+                answer(other)
+            assert got(viewer, "/", Host=f"{other}:{port}")[0] == 403
 
 
-def test_gravity_goes_on_when_the_files_change(tmp_path: Path) -> None:
-    folder = copied("four_bar", tmp_path)
-    with eurdf.view(folder, port=0) as viewer, ViewerClient(viewer.url) as page:
-        page.click("gravity")
-        page.wait_for(lambda: page.says("gravity: 0."))
-        before = viewer.robot
-        urdf = folder / "robot.urdf"
-        urdf.write_text(urdf.read_text().replace('mass value="', 'mass value="1'))
-        page.wait_for(lambda: viewer.robot is not before)
-        page.wait_for(lambda: page.says("gravity: 0."))
-        assert page.control("pause")
+@pytest.mark.parametrize(
+    ("origin", "host", "listens", "allowed"),
+    [
+        ("http://127.0.0.1:8080", "127.0.0.1:8080", "127.0.0.1", True),
+        ("http://localhost:9000", "127.0.0.1:8080", "127.0.0.1", True),  # a forwarded port
+        ("http://[::1]:8080", "[::1]:8080", "::1", True),
+        (None, "127.0.0.1:8080", "127.0.0.1", False),
+        ("https://example.com", "127.0.0.1:8080", "127.0.0.1", False),
+        ("http://example.com:8080", "example.com:8080", "127.0.0.1", False),  # a name that leads to this machine
+        ("null", "127.0.0.1:8080", "127.0.0.1", False),
+        ("http://robot.lab:8080", "robot.lab:8080", "0.0.0.0", True),
+        ("http://alias.lab:8080", "alias.lab:8080", "0.0.0.0", False),
+        ("http://alias.lab:8080", "alias.lab:8080", "Alias.lab", True),  # the host of the command line
+        ("http://10.0.0.5:8080", "10.0.0.5:8080", "0.0.0.0", True),
+        ("http://10.0.0.6", "10.0.0.5:8080", "0.0.0.0", False),
+        ("http://[::1", "[::1", "0.0.0.0", False),
+        ("https://example.com", "robot.lab:8080", "0.0.0.0", False),
+    ],
+)
+def test_origin_and_host_of_a_page_decide(origin: str | None, host: str, listens: str, allowed: bool) -> None:
+    assert is_allowed(origin, host, listens, {"robot.lab"}) is allowed
 
 
-def test_pause_is_served_while_a_step_is_computed(monkeypatch: pytest.MonkeyPatch) -> None:
-    begun, ends = threading.Event(), threading.Event()
-    simulate = playback.simulate
+@pytest.mark.parametrize(
+    ("message", "reason"),
+    [
+        ("{", "Expecting"),
+        ("[1]", "has no type that is known"),
+        ('{"type": "model"}', "has no type that is known"),
+        ('{"type": ["moved"]}', "has no type that is known"),
+        ("[" * 100_000, "nested too deeply"),
+        ('{"type": "save", "name": 1, "replace": false}', "'name' of a message 'save' is not of type str"),
+        ('{"type": "seek", "time": NaN, "speed": 1}', "'time' of a message 'seek' is not of type float"),
+        ('{"type": "end", "more": 1}', "unexpected keyword argument 'more'"),
+    ],
+)
+def test_wrong_message_closes_the_connection_with_a_reason(
+    viewer: eurdf.viewing.Viewer, message: str, reason: str
+) -> None:
+    with ViewerClient(viewer.url) as page:
+        page._socket.send(message)
+        page._thread.join(20)
+        assert page._socket.protocol.close_code == 1003
+        assert reason in page._socket.protocol.close_reason
+    with ViewerClient(viewer.url) as page:  # others can
+        page.wait_for(lambda: page.last("model", 0))
 
-    def endless(*arguments: Any, **options: Any) -> Any:
-        begun.set()
-        assert ends.wait(60.0)
-        return simulate(*arguments, **options)
 
-    monkeypatch.setattr(playback, "simulate", endless)
-    with eurdf.view("four_bar", port=0) as viewer, ViewerClient(viewer.url) as page:
-        page.click("gravity")
-        assert begun.wait(60.0)
-        page.click("pause")
-        page.wait_for(lambda: page.control("continue"))
-        slider = viewer._first.session.sliders[0]
-        page.set(f"{slider.label} ({slider.unit})", 0.2)
-        page.wait_for(lambda: viewer._first.session.value(0) == pytest.approx(0.2))
-        ends.set()
+def test_configuration_that_does_not_fit_is_reported(viewer: eurdf.viewing.Viewer) -> None:
+    before = viewer.q
+    with ViewerClient(viewer.url) as page:
+        page.send("moved", version=0, q={"crank": [1.0]})
+        page.wait_for(lambda: page.says("'crank'"))
+        page.send("moved", version=7, q={"motor_crank": [1.0]})  # of a robot that is not shown any more
+        page.send("moved", version=0, q={"motor_crank": [1.0, 2.0]})
+        page.wait_for(lambda: page.says("'motor_crank'"))
+    assert (viewer.q == before).all()
 
 
-def test_gravity_that_diverges_ends_with_a_reason(monkeypatch: pytest.MonkeyPatch) -> None:
-    def diverges(*_: Any, **options: Any) -> Any:
-        raise eurdf.errors.SimulationDiverged(0.0, options["step"])
+def test_port_in_use_is_an_error_and_default_is_the_next(capsys: pytest.CaptureFixture[str]) -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        with pytest.raises(OSError, match=f"cannot listen on '127.0.0.1', port {port}: address already in use"):
+            eurdf.view("four_bar", port=port)
+        assert main(["view", "four_bar", "--no-browser", "--port", str(port)]) == 2
+        assert f"port {port}" in capsys.readouterr().err
+    with eurdf.view("four_bar") as one, eurdf.view("bennett") as two:
+        assert one.url != two.url
 
-    with eurdf.view("four_bar", port=0) as viewer, ViewerClient(viewer.url) as page:
-        page.click("gravity")
-        page.wait_for(lambda: page.says("gravity: 0."))
-        monkeypatch.setattr(playback, "simulate", diverges)
-        page.wait_for(lambda: page.says("gravity ends after"))
-        pause = page.control("pause")
-        assert pause is not None
-        page.wait_for(lambda: page.controls[pause]["disabled"])
-        assert not viewer._worker.is_playing
+
+def test_address_that_does_not_exist_is_an_error() -> None:
+    with pytest.raises(OSError, match=r"cannot listen on '192\.0\.2\.1'"):
+        eurdf.view("four_bar", host="192.0.2.1", port=0)
+
+
+def test_missing_websockets_says_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "websockets.asyncio.server", None)
+    with pytest.raises(eurdf.errors.MissingExtra, match=r"the viewer needs websockets; install it with: .*view"):
+        eurdf.view("four_bar")
+    assert main(["view", "four_bar", "--no-browser"]) == 2
+    assert "the viewer needs websockets" in capsys.readouterr().err

@@ -77,13 +77,16 @@ def view(
             raise CannotRun("a page that needs no server replays no trajectory; leave out --trajectory or --output")
         refuse_to_replace(output, force)
 
-        from eurdf.viewing.live_robot import live_page
+        from eurdf.viewing.live_robot import live_page, page_robot
 
         with progress_bar("writing the page"):
-            page = live_page(eurdf.load(path, **options))
+            robot = page_robot(path, **options)
+            with cannot_run(FileNotFoundError):
+                page = live_page(robot)
         write_new(output, page, force)
         if json:
             write_result(WrittenInfo((output,), None))
+        write_notes([f"the page does not show the mesh '{name}': {why}" for name, why in robot.left_out.items()])
         write_notes([f"wrote '{output}'"])
         return 0
     with eurdf.view(path, host=host, port=port, browser=not no_browser, options=options) as viewer:

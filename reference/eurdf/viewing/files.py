@@ -5,13 +5,15 @@ from __future__ import annotations
 import os
 from typing import Any
 
+from eurdf.array import Vector
 from eurdf.errors import InvalidRobot
 from eurdf.kinematics.residual import closure_openings
 from eurdf.linking.robot_files import ReadRobot, read_robot, read_valid
 from eurdf.loading import load
 from eurdf.pinocchio.robot import Robot, build_robot
 from eurdf.reading.robot_source import RobotSource, is_stream, is_text
-from eurdf.viewing.session import Session
+from eurdf.viewing.live_robot import PageRobot, page_robot
+from eurdf.viewing.shown import carried_to
 from eurdf.writing.saved_configuration import CannotSave, file_to_save_to, save_configuration
 
 #: Time and size of a file; None if there is none.
@@ -53,6 +55,10 @@ class RobotOnDisk:
         self._stamps = {file: _stamp(file) for file in _meshes(robot)} | stamps
         return robot
 
+    def page_robot(self) -> PageRobot | None:
+        """What a page shows it from: its own files; None if they cannot be read again."""
+        return page_robot(self.path, **self.options) if self._can_reread else None
+
     @property
     def can_save(self) -> bool:
         """Whether configurations can be saved to its description."""
@@ -64,14 +70,15 @@ class RobotOnDisk:
         except CannotSave:
             return False
 
-    def save(self, name: str, session: Session, *, replace: bool = False) -> str:
-        """Save the configuration of a session under a name, and add it to those of the session.
+    def save(self, name: str, shown: Robot, at: Vector, *, replace: bool = False) -> str:
+        """Save a configuration under a name.
 
         The change of the file does not count as one that another program makes.
 
         Args:
             name: The name.
-            session: The robot, and where it is.
+            shown: The robot, as it was loaded.
+            at: The configuration (nq,).
             replace: Whether to replace a different configuration of this name.
 
         Returns:
@@ -89,7 +96,7 @@ class RobotOnDisk:
         if not name.strip():
             raise CannotSave("the configuration needs a name")
         robot = build_robot(read.mechanism, geometry=False)
-        q = session.carried_to(robot)
+        q = robot.configuration(carried_to(shown, at, robot))
         if any(opening.is_open for opening in closure_openings(robot, q)):
             raise CannotSave("the loops are open; assemble first")
         file = file_to_save_to(self.path, read)
@@ -97,7 +104,6 @@ class RobotOnDisk:
         changed = save_configuration(read, robot, q, name, force=replace)
         if not is_foreign and file in self._stamps:
             self._stamps[file] = _stamp(file)
-        session.configurations[name] = session.q
         return f"saved configuration '{name}' to '{file}'" if changed else f"'{file}' already has this configuration"
 
     @property

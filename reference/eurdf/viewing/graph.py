@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import html
 import os
 from itertools import pairwise
 
 from eurdf.diagnostics.wording import visible
 from eurdf.mechanism.constraint import Constraint
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.viewing.text import escaped
 from eurdf.writing.atomic_file import write_atomically
 
 # Pixels: height of a line, indentation of a child, width of a letter, distance between arcs.
@@ -97,8 +97,13 @@ def _length(text: str) -> int:
     return len(visible(text))
 
 
+def _escaped(text: str) -> str:
+    """A text as SVG that shows it as it is: names come from files and can contain anything."""
+    return html.escape(visible(text))
+
+
 def _text(x: int, middle: int, style: str, text: str, title: str = "") -> str:
-    return f'<text x="{x}" y="{middle + 4}" {style}>{escaped(text)}{_title(title)}</text>'
+    return f'<text x="{x}" y="{middle + 4}" {style}>{_escaped(text)}{_title(title)}</text>'
 
 
 def _path(line: str, color: str, title: str = "") -> str:
@@ -107,4 +112,4 @@ def _path(line: str, color: str, title: str = "") -> str:
 
 def _title(text: str) -> str:
     """What is shown under the pointer."""
-    return f"<title>{escaped(text)}</title>" if text else ""
+    return f"<title>{_escaped(text)}</title>" if text else ""

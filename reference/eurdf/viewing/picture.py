@@ -13,13 +13,13 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from eurdf.array import Vector
+from eurdf.convert.export import ASSEMBLED
 from eurdf.diagnostics.extras import install_command
 from eurdf.errors import MissingExtra
 from eurdf.kinematics.residual import openings_once
 from eurdf.pinocchio.robot import Robot
 from eurdf.viewing.opened import opened
 from eurdf.viewing.scene import Scene
-from eurdf.viewing.session import ASSEMBLED
 from eurdf.viewing.surface import Surface
 from eurdf.writing.atomic_file import write_atomically
 

@@ -1,13 +1,14 @@
-"""Motions that play: a range of motion, a trajectory, and the fall under gravity. Knows no viewer."""
+"""Motions that play: a trajectory, and the fall under gravity."""
 
 from __future__ import annotations
 
+import bisect
 import csv
 import io
 import math
 import time
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -23,48 +24,28 @@ from eurdf.kinematics.residual import residual
 from eurdf.kinematics.simulation import Simulation, simulate
 from eurdf.kinematics.tolerances import CLOSED
 from eurdf.pinocchio.robot import build_robot
-from eurdf.viewing.session import Session
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
+    from eurdf.viewing.shown import ShownRobot
 
-#: Shows the session as it is, with a message below.
-Show = Callable[[str], None]
-
-# Time between frames, s.
-_FRAME = 1.0 / 30.0
+#: Time between frames, s.
+FRAME = 1.0 / 30.0
 # Most steps of a simulation in a frame, and the time step, s.
 _STEPS = 30
-_STEP = _FRAME / _STEPS
+_STEP = FRAME / _STEPS
 # The shortest time step, s.
 _SHORTEST_STEP = _STEP / 32.0
 # Time for the steps of a frame, s.
 _BUDGET = 0.025
+# A row of a trajectory whose time is later by no more is shown, s.
+_LATER = 1e-9
 # Time between looks at whether a frame is computed, s.
 _POLL = 0.002
 # The column of times in the file of a trajectory.
 _TIME = "time"
 # A floating root has the first coordinates of q: position and quaternion.
 _ROOT_COORDINATES = 7
-
-
-def sweep_frames(session: Session, index: int, show: Show) -> Iterator[float]:
-    """The range of motion of the actuator of a slider, again and again.
-
-    Yields:
-        How long to show each frame, s.
-
-    Raises:
-        NotClosable: The loops do not close.
-        ValueError: It has no range of motion.
-    """
-    configurations, ends = session.sweep(index)
-    name = session.sliders[index].joint
-    while True:
-        for q in configurations:
-            session.show(q)
-            show(f"sweep of '{name}': ends at {ends}")
-            yield _FRAME
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,79 +131,120 @@ def _number(cell: str, line: int, column: str) -> float:
     return number
 
 
-def trajectory_frames(session: Session, trajectory: Trajectory, show: Show) -> Iterator[float]:
-    """A trajectory, once: the joints of its columns have its values, and the others follow.
+class TrajectoryPlayback:
+    """A trajectory that plays: the joints of its columns have its values, and the others follow.
 
-    Yields:
-        How long to show each frame, s.
-
-    Raises:
-        ValueError: A configuration cannot be reached; the text says at which time.
+    Attributes:
+        time: Where it is, s, from its begin.
+        duration: How long it is, s.
+        speed: Time of the trajectory in a second.
     """
-    following = (*trajectory.times[1:], trajectory.times[-1])
-    for at, after, coordinates in zip(trajectory.times, following, trajectory.coordinates, strict=True):
-        begin = time.monotonic()
-        try:
-            session.show(forward_kinematics(session.robot, coordinates, session.q))
-        except NotClosable as reason:
-            raise ValueError(f"the trajectory stops at time {at:g} s: {reason}") from None
-        show(f"trajectory: {at:.3f} s of {trajectory.times[-1]:g} s")
-        yield max(0.0, after - at - (time.monotonic() - begin))
+
+    what = "trajectory"
+    pace = 1.0
+
+    def __init__(self, shown: ShownRobot, trajectory: Trajectory) -> None:
+        self._shown, self._trajectory = shown, trajectory
+        self._found: list[Vector] = []
+        self.time, self.speed = 0.0, 1.0
+        self.duration = trajectory.times[-1] - trajectory.times[0]
+
+    def frames(self) -> Iterator[float]:
+        """Play on, to its end.
+
+        Yields:
+            How long to show each frame, s, or 0 for one that is computed.
+
+        Raises:
+            ValueError: A configuration cannot be reached; the text says at which time.
+        """
+        while True:
+            begin = time.monotonic()
+            yield from self.at_time()
+            if self.time >= self.duration:
+                return
+            yield max(0.0, FRAME - (time.monotonic() - begin))
+            # A frame that takes long to compute makes the motion slow, and leaves none out.
+            self.time = min(self.time + self.speed * FRAME, self.duration)
+
+    def at_time(self) -> Iterator[float]:
+        """Show where it is; configurations are computed one after the other, to stay on one branch."""
+        robot, times = self._shown.robot, self._trajectory.times
+        wanted = bisect.bisect_right(times, times[0] + self.time + _LATER) - 1
+        while len(self._found) <= wanted:
+            number = len(self._found)
+            before = self._found[-1] if self._found else self._shown.q
+            try:
+                found = forward_kinematics(robot, self._trajectory.coordinates[number], before)
+            except NotClosable as reason:
+                raise ValueError(f"the trajectory stops at time {times[number]:g} s: {reason}") from None
+            self._found.append(found)
+            yield 0.0
+        self._shown.go_to(self._found[wanted])
 
 
-def gravity_frames(session: Session, show: Show, *, dissipation: bool, held: bool = False) -> Iterator[float]:
+class GravityPlayback:
     """The motion under gravity with motors that exert no torque, without end.
 
-    It starts at rest, and again at rest where the user moves the robot meanwhile. Another thread computes it, so that
-    the caller never waits for a step.
+    It starts at rest, and again at rest where the robot is moved meanwhile.
 
-    Args:
-        session: The robot.
-        show: Shows it.
+    Attributes:
         dissipation: Whether damping and friction act.
         held: Whether a floating root stays where it is.
-
-    Yields:
-        How long to show each frame, s; or how long to wait for the next one.
-
-    Raises:
-        EurdfError: The motion cannot be computed, such as that of a joint without inertia.
-        ValueError: The motion is too fast for the time step.
+        time: Simulated time since it began, s.
+        pace: Simulated time over real time of the last frame, at most 1.
     """
-    q: Vector = np.full(session.robot.tree.nq, np.nan)
-    fall = _GravityMotion(session.robot, held)
-    thread, count = ThreadPoolExecutor(1, "eurdf viewer gravity"), 1  # the time of a step is not known yet
-    try:
-        while True:
-            if not np.array_equal(q, session.q):
-                q = session.q
-                fall.begin(q)
-                elapsed = spent = 0.0
-            running = thread.submit(fall.advance, count, dissipation)
-            while not running.done():
-                yield _POLL
-            if not np.array_equal(q, session.q):
-                continue  # the user moved it meanwhile
-            try:
-                reached, seconds = running.result()
-            except SimulationDiverged:
-                raise ValueError(
-                    f"gravity ends after {elapsed:.2f} s: the motion is too fast, as near a singularity, even for "
-                    f"steps of {1e3 * _SHORTEST_STEP:.2g} ms; 'reset' returns to the start"
-                ) from None
-            begin = time.monotonic()
-            session.show(reached)
-            q = session.q
-            simulated = count * _STEP
-            elapsed += simulated
-            pace = simulated / (spent + seconds)
-            slow = "" if pace >= 1.0 else f", slow motion: {100.0 * pace:.2g} % of real time"
-            show(f"gravity: {elapsed:.2f} s{slow}")
-            spent = time.monotonic() - begin
-            count = steps_with_room(count, seconds)
-            yield max(0.0, simulated - seconds - spent)
-    finally:
-        thread.shutdown(wait=False, cancel_futures=True)
+
+    what = "gravity"
+    duration, speed = None, 1.0
+
+    def __init__(self, shown: ShownRobot, *, dissipation: bool, held: bool) -> None:
+        self._shown, self.dissipation, self.held = shown, dissipation, held
+        self.time, self.pace = 0.0, 1.0
+
+    def frames(self) -> Iterator[float]:
+        """Play on. Another thread computes it, so that the caller never waits for a step.
+
+        Yields:
+            How long to show each frame, s; or how long to wait for the next one.
+
+        Raises:
+            EurdfError: The motion cannot be computed, such as that of a joint without inertia.
+            ValueError: The motion is too fast for the time step.
+        """
+        shown, spent = self._shown, 0.0
+        q: Vector = np.full(shown.robot.tree.nq, np.nan)
+        fall = _GravityMotion(shown.robot, self.held)
+        thread, count = ThreadPoolExecutor(1, "eurdf viewer gravity"), 1  # the time of a step is not known yet
+        try:
+            while True:
+                if not np.array_equal(q, shown.q):
+                    q = shown.q
+                    fall.begin(q)
+                    self.time = spent = 0.0
+                running = thread.submit(fall.advance, count, self.dissipation)
+                while not running.done():
+                    yield _POLL
+                if not np.array_equal(q, shown.q):
+                    continue  # the user moved it meanwhile
+                try:
+                    reached, seconds = running.result()
+                except SimulationDiverged:
+                    raise ValueError(
+                        f"gravity ends after {self.time:.2f} s: the motion is too fast, as near a singularity, even "
+                        f"for steps of {1e3 * _SHORTEST_STEP:.2g} ms; 'reset' returns to the start"
+                    ) from None
+                begin = time.monotonic()
+                simulated = count * _STEP
+                self.time += simulated
+                self.pace = min(1.0, simulated / (spent + seconds))
+                shown.go_to(reached)
+                q = shown.q
+                spent = time.monotonic() - begin
+                count = steps_with_room(count, seconds)
+                yield max(0.0, simulated - seconds - spent)
+        finally:
+            thread.shutdown(wait=False, cancel_futures=True)
 
 
 def steps_with_room(steps: int, seconds: float) -> int:

@@ -1,12 +1,16 @@
-"""The server of the page: on one address, for pages of that address alone, and without ways out."""
+"""The server of the page: HTTP and a websocket on one port, for pages of its own address alone."""
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
-import io
 import ipaddress
+import logging
+import mimetypes
 import socket
-from collections.abc import Collection
+import threading
+from collections.abc import Callable, Collection
+from http import HTTPStatus
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
@@ -14,7 +18,8 @@ from eurdf.diagnostics.extras import install_command
 from eurdf.errors import MissingExtra
 
 if TYPE_CHECKING:
-    import viser
+    from websockets.asyncio.server import ServerConnection
+    from websockets.http11 import Request, Response
 
 #: The address to listen on, unless told.
 LOOPBACK = "127.0.0.1"
@@ -23,66 +28,136 @@ LOOPBACK = "127.0.0.1"
 PORT = 8080
 _PORTS = 100
 
-# Run in the page, again whenever it connects. The file asked for does not exist: an answer, whatever it is, will do.
-_SAY_ENDED = """
-if (!window.eurdfEnded) {
-  const box = (window.eurdfEnded = document.createElement("div"));
-  box.setAttribute("role", "alert");
-  box.textContent = "the viewer has ended; run `eurdf view \u2026` again";
-  box.style.cssText =
-    "position: fixed; inset: 0 0 auto 0; z-index: 100000; padding: 12px; text-align: center;" +
-    "font: 16px sans-serif; color: #fff; background: #b42318";
-  setInterval(async () => {
-    try {
-      await fetch("/is-running", { cache: "no-store" });
-      box.remove();
-    } catch {
-      document.body.append(box);
-    }
-  }, 2000);
+#: Where the page connects to.
+SOCKET = "/socket"
+
+# Bytes of the longest message of a page: a trajectory.
+_LONGEST_MESSAGE = 1 << 27
+
+# A page loads nothing from elsewhere, and runs no script that is in a file of a robot.
+_HEADERS = {
+    "Content-Security-Policy": (
+        "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; connect-src 'self' blob: data:; "
+        "img-src 'self' blob: data:; media-src blob:; base-uri 'none'; form-action 'none'"
+    ),
+    "X-Content-Type-Options": "nosniff",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cache-Control": "no-store",
 }
-"""
 
 
-def start_server(host: str, port: int | None, title: str) -> viser.ViserServer:
-    """Start a server.
+class Server:
+    """Serves files, and carries messages between pages and a viewer, in a thread of its own."""
 
-    Args:
-        host: Address or name of the interface to listen on.
-        port: Port, 0 for any; None for `PORT` or the next free one.
-        title: Heading of the panel.
+    def __init__(
+        self,
+        host: str,
+        port: int | None,
+        *,
+        file: Callable[[str], bytes | None],
+        greeting: Callable[[], list[str]],
+        receive: Callable[[str | bytes, Any], None],
+    ) -> None:
+        """Start it.
 
-    Raises:
-        MissingExtra: viser is not installed.
-        OSError: The address cannot be listened on.
-    """
-    try:
-        import viser
-        import viser._messages as messages
-    except ImportError:
-        raise MissingExtra(f"the viewer needs viser; install it with: {install_command('view')}", "view") from None
-    with contextlib.redirect_stdout(io.StringIO()):  # it prints its address, and so do we
-        server = viser.ViserServer(host, _free_port(host, port), label=title, verbose=False)
-    # Otherwise any visitor of the page could ask for a public address of it.
-    for message in (messages.ShareUrlRequest, messages.ShareUrlDisconnect):
-        server._websock_server.unregister_handler(message)
-    server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="large")
-    _greet(server, host)
-    return server
+        Args:
+            host: Address or name of the interface to listen on.
+            port: Port, 0 for any; None for `PORT` or the next free one.
+            file: The content of the file at a path of an address, or None if there is none.
+            greeting: The messages that a new page gets; called in the thread of the server.
+            receive: Called with a message of a page and the page, in the thread of the server.
+                `ValueError` closes the connection.
 
+        Raises:
+            MissingExtra: websockets is not installed.
+            OSError: The address cannot be listened on.
+        """
+        try:
+            import websockets.asyncio.server as library
+        except ImportError:
+            raise MissingExtra(
+                f"the viewer needs websockets; install it with: {install_command('view')}", "view"
+            ) from None
+        self._library = library
+        self._host, self._file, self._greeting, self._receive = host, file, greeting, receive
+        self._names = set() if _is_loopback(host) else _names_of_this_machine()
+        self._pages: set[ServerConnection] = set()
+        self._socket = _free_socket(host, port)
+        self._loop = asyncio.new_event_loop()
+        self._ended = asyncio.Event()
+        self._thread = threading.Thread(target=self._loop.run_until_complete, args=(self._run(),), daemon=True)
+        self._thread.name = "eurdf viewer server"
+        self._thread.start()
 
-def stop_server(server: viser.ViserServer) -> None:
-    """Stop a server."""
-    with contextlib.redirect_stdout(io.StringIO()):
-        server.stop()
+    @property
+    def url(self) -> str:
+        """The address to open in a browser on the same machine."""
+        host = "localhost" if self._host in ("0.0.0.0", "::") else self._host
+        return f"http://{f'[{host}]' if ':' in host else host}:{self._socket.getsockname()[1]}"
 
+    def send(self, message: str, *, but: Any = None, to: Any = None) -> None:
+        """Send a message to every page but one, or to one."""
 
-def url_of(server: viser.ViserServer) -> str:
-    """The address to open in a browser on the same machine."""
-    host = server.get_host()
-    if host in ("0.0.0.0", "::"):
-        host = "localhost"
-    return f"http://{f'[{host}]' if ':' in host else host}:{server.get_port()}"
+        def now() -> None:
+            pages = self._pages - {but} if to is None else self._pages & {to}
+            self._library.broadcast(pages, message)
+
+        with contextlib.suppress(RuntimeError):  # the server has ended
+            self._loop.call_soon_threadsafe(now)
+
+    def stop(self) -> None:
+        """Close all connections, and stop listening."""
+        if self._thread.is_alive():
+            self._loop.call_soon_threadsafe(self._ended.set)
+            self._thread.join()
+            self._loop.close()
+
+    async def _run(self) -> None:
+        silent = logging.Logger("eurdf.viewing", logging.CRITICAL + 1)  # else a page that leaves early is an error
+        async with self._library.serve(
+            self._serve,
+            sock=self._socket,
+            process_request=self._answer,
+            compression=None,
+            max_size=_LONGEST_MESSAGE,
+            server_header=None,
+            logger=silent,
+            close_timeout=1.0,
+        ):
+            await self._ended.wait()
+
+    async def _serve(self, page: ServerConnection) -> None:
+        for greeting in self._greeting():  # without awaiting, so that no later message is missed
+            self._library.broadcast({page}, greeting)
+        self._pages.add(page)
+        try:
+            async for message in page:
+                self._receive(message, page)
+        except ValueError as error:
+            await page.close(1003, str(error)[:100])
+        finally:
+            self._pages.discard(page)
+
+    def _answer(self, page: ServerConnection, request: Request) -> Response | None:
+        """The answer to a request; None if it may connect to the socket."""
+        origin, host = request.headers.get("Origin"), request.headers.get("Host")
+        if not is_allowed(origin or f"http://{host}", host, self._host, self._names):
+            return page.respond(HTTPStatus.FORBIDDEN, "this page may not connect\n")
+        path = urlsplit(request.path).path
+        if path == SOCKET:
+            return None
+        content = self._file(path)
+        if content is None:
+            return page.respond(HTTPStatus.NOT_FOUND, "there is no such file\n")
+        answer = page.respond(HTTPStatus.OK, "")
+        kind = mimetypes.guess_type(f"a{path}")[0] or "application/octet-stream"
+        kind = "text/html" if path == "/" else "text/javascript" if path.endswith(".js") else kind
+        del answer.headers["Content-Type"], answer.headers["Content-Length"]
+        answer.headers.update(
+            {"Content-Type": f"{kind}; charset=utf-8", "Content-Length": str(len(content)), **_HEADERS}
+        )
+        answer.body = content
+        return answer
 
 
 def is_allowed(origin: str | None, host: str | None, listens: str, names: Collection[str] = ()) -> bool:
@@ -93,14 +168,12 @@ def is_allowed(origin: str | None, host: str | None, listens: str, names: Collec
     Therefore the host must be an address, which leads nowhere else, or a name that is known to be of this machine.
 
     Args:
-        origin: Header ``Origin`` of the request; None from a program that is not a browser.
+        origin: Header ``Origin`` of the request; without one, the host.
         host: Header ``Host``.
         listens: What the server listens on.
         names: Names of this machine, in lower case.
     """
-    if origin is None:
-        return True
-    name = _host_name(origin)
+    name = _host_name(origin or "")
     if _is_loopback(name):
         return True
     if _is_loopback(listens):
@@ -134,28 +207,8 @@ def _is_loopback(name: str | None) -> bool:
     return name == "localhost" or (address is not None and address.is_loopback)
 
 
-def _greet(server: viser.ViserServer, listens: str) -> None:
-    """Refuse pages of others, and have the page say when the server has ended."""
-    import viser._messages as messages
-
-    names = set() if _is_loopback(listens) else _names_of_this_machine()
-
-    async def check(connection: Any) -> None:
-        socket_ = server._websock_server._live_connections[connection.client_id]
-        assert socket_.request is not None  # since the handshake
-        headers = socket_.request.headers
-        if not is_allowed(headers.get("Origin"), headers.get("Host"), listens, names):
-            # Nothing of it is read: the messages of a connection are waited for after this.
-            await socket_.close(1008, "this page may not connect")
-            return
-        # To this page alone: a saved page needs no server.
-        connection.queue_message(messages.RunJavascriptMessage(_SAY_ENDED))
-
-    server._websock_server.on_client_connect(check)
-
-
-def _free_port(host: str, port: int | None) -> int:
-    """A port that can be listened on, or `OSError`; viser would try others in silence."""
+def _free_socket(host: str, port: int | None) -> socket.socket:
+    """A socket that listens, or `OSError`."""
     if port is not None:
         return _bound(host, port)
     for candidate in range(PORT, PORT + _PORTS):
@@ -164,13 +217,18 @@ def _free_port(host: str, port: int | None) -> int:
     return _bound(host, 0)
 
 
-def _bound(host: str, port: int) -> int:
+def _bound(host: str, port: int) -> socket.socket:
     try:
         family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
-        with socket.socket(family, kind, protocol) as trial:
-            trial.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            trial.bind(address)
-            return int(trial.getsockname()[1])
+        listening = socket.socket(family, kind, protocol)
+        try:
+            listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            listening.bind(address)
+            listening.listen()
+        except BaseException:
+            listening.close()
+            raise
     except (OSError, OverflowError) as error:
         reason = error.strerror if isinstance(error, OSError) else None
         raise OSError(f"cannot listen on '{host}', port {port}: {(reason or str(error)).lower()}") from None
+    return listening

@@ -1,25 +1,26 @@
-"""A robot in a viewer: its state, and what is drawn of it; and a page with one that has controls."""
+"""A robot in a viewer: where it is, and the files from which a page makes it again."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Hashable, Iterable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from eurdf.array import Vector
-from eurdf.kinematics.named import Named
-from eurdf.viewing.figure import Figure
-from eurdf.viewing.files import RobotOnDisk
-from eurdf.viewing.scene import PlacedRobot, Scene
-from eurdf.viewing.session import Session
+from eurdf.kinematics.assembly import assemble
+from eurdf.kinematics.closing import start
+from eurdf.kinematics.named import Named, configuration_of
+from eurdf.kinematics.tolerances import START
+from eurdf.mechanism.body import Body
+from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, root_joint
+from eurdf.viewing.live_robot import PageRobot, page_robot_of
+from eurdf.viewing.messages import Coordinates, Facts, Model, Show
 from eurdf.viewing.worker import Worker
 
 if TYPE_CHECKING:
-    import viser
-
     from eurdf.pinocchio.robot import Robot
 
 
@@ -27,29 +28,33 @@ class ShownRobot:
     """A robot in a viewer; made by `Viewer.add`.
 
     Attributes:
-        session: Its state.
-        figure: Its nodes in the scene.
-        on_place: Called after each change of what is shown.
+        robot: The robot.
+        configurations: The named configurations (nq,): those of the description, and those saved since.
+        version: How many versions of it there were before.
+        on_show: Called after each change of the configuration.
+        interrupt: Called before a program shows a configuration.
     """
 
     def __init__(
-        self, server: viser.ViserServer, worker: Worker, robot: Robot, q: Named | None, node: str, origin: Vector
+        self,
+        send: Callable[[Any], None],
+        worker: Worker,
+        robot: Robot,
+        files: PageRobot | None,
+        q: Named | None,
+        number: int,
+        origin: Vector,
     ) -> None:
-        self._server, self._worker = server, worker
-        self._node, self._origin, self._versions = node, origin, 0
-        self.on_place: Callable[[PlacedRobot], None] = lambda placed: None
-        self.session = Session(robot, q)
-        self.figure = self._drawn()
-
-    @property
-    def robot(self) -> Robot:
-        """The robot."""
-        return self.session.robot
+        self._send, self._worker, self._number, self._origin = send, worker, number, origin
+        self.on_show: Callable[[], None] = lambda: None
+        self.interrupt: Callable[[], None] = lambda: None
+        self.version = -1
+        self.replace(robot, files, q)
 
     @property
     def q(self) -> Vector:
         """The configuration (nq,) that is shown."""
-        return np.array(self.session.q)
+        return np.array(self._q)
 
     def show(self, q: Named) -> None:
         """Show a configuration.
@@ -62,9 +67,8 @@ class ShownRobot:
         """
 
         def go() -> None:
-            self._worker.play(None)
-            self.session.show(q)
-            self.place()
+            self.interrupt()
+            self.go_to(q)
 
         self._worker.call(go)
 
@@ -86,76 +90,73 @@ class ShownRobot:
             due += dt
             time.sleep(max(0.0, due - time.monotonic()))
 
-    def place(self) -> None:
-        """Bring the page to the state of the session; for the thread of the worker."""
-        with self._server.atomic():
-            placed = self.figure.scene.at(self.session.q)
-            self.figure.place(placed)
-            self.on_place(placed)
+    def go_to(self, q: Named, *, sends: Callable[[Any], None] | None = None) -> None:
+        """Go to a configuration, which is sent to every page unless told otherwise; for the thread of the worker."""
+        self._q = np.array(configuration_of(self.robot, q))
+        (sends or self._send)(Show(self._number, self.robot.joint_positions(self._q)))
+        self.on_show()
 
-    def replace(self, robot: Robot) -> None:
-        """Show another version of the robot, where the old one is; for the thread of the worker."""
-        before, shown = self.figure, self.figure.shown
-        self.session = Session(robot, self.session.carried_to(robot))
-        with self._server.atomic():
-            self.figure = self._drawn()
-            for layer, visible in shown.items():
-                self.figure.toggle(layer, visible)
-            before.remove()
+    def replace(self, robot: Robot, files: PageRobot | None, q: Named | None) -> None:
+        """Take another version of the robot, near q, without sending it; for the thread of the worker.
 
-    def _drawn(self) -> Figure:
-        """Nodes of their own, at the state of the session."""
-        scene = Scene(self.robot, self.session.q)
-        self._versions += 1
-        placed = scene.at(self.session.q)
-        figure = Figure(self._server, scene, placed, f"{self._node}/version{self._versions}", self._origin)
-        figure.highlight(frozenset(name for each in self.session.analysis.dependent_actuators for name in each))
-        return figure
+        Its files are written anew if there are none.
+
+        Raises:
+            ValueError: ``q`` is not a configuration.
+        """
+        q = assemble(robot, start(robot, q, "q"), tolerance=START).q
+        self._files = files or page_robot_of(replace(robot, mechanism=_with_contacts_as_closures(robot.mechanism)))
+        self.robot, self._q, self.configurations = robot, q, dict(robot.configurations)
+        self.version += 1
+
+    def model(self, facts: Facts | None) -> Model:
+        """What a page is told of it."""
+        return Model(
+            robot=self._number,
+            version=self.version,
+            urdf=self._files.urdf,
+            description=self._files.description,
+            meshes={name: address for address, name in self._addresses().items()},
+            xyz=tuple(self._origin.tolist()),
+            q=self.robot.joint_positions(self._q),
+            configurations={name: self.robot.joint_positions(q) for name, q in self.configurations.items()},
+            facts=facts,
+        )
+
+    def mesh(self, address: str) -> bytes | None:
+        """The content of the mesh file that has an address, if there is one."""
+        name = self._addresses().get(address)
+        return None if name is None else self._files.meshes[name]
+
+    def _addresses(self) -> dict[str, str]:
+        place = f"/mesh/{self._number}/{self.version}"
+        return {f"{place}/{index}": name for index, name in enumerate(self._files.meshes)}
 
     def __repr__(self) -> str:
-        return f"<ShownRobot '{self.robot.mechanism.name}' at '{self._node}'>"
+        return f"<ShownRobot '{self.robot.mechanism.name}', number {self._number}>"
 
 
-@dataclass(slots=True, eq=False)
-class Page:
-    """A page with one robot that has controls.
+def carried_to(robot: Robot, q: Vector, other: Robot) -> Coordinates:
+    """The configuration of another version of a robot in which its joints are where they are at q (nq,)."""
+    names = {joint.name: len(joint.type.coordinates) for joint in other.mechanism.joints if joint.mimic is None}
+    here = robot.joint_positions(q)
+    kept = {name: values for name, values in here.items() if names.get(name) == len(values)}
+    if other.mechanism.root == "floating" and ROOT_JOINT in here:
+        kept[ROOT_JOINT] = here[ROOT_JOINT]
+    return kept
 
-    Attributes:
-        server: The server of the page.
-        worker: Does all that changes the state.
-        shown: The robot.
-        files: Where the robot comes from, if from files.
-        messages: What the user should know, below the state of the loops.
-        in_hand: Index of the slider that the user moves; it is not moved under the hand.
-    """
 
-    server: viser.ViserServer
-    worker: Worker
-    shown: ShownRobot
-    files: RobotOnDisk | None
-    messages: tuple[str, ...] = ()
-    in_hand: int | None = field(default=None, init=False)
-
-    def ask(self, key: Hashable, motion: Callable[[], Any], *, in_hand: int | None = None) -> None:
-        """Have the user's motion done soon, in place of an earlier one of the same key; what is played stops.
-
-        Args:
-            key: What the motion is of.
-            motion: Changes the session, and returns what to tell the user, or None.
-            in_hand: Index of the slider that is moved, if one is.
-        """
-
-        def done() -> None:
-            self.worker.play(None)
-            said = motion()
-            self.messages = () if said is None else (str(said),)
-            self.in_hand = in_hand if said is None else None
-            self.shown.place()
-            self.in_hand = None
-
-        self.worker.ask(key, done)
-
-    def say(self, *messages: str) -> None:
-        """Show messages, in place of those before; for the thread of the worker."""
-        self.messages = messages
-        self.shown.place()
+def _with_contacts_as_closures(mechanism: Mechanism) -> Mechanism:
+    """A mechanism whose contacts are closures, as files have no others; a floating root then hangs from a link."""
+    if not mechanism.contacts:
+        return mechanism
+    contacts = mechanism.contacts
+    if mechanism.root == "floating":
+        names = {body.name for body in mechanism.bodies}
+        world = next(name for name in ("world", *(f"world_{n}" for n in range(len(names) + 1))) if name not in names)
+        contacts = tuple(replace(each, a=replace(each.a, body=world)) for each in contacts)
+        joint = replace(root_joint(mechanism.bodies[0].name), parent=world)
+        mechanism = replace(
+            mechanism, root="fixed", bodies=(Body(world), *mechanism.bodies), joints=(joint, *mechanism.joints)
+        )
+    return replace(mechanism, closures=(*mechanism.closures, *contacts), contacts=())
