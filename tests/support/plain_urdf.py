@@ -118,9 +118,9 @@ def axes(draw: st.DrawFn) -> str:
 
 
 @st.composite
-def trees(draw: st.DrawFn) -> str:
+def trees(draw: st.DrawFn, versions: st.SearchStrategy[str] = VERSIONS) -> str:
     """A robot that Pinocchio's parser takes with ``mimic=True``; the order of names is not that of the file."""
-    count, version = draw(st.integers(1, 8)), draw(VERSIONS)
+    count, version = draw(st.integers(1, 8)), draw(versions)
     names = draw(st.permutations([f"j{index}" for index in range(1, count)]))
     parents = [draw(st.integers(0, index)) for index in range(count - 1)]
     kinds = [

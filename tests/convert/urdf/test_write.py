@@ -33,11 +33,11 @@ def test_tree_of_a_plain_urdf_is_equal(name: str) -> None:
     assert there.model == robot.model
 
 
-@given(text=trees(), root=st.sampled_from(["fixed", "floating"]))
+# Of a version with quaternions they are written as roll, pitch and yaw, and rounded; in 1.2, limits that are left out
+# are written as the largest double.
+@given(text=trees(st.just("")), root=st.sampled_from(["fixed", "floating"]))
 def test_tree_of_a_random_urdf_is_equal(text: str, root: Any) -> None:
     assume(not re.search(r'lower="-?0\.0" upper="-?0\.0"', text))  # which is no range
-    assume("quat_xyzw" not in text)  # which is written as roll, pitch and yaw, and rounded
-    assume('version="1.2"' not in text)  # where limits that are left out are written as the largest double
     export = eurdf.export(text, "urdf", root=root)
     assert pinocchios_own(export.main.decode(), root) == pinocchios_own(text, root)
 
