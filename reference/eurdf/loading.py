@@ -34,6 +34,7 @@ from eurdf.mesh_files.kinds import KINDS, suffix_of
 from eurdf.pinocchio.arguments import accepting
 from eurdf.pinocchio.meshes import Mesh, read_meshes
 from eurdf.reading.robot_source import RobotSource, is_stream
+from eurdf.reading.source import Texts
 from eurdf.writing.simplification import saving
 
 if TYPE_CHECKING:
@@ -43,8 +44,8 @@ if TYPE_CHECKING:
 #: The types of a `RobotSource`, as a tuple: a union would be made in each call.
 SOURCES = (str, bytes, os.PathLike, Mapping)
 
-# Mesh files by the text of the URDF that names them: where they are, the meshes by path, and what is wrong with some.
-_MeshFiles = dict[bytes, tuple[FoundFiles, dict[str, Mesh], Diagnostics]]
+#: Mesh files by the text of the URDF that names them: where they are, the meshes by path, and what is wrong with some.
+MeshFiles = dict[bytes, tuple[FoundFiles, dict[str, Mesh], Diagnostics]]
 
 # Characters that all trials of fixes read, at most: those of about fifty trials of a humanoid.
 _MOST_READ_AGAIN = 5_000_000
@@ -232,19 +233,40 @@ def check(
 
 def check_texts(texts: Mapping[str, str], path: RobotSource, urdf: RobotSource | None = None, **options: Any) -> Report:
     """The result of `check`, with texts in place of those of files: see `read_robot`."""
-    find = {name: value for name, value in options.items() if name != "xacro_args"}
-    mesh_files: _MeshFiles = {}
+    return examine(Texts(texts), path, urdf, **options)[1]
 
-    known = {**texts}
+
+def examine(
+    known: Texts,
+    path: RobotSource,
+    urdf: RobotSource | None = None,
+    *,
+    mesh_files: MeshFiles | None = None,
+    tries: Callable[[], bool] | None = lambda: True,
+    **options: Any,
+) -> tuple[ReadRobot, Report]:
+    """The robot that `check` reads, and its result.
+
+    Args:
+        known: Texts in place of those of files: see `read_robot`.
+        path: As `check` takes it, and so are the URDF and the other options.
+        urdf: See ``path``.
+        **options: See ``path``.
+        mesh_files: What was found before, to which is added what is found now.
+        tries: Asked before each trial of a fix whether to go on; None for what is found at once: no causes, no trials,
+            no mesh files but those that were found before.
+    """
+    find = {name: value for name, value in options.items() if name != "xacro_args"}
+    mesh_files = {} if mesh_files is None else mesh_files
     left = _MOST_READ_AGAIN
 
     @cache
     def evidence_with(code: str, *fixes: Fix) -> Evidence:
         nonlocal left
         left -= sum(map(len, known.values()))
-        if left < 0:
+        if left < 0 or not (tries and tries()):
             raise _TooMuch
-        trial = read_robot(path, urdf, **options, texts={**known, **Fix.together(fixes).texts()})
+        trial = read_robot(path, urdf, **options, texts=Texts({**known, **Fix.together(fixes).texts()}))
         return (
             Evidence(trial.diagnostics.counts())
             if is_of_the_text(code)
@@ -261,21 +283,23 @@ def check_texts(texts: Mapping[str, str], path: RobotSource, urdf: RobotSource |
         return after.is_enough_for(found.code) and after.is_as_good_as(evidence, found.code)
 
     read = read_robot(path, urdf, **options, texts=known)
-    evidence = _findings(read, mesh_files, find)
+    evidence = _findings(read, mesh_files, find, causes=tries is not None, new_meshes=tries is not None)
     likeliest = [found.proposals[0] for found in read.diagnostics if found.proposals]
     if not (is_stream(path) or (urdf is not None and is_stream(urdf))):  # which can be read only once
         with suppress(_TooMuch):  # what has not been tried stays a question
             read.diagnostics.tried(is_right)
-    is_sound = read.linked is not None and read.yaml is not None and not read.diagnostics.error_count
+    is_sound = tries and read.linked is not None and read.yaml is not None and not read.diagnostics.error_count
     notes = (*spring_notes(read.mechanism), *saving(read.mechanism)) if is_sound else ()
-    return Report(read.path, tuple(read.diagnostics), notes)
+    return read, Report(read.path, tuple(read.diagnostics), notes)
 
 
-def _findings(read: ReadRobot, mesh_files: _MeshFiles, find: Mapping[str, Any], *, causes: bool = True) -> Evidence:
+def _findings(
+    read: ReadRobot, mesh_files: MeshFiles, find: Mapping[str, Any], *, causes: bool, new_meshes: bool = True
+) -> Evidence:
     """Add what is found after reading to the diagnostics of a robot.
 
-    Mesh files are found as ``find`` says, and not read again for the same text of a URDF. Causes are proposed only if
-    they are asked for.
+    Mesh files are found as ``find`` says, and not read again for the same text of a URDF; those of a new one only if
+    asked for. Causes are proposed only if they are asked for.
 
     Returns:
         What a trial compares.
@@ -284,7 +308,7 @@ def _findings(read: ReadRobot, mesh_files: _MeshFiles, find: Mapping[str, Any], 
     refused = diagnostics.refused  # without meshes, which the kinematics does not need
     meshes: dict[str, Mesh] = {}
     analysis: Analysis | None = None
-    if read.tree is not None:
+    if read.tree is not None and (new_meshes or read.tree.document.source.data in mesh_files):
         text = read.urdf.document.source.data
         if text not in mesh_files:
             files = find_meshes(read.urdf, **find)

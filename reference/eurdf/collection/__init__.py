@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+import re
+from collections.abc import Callable, Container, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -16,6 +17,15 @@ from eurdf.reading.source import Source, unreadable
 _FOLDER = Path(__file__).parent
 # What a folder may have instead: a message names it, so that the next one says what to do with it.
 _OTHERS = (".xacro", ".xml", ".sdf", ".usd", ".usda", ".usdc", ".usdz")
+
+#: Names of the description in a folder of its own.
+DESCRIPTIONS = tuple(f"robot{ending}" for ending in YAML_ENDINGS)
+
+# The ending of descriptions in a folder with other YAML files; schema catalogs know it.
+_OWN_SUFFIXES = tuple(f".eurdf{ending}" for ending in YAML_ENDINGS)
+
+# Top-level keys that only descriptions of robots have, in version 2 or version 1.
+_FORMAT_KEY = re.compile(rb"""^(["']?)(?:extended_urdf|closed_loop)\1[ \t]*:""", re.MULTILINE)
 
 #: Names in the published collection (Gepetto/example-parallel-robots), of robots and folders, whose robot here has no
 #: name that is near theirs.
@@ -57,7 +67,7 @@ def collection_names() -> list[str]:
     return [] if folder is None else sorted(path.parent.name for path in folder.glob("*/robot.yaml"))
 
 
-def find_robot(path: RobotSource, urdf: RobotSource | None = None) -> RobotFiles:
+def find_robot(path: RobotSource, urdf: RobotSource | None = None, texts: Container[str] = ()) -> RobotFiles:
     """Find the files of a robot.
 
     Args:
@@ -66,6 +76,7 @@ def find_robot(path: RobotSource, urdf: RobotSource | None = None) -> RobotFiles
             other a description. A text, or what comes from a stream, is a URDF if it begins with ``<``; a mapping is
             what a description contains.
         urdf: A URDF in place of the one that the description names: a file, ``-``, a pipe or a text.
+        texts: Paths of files that are open in an editor, which need not exist.
 
     Raises:
         RobotNotFound: Where there is no such thing.
@@ -86,7 +97,7 @@ def find_robot(path: RobotSource, urdf: RobotSource | None = None) -> RobotFiles
     if os.fspath(path) == "":  # Path takes it for the working directory
         raise RobotNotFound("", "the path of the robot is empty; '.' is the working directory")
     where = Path(path)
-    if os.path.lexists(where):
+    if os.fspath(path) in texts or os.path.lexists(where):
         if where.suffix.lower() in URDF_ENDINGS:
             _refuse_second_urdf(path, urdf)
             return RobotFiles(None, where)
@@ -99,6 +110,13 @@ def find_robot(path: RobotSource, urdf: RobotSource | None = None) -> RobotFiles
     near = _PUBLISHED[name] if _PUBLISHED.get(name) in names else near_path(name, names)
     hint = f"did you mean '{near}'?" if near else "`eurdf robots` lists the collection"
     raise RobotNotFound(name, f"there is no '{name}': it is not a file, a folder, or a robot of the collection; {hint}")
+
+
+def is_description(name: str, begin: Callable[[], bytes]) -> bool:
+    """Whether a file is a description: by its name, or, of a YAML file, by a top-level key, which needs its text."""
+    if name in DESCRIPTIONS or name.endswith(_OWN_SUFFIXES):
+        return True
+    return name.endswith(YAML_ENDINGS) and _FORMAT_KEY.search(begin()) is not None
 
 
 def has_urdf(folder: Path) -> bool:

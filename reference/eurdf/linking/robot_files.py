@@ -23,8 +23,8 @@ from eurdf.mechanism.mechanism import Mechanism, Root
 from eurdf.mesh_files.folders import Folders
 from eurdf.reading.resource import FileFinder
 from eurdf.reading.robot_source import RobotSource, display_name, source_of
-from eurdf.reading.source import Source, read_bytes, read_source
-from eurdf.reading.xacro import expand, is_xacro
+from eurdf.reading.source import Source, Texts, decoded, read_bytes, read_source
+from eurdf.reading.xacro import expand, expand_once, is_xacro
 from eurdf.reading.xml_reader import read_xml
 from eurdf.reading.yaml_reader import YamlDocument, read_yaml
 
@@ -109,7 +109,7 @@ def read_robot(
     confined: bool = False,
     allow_outside: bool = False,
     inertias: bool = True,
-    texts: dict[str, str] | None = None,
+    texts: Texts | None = None,
 ) -> ReadRobot:
     """Read and link the files of a robot, and check its inertias.
 
@@ -127,7 +127,7 @@ def read_robot(
         confined: Whether a URDF that the description names must be in the folder of the description.
         allow_outside: Whether meshes may be anywhere, for `find_meshes`: no mesh is looked for here.
         inertias: Whether to check the inertias of a robot that can be linked. If not, `inertia_diagnostics` does.
-        texts: Texts in place of those of files, by path as diagnostics have it, or by name; what is read is added.
+        texts: In place of those of files, by path or by name; what is read, or expanded from a xacro, is added.
 
     Raises:
         RobotNotFound: Where there are no such files.
@@ -137,10 +137,10 @@ def read_robot(
     """
     if confined and allow_outside:
         raise ValueError("confined and allow_outside exclude each other; choose one of them")
-    diagnostics, texts = Diagnostics(), {} if texts is None else texts
+    diagnostics, texts = Diagnostics(), Texts() if texts is None else texts
     name = display_name(path)
     try:
-        files = RobotFiles(*(_open(file, texts) for file in find_robot(path, urdf)))
+        files = RobotFiles(*(_open(file, texts) for file in find_robot(path, urdf, texts)))
         given = files.urdf and _expanded(files.urdf, name, diagnostics, package_dirs, xacro_args)
     except FileError as error:
         diagnostics.add(error.diagnostic)
@@ -157,9 +157,9 @@ def read_robot(
         else:
             own = files.description
             folder = own.folder if isinstance(own, Source) else own.parent
-            named = _named_urdf(folder, description, document)
+            named = named_urdf(folder, description, document)
             is_inside = _is_inside(named, folder)
-            if not _may_read(named, is_inside, own, description, diagnostics, confined):
+            if not _may_read(named, is_inside, own, description, diagnostics, confined, texts):
                 return ReadRobot(name, diagnostics)
             # Another file that the description names may be anyone's: no line of it is shown.
             read = partial(_named_source, named, is_inside, texts)
@@ -169,7 +169,7 @@ def read_robot(
                 real = Path(os.path.realpath(named)).parent
                 finder = FileFinder(named.parent, package_dirs, real_folder=real, allow_outside=allow_outside)
                 folders = None if confined else finder.folders
-                read = partial(_named_xacro, named, description, diagnostics, package_dirs, xacro_args, folders)
+                read = partial(_named_xacro, named, description, diagnostics, package_dirs, xacro_args, folders, texts)
             elif description is not None and xacro_args:
                 raise CannotExpand(name, _NO_XACRO)
         # Without a version, whether a mimic has an effect is not known.
@@ -250,10 +250,9 @@ def _named_xacro(
     package_dirs: Sequence[str | os.PathLike[str]],
     xacro_args: Mapping[str, str] | None,
     folders: Folders | None,
+    texts: Texts,
 ) -> Source:
-    """The URDF that a xacro is expanded to which the description names.
-
-    The files that it reads are in ``folders``, which are None if files are confined.
+    """The URDF that a xacro, which the description names, is expanded to; it reads ``folders``, None if confined.
 
     Raises:
         CannotExpand: It has an error, and arguments are given, which may be the reason.
@@ -267,7 +266,7 @@ def _named_xacro(
         raise FileError("file-unreadable", message, place, "expand it, and name the result")
     read_bytes(os.fspath(urdf))  # refuses what is no regular file, as of every file that a description names
     try:
-        source, warnings = expand(urdf, xacro_args, package_dirs, folders)
+        source, warnings = expand_once(texts, urdf, xacro_args, package_dirs, folders)
     except CannotExpand as error:
         if xacro_args:
             raise
@@ -297,7 +296,8 @@ def _read_urdf(
     return urdf
 
 
-def _named_urdf(folder: Path, description: Description | None, document: YamlDocument | None) -> Path:
+def named_urdf(folder: Path, description: Description | None, document: YamlDocument | None) -> Path:
+    """The URDF that a description in a folder names, which may have errors."""
     name = "robot.urdf"
     if description is not None:
         name = description.urdf
@@ -310,7 +310,7 @@ def _named_urdf(folder: Path, description: Description | None, document: YamlDoc
 
 
 def _read_description(
-    path: Path | Source, diagnostics: Diagnostics, confined: bool, texts: dict[str, str]
+    path: Path | Source, diagnostics: Diagnostics, confined: bool, texts: Texts
 ) -> YamlDocument | None:
     try:
         return read_yaml(_own_source(path, confined, texts))
@@ -319,7 +319,7 @@ def _read_description(
         return None
 
 
-def _own_source(path: Path | Source, confined: bool = False, texts: dict[str, str] | None = None) -> Source:
+def _own_source(path: Path | Source, confined: bool = False, texts: Texts | None = None) -> Source:
     """The text of a file of the robot that the caller named, or found in a folder, which is added to those read.
 
     `FileError` if it cannot be read; or if files are confined to their folder, and it is a link to one elsewhere.
@@ -330,28 +330,27 @@ def _own_source(path: Path | Source, confined: bool = False, texts: dict[str, st
     if confined and not is_inside:
         message = f"'{path}' is a link to a file in another folder, and files are confined to their folder"
         raise FileError("file-unreadable", message, Place(os.fspath(path)))
-    return _read({} if texts is None else texts, path, is_inside)
+    return _read(Texts() if texts is None else texts, path, is_inside)
 
 
-def _read(texts: dict[str, str], path: Path, is_quoted: bool) -> Source:
+def _read(texts: Texts, path: Path, is_quoted: bool) -> Source:
     source = read_source(path, is_quoted=is_quoted)
     texts[source.file] = source.text
     return source
 
 
-def _open(file: Path | Source | None, texts: Mapping[str, str]) -> Path | Source | None:
+def _open(file: Path | Source | None, texts: Texts) -> Path | Source | None:
     """A file, or what was read already, or else the text in its place."""
     if file is None:
         return None
     name = file.file if isinstance(file, Source) else os.fspath(file)
     if (text := texts.get(name)) is None:
         return file
-    if isinstance(file, Source):
-        return replace(file, text=text, data=text.encode())
-    return Source(name, text, text.encode(), is_quoted=_is_inside(file, file.parent))
+    base, is_quoted = (file.base, file.is_quoted) if isinstance(file, Source) else (None, _is_inside(file, file.parent))
+    return decoded(text.encode(), name, base, is_quoted=is_quoted)
 
 
-def _named_source(path: Path, is_quoted: bool, texts: dict[str, str]) -> Source:
+def _named_source(path: Path, is_quoted: bool, texts: Texts) -> Source:
     """The text of the URDF that a description names, or the one in its place."""
     found = _open(path, texts)
     return replace(found, is_quoted=is_quoted) if isinstance(found, Source) else _read(texts, path, is_quoted)
@@ -374,6 +373,7 @@ def _may_read(
     description: Description | None,
     diagnostics: Diagnostics,
     confined: bool,
+    texts: Texts,
 ) -> bool:
     """Whether the URDF that the description names exists, and is in its folder if files are confined to it.
 
@@ -385,7 +385,7 @@ def _may_read(
             hint = "move the URDF into the folder, or give it with --urdf (urdf= in Python)"
             diagnostics.report("file-unreadable", message, description.document.place(("urdf",)), hint)
         return False
-    if not os.path.lexists(path):
+    if not (os.fspath(path) in texts or os.path.lexists(path)):
         if description is not None:
             report_missing_urdf(path, description, diagnostics)
         return False

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import os
 import stat
+from collections import UserDict
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from eurdf.diagnostics import Edit, FileError, Place
+from eurdf.diagnostics import Edit, FileError, Fix, Place
 from eurdf.diagnostics.lines import Lines
 from eurdf.reading.other_formats import of_binary, other_format
 from eurdf.regular_file import open_now, open_regular, reason_of
@@ -83,6 +84,30 @@ class Source:
         return self.lines if self.is_quoted else None
 
 
+class Texts(UserDict[str, str]):
+    """Texts that are read in place of those of files; any path that leads to a file finds its text."""
+
+    def __getitem__(self, file: str) -> str:
+        return self.data[_real(file)]
+
+    def __setitem__(self, file: str, text: str) -> None:
+        self.data[_real(file)] = text
+
+    def __delitem__(self, file: str) -> None:
+        del self.data[_real(file)]
+
+    def __contains__(self, file: object) -> bool:
+        return _real(str(file)) in self.data
+
+
+def _real(file: str) -> str:
+    """The path with every symbolic link followed; itself if it cannot be a path."""
+    try:
+        return os.path.realpath(file)
+    except ValueError:
+        return file
+
+
 def read_source(path: str | os.PathLike[str], limit: int = FILE_LIMIT, *, is_quoted: bool = True) -> Source:
     """Read a text file; lines of it are shown in diagnostics if ``is_quoted``.
 
@@ -102,7 +127,9 @@ def decoded(data: bytes, file: str, base: Path | None = None, *, is_quoted: bool
     # The first bytes distinguish UTF-16 and UTF-32 from UTF-8, with or without a byte order mark (YAML 1.2.2, 5.2).
     if data[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\0" in data[:2]:
         message = "the file begins as UTF-16, UTF-32 or binary data; it must be UTF-8 text"
-        raise FileError("file-not-utf8", message, Place(file, 1, 1), "save it as UTF-8")
+        text = of_utf16(data)
+        fixes = () if text is None else (Fix("save it as UTF-8", (Edit(file, 0, 0, "", Lines(text)),)),)
+        raise FileError("file-not-utf8", message, Place(file, 1, 1), "save it as UTF-8", fixes)
     data = data.removeprefix(BOM)
     try:
         text = data.decode()
@@ -159,11 +186,21 @@ def unreadable(file: str, shown: str, error: OSError) -> FileError:
     return FileError("file-unreadable", f"{shown} cannot be read: {reason_of(error)}", Place(file))
 
 
-def too_large(file: str, most: str) -> FileError:
+def too_large(file: str, most: str, fixes: tuple[Fix, ...] = ()) -> FileError:
     """The error of a file that is beyond a limit."""
-    return FileError("file-too-large", f"the file has more than {most}, which is the maximum", Place(file))
+    message = f"the file has more than {most}, which is the maximum"
+    return FileError("file-too-large", message, Place(file), proposals=fixes)
 
 
 def short(text: str) -> str:
     """What a message quotes of a text of any length."""
     return text if len(text) <= 60 else text[:57] + "..."
+
+
+def of_utf16(data: bytes) -> str | None:
+    """The text that some bytes are in UTF-16, with or without a byte order mark; None if they are none."""
+    marked = data[:2] in (b"\xff\xfe", b"\xfe\xff")
+    try:
+        return data.decode("utf-16" if marked else "utf-16-be" if data[:1] == b"\0" else "utf-16-le")
+    except UnicodeDecodeError:
+        return None

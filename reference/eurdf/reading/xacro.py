@@ -18,7 +18,7 @@ from eurdf.diagnostics import did_you_mean
 from eurdf.errors import CannotExpand, MissingExtra
 from eurdf.mesh_files.folders import Folders
 from eurdf.reading.resource import package_homes
-from eurdf.reading.source import FILE_LIMIT, Source, too_large
+from eurdf.reading.source import FILE_LIMIT, Source, Texts, too_large
 from eurdf.sandbox import run
 
 #: Time allowed for an expansion, s.
@@ -86,6 +86,23 @@ def expand(
     text = answer["urdf"]
     source = Source(f"{file} (expanded)", text, text.encode(), folder, made_from=(file, *answer["files"]))
     return source, answer["warnings"]
+
+
+def expand_once(
+    texts: Texts,
+    path: Path,
+    arguments: Mapping[str, str] | None,
+    package_dirs: Sequence[str | os.PathLike[str]],
+    folders: Folders | None,
+) -> tuple[Source, str]:
+    """As `expand`, or what is among the texts because it was expanded before."""
+    name, warned = f"{path} (expanded)", f"{path} (warnings)"
+    if name in texts:
+        source = Source(name, texts[name], texts[name].encode(), path.parent, made_from=(os.fspath(path),))
+        return source, texts[warned]
+    source, warnings = expand(path, arguments, package_dirs, folders)
+    texts[name], texts[warned] = source.text, warnings
+    return source, warnings
 
 
 def _answer(file: str, request: Mapping[str, object]) -> dict[str, Any]:

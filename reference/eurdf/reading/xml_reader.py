@@ -77,7 +77,7 @@ class XmlDocument:
 
     def restated(self, element: etree._Element, attribute: str, value: str) -> tuple[Edit]:
         """The edit that gives an attribute another value."""
-        return (self.source.edit(*self.span(element, attribute), value.translate(_ESCAPES)),)
+        return (self.source.edit(*self.span(element, attribute), escaped(value)),)
 
     def renamed(self, element: etree._Element, attribute: str, name: str) -> tuple[Edit]:
         """The edit that gives an attribute another name."""
@@ -128,6 +128,11 @@ class XmlDocument:
             steps.append(f"/{written_name(step, step.tag)}{index}")
             step = parent
         return "".join(reversed(steps))
+
+
+def escaped(value: str) -> str:
+    """The value of an attribute as a file has it, in quotes of either kind."""
+    return value.translate(_ESCAPES)
 
 
 def written_name(element: etree._Element, name: str) -> str:

@@ -17,11 +17,11 @@ from yaml.error import MarkedYAMLError, YAMLError
 from yaml.events import AliasEvent, Event, MappingStartEvent, ScalarEvent, SequenceStartEvent, StreamEndEvent
 
 from eurdf.diagnostics import Diagnostics, Edit, FileError, Fix, Hint, Place, Proposals
+from eurdf.reading import yaml_syntax
 from eurdf.reading.core_schema import TAG_PREFIX, resolve, resolve_tagged
 from eurdf.reading.other_formats import of_text, other_format
 from eurdf.reading.source import FILE_LIMIT, Source, short, too_large
-from eurdf.reading.yaml_node import Alias, Node, Pointer, Span, YamlCollection, json_pointer
-from eurdf.reading.yaml_syntax import stray_mark, syntax_error, unusual_name, version_fix, without_other_breaks
+from eurdf.reading.yaml_node import Alias, Node, Pointer, Span, YamlCollection, json_pointer, start_of
 
 #: Maximum depth of nested mappings and lists, aliases expanded.
 DEPTH_LIMIT = 64
@@ -40,6 +40,8 @@ _CORE_TAGS = ("!!str", "!!int", "!!float", "!!bool", "!!null", "!!map", "!!seq")
 _BETWEEN_DOCUMENTS = re.compile(r"(?:\s|#[^\r\n]*|\.\.\.(?=\s))*")
 #: After a key: a colon, and a value that begins on the same line.
 _VALUE_BESIDE = re.compile(r"[ \t]*:[ \t]+[^\s#|>&!*]")
+#: A tag, behind an anchor if there is one, and the blanks behind it.
+_TAG = re.compile(r"(?:&[^\s,\[\]{}]+[ \t]+)?(![^\s,\[\]{}]*[ \t]*)")
 _KINDS = {dict: "a mapping", list: "a list", str: "a string", bool: "a boolean", type(None): "empty"}
 
 
@@ -134,21 +136,23 @@ def _read_nodes(source: Source) -> YamlCollection:
     """The top level of a file, or its first error."""
     if len(source.data) > FILE_LIMIT:
         raise too_large(source.file, f"{FILE_LIMIT:,} bytes")
-    text, original = without_other_breaks(source)
+    text, original = yaml_syntax.without_other_breaks(source)
     data = text.encode() if original else source.data
     text = source.text.rstrip(" ")
     if text != source.text and text[-1:] in "\r\n":
         data += b"\n"  # of a last line of blanks, without which libyaml would not see that it is one
     if data.count(b"\n%TAG") + data.count(b"\r%TAG") + data.startswith(b"%TAG") > DIRECTIVE_LIMIT:
-        raise too_large(source.file, f"{DIRECTIVE_LIMIT} %TAG directives")
+        raise too_large(
+            source.file, f"{DIRECTIVE_LIMIT} %TAG directives", yaml_syntax.tags_fix(source, 4 * DIRECTIVE_LIMIT)
+        )
     try:
         root = _NodeReader(source, CSafeLoader(data).get_event, original).read()
     except (YAMLError, UnicodeDecodeError) as error:
         if isinstance(error, MarkedYAMLError) and error.problem == _TOO_DEEP_TO_SCAN and error.problem_mark:
             start = data.decode()[: error.problem_mark.index].encode()
             _NodeReader(source, CSafeLoader(start).get_event, original).read()  # which refuses less depth
-        raise syntax_error(source, error) from None
-    if "\ufeff" in source.text and (mark := stray_mark(source, data)) is not None:
+        raise yaml_syntax.syntax_error(source, error) from None
+    if "\ufeff" in source.text and (mark := yaml_syntax.stray_mark(source, data)) is not None:
         raise mark
     return root
 
@@ -176,7 +180,9 @@ class _NodeReader:
         if document.version is not None and document.version != (1, 2):
             version = ".".join(map(str, document.version))
             message = f"the %YAML directive states version {version}; it must be 1.2"
-            raise self._error("yaml-version", message, document, "remove the directive", version_fix(self._source))
+            raise self._error(
+                "yaml-version", message, document, "remove the directive", yaml_syntax.version_fix(self._source)
+            )
         top_level, next_event = self._file.data, self._next_event
         while not top_level:
             event = next_event()
@@ -200,7 +206,8 @@ class _NodeReader:
         span = top if isinstance(top, tuple) else top.span
         # Of a value that is left out, there is no place to point at.
         place = Place(self._source.file) if span[0] == span[1] else self._source.place(*span)
-        raise FileError("yaml-empty", f"{message}; it must be a mapping", place)
+        fixes = yaml_syntax.mapping_fix(self._source, start_of(top), value)
+        raise FileError("yaml-empty", f"{message}; it must be a mapping", place, None, fixes)
 
     def _next_node(self) -> None:
         """EU-FIL-002: one more node."""
@@ -274,7 +281,9 @@ class _NodeReader:
         name = str(event.anchor)
         shown = short(name)
         if name not in self._anchors:
-            raise self._error("yaml-alias", f"the alias '*{shown}' has no anchor '&{shown}' before it", event)
+            message = f"the alias '*{shown}' has no anchor '&{shown}' before it"
+            fixes = yaml_syntax.anchor_fix(self._source, *_span(event), name)
+            raise self._error("yaml-alias", message, event, None, fixes)
         value, target = self._anchors[name]
         collection = target if isinstance(target, YamlCollection) else None
         if collection is not None and collection.is_open:
@@ -303,7 +312,7 @@ class _NodeReader:
         text, name = self._source.text, f"{sign}{event.anchor}"
         begin = text.find(name, event.start_mark.index)
         if text[begin + len(name) : begin + len(name) + 1].strip(" \t\r\n,[]{}"):
-            raise unusual_name(self._source.place(begin, begin + len(name)))
+            raise yaml_syntax.unusual_name(self._source.place(begin, begin + len(name)))
 
     def _key(self, value: Any, event: Event, span: tuple[int, int]) -> None:
         """Take a value as the next key of the innermost mapping."""
@@ -323,7 +332,9 @@ class _NodeReader:
             mapping.key, mapping.awaits_key = value, False  # for the pointer
             message = f"the key {_quote(value)} occurs twice in one mapping"
             hint = f"it first occurs on line {line}"
-            raise self._error("yaml-duplicate-key", message, event, hint, self._repeated(span, line))
+            error = self._error("yaml-duplicate-key", message, event, hint, self._repeated(span, line))
+            error.diagnostic.related = self._source.place(*mapping.keys[value])
+            raise error
         mapping.key, mapping.awaits_key = value, False
         mapping.keys[value] = span
 
@@ -356,9 +367,11 @@ class _NodeReader:
 
     def _tag_error(self, event: Any, what: str) -> FileError:
         shown = event.tag.replace(TAG_PREFIX, "!!", 1)
+        found = _TAG.match(self._source.text, event.start_mark.index)
+        fixes = () if found is None else (Fix("remove the tag", (self._source.edit(*found.span(1), ""),)),)
         if shown in _CORE_TAGS:
-            return self._error("yaml-unknown-tag", f"{what} does not match the tag '{shown}'", event)
-        return self._error("yaml-unknown-tag", f"the tag {_quote(shown)} is unknown", event, "remove it")
+            return self._error("yaml-unknown-tag", f"{what} does not match the tag '{shown}'", event, None, fixes)
+        return self._error("yaml-unknown-tag", f"the tag {_quote(shown)} is unknown", event, "remove it", fixes)
 
     def _error(
         self, code: str, message: str, event: Event, hint: str | None = None, fixes: tuple[Fix, ...] = ()

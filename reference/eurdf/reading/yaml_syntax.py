@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from itertools import islice
 from typing import Any, NamedTuple
 
 import yaml
@@ -12,7 +13,7 @@ from yaml.error import MarkedYAMLError, YAMLError
 
 from eurdf.diagnostics import FileError, Fix, Place
 from eurdf.reading.indentation import first_line_hint, indentation_hint
-from eurdf.reading.source import Source
+from eurdf.reading.source import Source, short
 
 #: Characters that libyaml refuses: those that are not printable (YAML 1.2.2, section 5.1). YAML allows them in quotes,
 #: if they are not among U+0000 to U+001F, but a parser need not (EU-YML-012).
@@ -113,6 +114,33 @@ def version_fix(source: Source) -> tuple[Fix, ...]:
     """The proposal to state version 1.2, which is how the file is read."""
     found = re.search(r"^%YAML[ \t]+(\d+\.\d+)", source.text, re.MULTILINE)
     return () if found is None else (Fix("write %YAML 1.2", (source.edit(*found.span(1), "1.2"),)),)
+
+
+def tags_fix(source: Source, most: int) -> tuple[Fix, ...]:
+    """The proposal to remove the %TAG directives of a file, so many at most."""
+    found = islice(re.finditer(r"(?m)^%TAG[^\r\n]*(?:\r\n?|\n|$)", source.text), most)
+    return (Fix("remove them: no tag can use them", tuple(source.edit(*each.span(), "") for each in found)),)
+
+
+def mapping_fix(source: Source, start: int, value: object) -> tuple[Fix, ...]:
+    """The only item of a list, or a key and its value with a colon between them, as the top level."""
+    if isinstance(value, list) and len(value) == 1 and source.text.startswith("-", start):
+        return (Fix("remove the '-'", (source.edit(start, start + 1, " "),)),)
+    found = re.compile(r"[A-Za-z_]\w*([ \t]+)\S.*").match(source.text, start)
+    if found is None or value != found[0].rstrip():
+        return ()
+    return (Fix("write a colon after the key", (source.edit(*found.span(1), ": "),)),)
+
+
+def anchor_fix(source: Source, start: int, end: int, name: str) -> tuple[Fix, ...]:
+    """The anchor where its first alias is, and an alias where it was, if its value is on one line."""
+    value = r"(?:\[[^\[\]\n]*\]|\{[^{}\n]*\}|[^\s,#&*!\[\]{}][^,#\[\]{}\n]*)"
+    found = re.compile(rf"&{re.escape(name)}[ \t]+{value}").search(source.text, end)
+    if found is None:
+        return ()
+    anchored, last = found[0].rstrip(), found.start() + len(found[0].rstrip())
+    edits = source.edit(start, end, anchored), source.edit(found.start(), last, source.text[start:end])
+    return (Fix(f"write '{short(anchored)}' here, and the alias where that is", edits),)
 
 
 def syntax_error(source: Source, error: YAMLError | UnicodeDecodeError) -> FileError:
