@@ -64,7 +64,7 @@ ERRORS = [
     ("unknown-joint", ONE, "joint_name: [elbow,", "joint_name: [ellbow,", "write 'elbow'"),
     ("unknown-actuator", ONE, "name_mot: [motor, grip,", "name_mot: [motor, elbow,", "'elbow_Z' or 'elbow_X'"),
     ("actuator-merged", ONE, "name_mot: [motor, grip,", "name_mot: [motor, wrist_x,", "actuate 'wrist_z', or keep the three joints apart: give a link"),
-    ("duplicate-replacement", YAML, "[wrist_x, wrist_y, wrist_z]", "[wrist_x, wrist_x, wrist_z]", "different"),
+    ("duplicate-replacement", YAML, "[wrist_x, wrist_y, wrist_z]", "[wrist_x, wrist_x, wrist_z]", "write [wrist_x, wrist_y, wrist_z]"),
     # the URDF by itself
     ("urdf-not-found", YAML, "urdf: workbench.urdf", "urdf: workbnech.urdf", "workbench.urdf"),
     ("urdf-root-element", URDF, None, "<sdf/>", "this is SDFormat"),

@@ -24,6 +24,10 @@ _LOCAL = frozenset(
 )
 
 
+#: Codes whose fixes do not change how a robot moves, and what else an error hides then: no fix of them causes it.
+_STILL = frozenset({"coupling-joint", "joint-not-mimic"})
+_OF_MOTION = _LOCAL | {"x-dependent-actuators", "x-uncontrolled-motion", "x-actuator-several"}
+
 #: Codes of elements and attributes of a URDF, which the other elements say nothing of.
 _OF_ELEMENTS = frozenset(
     {"xml-syntax", "urdf-joint-type", "urdf-geometry", "urdf-missing-attribute", "urdf-missing-element"}
@@ -66,8 +70,11 @@ class Evidence:
         new = {each for each in self.counts if self.counts[each] > before.counts[each]}
         if is_of_the_text(code):
             return self.counts[code] < before.counts[code] and not any(REGISTRY[each].phase in _FILES for each in new)
-        if self.counts[code] >= before.counts[code] or not new <= (set() if before.is_whole else _LOCAL):
+        hidden = set() if before.is_whole else _OF_MOTION if code in _STILL else _LOCAL
+        if self.counts[code] >= before.counts[code] or not new <= hidden:
             return False
+        if code in _STILL and before.analysis is None:
+            return True
         if self.analysis is None:
             return before.analysis is None
         rigid = self._closures(lambda loop: not loop.mobility) & before._closures(lambda loop: bool(loop.mobility))

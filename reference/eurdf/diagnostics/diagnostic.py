@@ -71,6 +71,7 @@ class Diagnostic:
             by default, what the proposals ask.
         fix: The edits that do it; None unless a trial showed that they mend it, and that nothing else becomes worse.
         proposals: Fixes that have not been tried, the likeliest first.
+        related: Another place in the same file that it is about.
     """
 
     def __init__(
@@ -82,12 +83,13 @@ class Diagnostic:
         *,
         fix: Fix | None = None,
         proposals: tuple[Fix, ...] = (),
+        related: Place | None = None,
     ) -> None:
         self.code = code
         self.message = _bounded(message)
         hint = hint or " ".join([each.question for each in proposals if each.question][:ASKED]) or None
         self.hint = None if hint is None else _bounded(hint)
-        self.fix, self.proposals = fix, proposals
+        self.fix, self.proposals, self.related = fix, proposals, related
         self._place = place
 
     @cached_property
@@ -116,7 +118,8 @@ class Diagnostic:
         fix = next((each for each in right if each.summary), None)
         if fix is not None and fix.rivals and next(right, None) is not None:
             fix = None
-        return Diagnostic(self.code, self.message, self._place, fix.summary if fix else self.hint, fix=fix)
+        hint = fix.summary if fix else self.hint
+        return Diagnostic(self.code, self.message, self._place, hint, fix=fix, related=self.related)
 
     @property
     def severity(self) -> Severity:

@@ -14,6 +14,7 @@ from eurdf.format.value_types import (
     FRAME_NAME,
     JOINT_NAME,
     LINK_NAME,
+    MOVING_JOINT_NAME,
     NAME,
     NON_NEGATIVE,
     NON_ZERO,
@@ -273,7 +274,7 @@ class CouplingEntry(Entry):
     title = "Coupling"
     name: str = required(NAME, "Name", "Name of the coupling, unique among closures and couplings.", "knee_gear")
     joints: Mapping[str, float] = required(
-        ByName(NON_ZERO, 2),
+        ByName(NON_ZERO, 2, keys=MOVING_JOINT_NAME),
         "Joints",
         "By joint, its coefficient, not 0: the coordinates (rad, m) times the coefficients add up to 'offset'. Two or"
         " more revolute, continuous, prismatic or helical joints.",

@@ -8,6 +8,8 @@ from itertools import chain, count
 from typing import Any
 
 from eurdf.diagnostics import Edit, Fix, misspelt, renamings
+from eurdf.format.conventions import Version
+from eurdf.format.mappings import Record
 from eurdf.format.yaml_text import Value, flow, scalar
 from eurdf.reading.yaml_node import Alias, Node, Pointer, YamlCollection, end_of, start_of
 from eurdf.reading.yaml_reader import YamlDocument, YamlReporter
@@ -52,6 +54,12 @@ def free_name(name: str, taken: Container[str | None]) -> str:
 def renumbered(document: YamlDocument, pointer: Pointer, name: str, taken: Container[str | None]) -> Sequence[Fix]:
     """Another name in the place of one that is taken, and that nothing refers to."""
     return (restated(document, pointer, free_name(name, taken), "name it"),)
+
+
+def unsigned(document: YamlDocument, pointer: Pointer, value: Any) -> tuple[Fix, ...]:
+    """A number that must not be negative without its sign; -1 may mean no limit, and what is nearly 0 is rounded."""
+    is_signed = isinstance(value, int | float) and value < -1e-12 and value != -1
+    return (restated(document, pointer, -value),) if is_signed else ()
 
 
 def swapped(document: YamlDocument, one: Pointer, other: Pointer) -> Sequence[Fix]:
@@ -122,6 +130,24 @@ def removed(document: YamlDocument, pointer: Pointer, what: str) -> Sequence[Fix
     else:
         last = start(steps[1])
     return (Fix(f"remove {what}", (document.source.edit(first, last, ""),)),)
+
+
+def without_key(
+    document: YamlDocument, pointer: Pointer, version: Version, record: Record, others: Iterable[Record]
+) -> Sequence[Fix]:
+    """A key removed that belongs to another type than the one that a mapping states.
+
+    None if the mapping lacks a key that its type needs, or if it has all that the other type has: then the type may be
+    what is wrong.
+    """
+    stated, key = value_at(document, pointer[:-1]).keys(), pointer[-1]
+    kinds = record.values_of_type()
+    for form in others:
+        keys, of_form = form.keys(version), form.values_of_type()
+        if key in keys and (of_form in ((), kinds) or stated <= keys.keys()):
+            return ()
+    needed = {name for name, each in record.keys(version).items() if each.required}
+    return removed(document, pointer, f"'{key}'") if needed <= stated else ()
 
 
 def value_at(document: YamlDocument, pointer: Pointer) -> Any:

@@ -13,7 +13,7 @@ from eurdf.diagnostics import Diagnostic, Fix, renamings
 from eurdf.diagnostics.wording import similar
 from eurdf.format.closure_model import CLOSURE
 from eurdf.format.conventions import HINT, VERSION2_0, VERSION2_1, VERSION_KEY, Version
-from eurdf.format.fixes import added, free_name, listed, named, removed, renamed, restated
+from eurdf.format.fixes import added, free_name, listed, named, removed, renamed, restated, unsigned, without_key
 from eurdf.format.joint_model import ACTUATOR, JOINT, LimitsEntry
 from eurdf.format.mappings import OneOf, Record, in_order
 from eurdf.format.model import VERSION1, VERSION2
@@ -159,8 +159,9 @@ class _Messages:
         mapping, key = violation.pointer[:-1], str(violation.pointer[-1])
         place = self.place(violation.pointer, key=True)
         apart = {} if union is None else union.apart(record, self.version)
-        if key in apart:
-            return Diagnostic("conflicting-keys", f"{subject(mapping)}: {apart[key]}", place)
+        if key in apart and union is not None:
+            fixes = without_key(self.document, violation.pointer, self.version, record, union.records)
+            return Diagnostic("conflicting-keys", f"{subject(mapping)}: {apart[key]}", place, proposals=tuple(fixes))
         of_any_form = record if union is None else union
         word = key_meant(key, record.all_keys.keys() - self.mapping_at(mapping).keys())
         likely = meant or word or likeliest_key(key, (*record.all_keys, *apart))
@@ -232,7 +233,7 @@ class _Messages:
             hint = "without this key, the joint follows the <mimic> of the URDF"
             proposals = tuple(removed(self.document, pointer, "it: the joint follows the <mimic> of the URDF"))
             return Diagnostic(code, message, place, hint, proposals=proposals)
-        return Diagnostic(code, message, place)
+        return Diagnostic(code, message, place, proposals=unsigned(self.document, pointer, value))
 
     def wrong_choice(self, pointer: Pointer, value: Any, allowed: Sequence[str]) -> Diagnostic:
         """The diagnostic of a value that is not one of those allowed."""

@@ -16,6 +16,7 @@ from eurdf.format.joint_model import ACTUATOR, JOINT, Geared, JointEntry, OneOrL
 from eurdf.format.mappings import Entry, Record, entry, key, required
 from eurdf.format.value_types import (
     FRAME_NAME,
+    JOINT_NAME,
     MOVING_JOINT_NAME,
     NAME,
     NUMBER,
@@ -67,7 +68,7 @@ class Version2(Entry):
         default=(),
     )
     joints: tuple[JointEntry, ...] = key(
-        ByName(JOINT, entries=True),
+        ByName(JOINT, entries=True, keys=JOINT_NAME),
         "Joints",
         "By name, joints of a type that URDF lacks, and properties in place of the URDF's. The name is a joint of the"
         " URDF, or with 'merges' that of the joint made.",
@@ -89,7 +90,7 @@ class Version2(Entry):
         default=(),
     )
     configurations: Mapping[str, Mapping[str, tuple[float, ...]]] = key(
-        ByName(ByName(CoordinateList("Coordinates", NUMBER, 7))),
+        ByName(ByName(CoordinateList("Coordinates", NUMBER, 7), keys=MOVING_JOINT_NAME)),
         "Configurations",
         "By name, the coordinates of joints: a number or a list. Angle in rad, length in m; spherical: a unit"
         " quaternion x y z w; universal: two angles; cylindrical: length, angle; planar: x, y, angle; floating: x y z"

@@ -294,12 +294,15 @@ class ByName(ValueType):
         item: Type of the values.
         least: Smallest number of names, 0 or 2.
         entries: Whether the values are entries that have their name; the mapping is then read as a tuple of them.
+        keys: What the names are those of; None for names that are given here.
     """
 
     types = (dict,)
 
-    def __init__(self, item: ValueType, least: Literal[0, 2] = 0, *, entries: bool = False) -> None:
-        self.item, self.least, self._entries = item, least, entries
+    def __init__(
+        self, item: ValueType, least: Literal[0, 2] = 0, *, entries: bool = False, keys: Text | None = None
+    ) -> None:
+        self.item, self.least, self._entries, self.keys = item, least, entries, keys
 
     def check(self, value: Any, at: Pointer, file: Check) -> None:
         if type(value) is not dict:

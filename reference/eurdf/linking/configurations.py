@@ -162,6 +162,8 @@ def _coordinates(
         )
         if joint.type.is_axial and len(values) == 4 and abs(math.hypot(*values) - 1.0) <= _ROUNDED:
             hint = f"is '{joint.name}: spherical' missing under 'joints'? these are the coordinates of a quaternion"
+        elif joint.type.is_axial and len(values) == 2 and abs(math.hypot(*values) - 1.0) <= _ROUNDED:
+            exact = round(math.atan2(values[1], values[0]), 9)  # cosine and sine, as Pinocchio has them
     elif start is not None:
         quaternion = values[start : start + 4]
         norm = math.sqrt(sum(value * value for value in quaternion))

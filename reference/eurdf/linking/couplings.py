@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import partial
 
-from eurdf.diagnostics import Hint
+from eurdf.diagnostics import Fix, Hint
 from eurdf.format.closure_model import CouplingEntry
-from eurdf.format.fixes import renumbered
+from eurdf.format.fixes import named, renumbered
+from eurdf.format.yaml_text import flow
 from eurdf.linking.joints import Joints
 from eurdf.mechanism.constraint import Coupling
-from eurdf.mechanism.joint import drivers
-from eurdf.reading.yaml_node import Pointer
+from eurdf.mechanism.joint import Mimic, drivers
+from eurdf.reading.yaml_reader import YamlDocument
 
 #: Coefficients relative to the largest one are equal if they differ by no more.
 _EQUAL = 1e-9
@@ -34,28 +35,22 @@ def link_couplings(entries: Sequence[CouplingEntry], closures: Sequence[str], jo
             )
             continue
         taken[entry.name] = "coupling"
-        checked = [
-            name in joints.faulty or _can_be_coupled(name, (*entry.pointer, "joints", name), joints)
-            for name in entry.joints
-        ]
+        checked = [name in joints.faulty or _can_be_coupled(name, entry, joints) for name in entry.joints]
         if not all(checked):
             continue
         twin = next((each for each in couplings if _proportional(dict(each.coefficients), entry.joints)), None)
         if twin is not None:
-            report(
-                "coupling-duplicate",
-                f"coupling '{entry.name}' is a multiple of coupling '{twin.name}'",
-                entry.pointer,
-                "which of them relates other joints?",
-            )
+            message = f"coupling '{entry.name}' is a multiple of coupling '{twin.name}'"
+            report("coupling-duplicate", message, entry.pointer, "which of them relates other joints?")
             continue
         couplings.append(Coupling(entry.name, tuple(entry.joints.items()), entry.offset))
     return tuple(couplings)
 
 
-def _can_be_coupled(name: str, pointer: Pointer, joints: Joints) -> bool:
+def _can_be_coupled(name: str, entry: CouplingEntry, joints: Joints) -> bool:
     """EU-CPL-002, EU-CPL-003: a joint exists, and has one coordinate, which is its own."""
-    merged, report = joints.merged, joints.reporter.report
+    merged, report, pointer = joints.merged, joints.reporter.report, (*entry.pointer, "joints", name)
+    fixes: Sequence[Fix] = ()
     joint = joints.by_name.get(name)
     hint: Hint
     if joint is None and name not in merged:
@@ -71,6 +66,8 @@ def _can_be_coupled(name: str, pointer: Pointer, joints: Joints) -> bool:
         why = f"it mimics '{leader.joint}'"
         hint = f"couple '{leader.joint}': '{name}' is {leader.multiplier:g} · '{leader.joint}'"
         hint += f" {'-' if leader.offset < 0.0 else '+'} {abs(leader.offset):g}" if leader.offset else ""
+        if not leader.offset and leader.joint not in entry.joints:
+            fixes = (_with_leader(name, entry, leader, joints.reporter.document),)
     elif joint.type.is_fixed:
         why, hint = "it is fixed", "leave it out; if it is locked at an angle, add what it contributes to the offset"
     elif joint.type.nv != 1:
@@ -78,8 +75,15 @@ def _can_be_coupled(name: str, pointer: Pointer, joints: Joints) -> bool:
         hint = "couple revolute, continuous, prismatic or helical joints"
     else:
         return True
-    report("coupling-joint", f"joint '{name}' cannot be coupled: {why}", pointer, hint, key=True)
+    report("coupling-joint", f"joint '{name}' cannot be coupled: {why}", pointer, hint, fixes, key=True)
     return False
+
+
+def _with_leader(name: str, entry: CouplingEntry, leader: Mimic, document: YamlDocument) -> Fix:
+    """The same relation with the joint that a mimic joint is a multiple of, and without that one."""
+    pointer, coefficient = (*entry.pointer, "joints", name), entry.joints[name] * leader.multiplier
+    edits = *named(document, pointer, True, leader.joint), document.edit(pointer, flow(coefficient))
+    return Fix(f"write {leader.joint}: {flow(coefficient)}", edits)
 
 
 def _proportional(one: Mapping[str, float], other: Mapping[str, float]) -> bool:

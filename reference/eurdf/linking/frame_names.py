@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import chain
@@ -10,11 +10,12 @@ from itertools import chain
 from eurdf.diagnostics import Fix
 from eurdf.format.closure_model import Frame as FrameEntry
 from eurdf.format.closure_model import FrameReference, NamedFrame
-from eurdf.format.fixes import report_name, restated
+from eurdf.format.fixes import renumbered, report_name, restated
 from eurdf.linking.joints import Joints
 from eurdf.mechanism.body import Anchor, Frame
 from eurdf.mechanism.pose import Pose
 from eurdf.reading.yaml_node import Pointer
+from eurdf.reading.yaml_reader import YamlDocument
 
 
 class FrameNames:
@@ -37,6 +38,7 @@ class FrameNames:
                     f"there is already a {what} '{entry.name}'",
                     (*entry.pointer, "name"),
                     "give the frame another name",
+                    partial(frame_renumbered, self._made.reporter.document, entry, self.known()),
                 )
                 continue
             anchor = self.find(entry)
@@ -113,3 +115,10 @@ class FrameNames:
     def _report_unknown(self, name: str, what: str, pointer: Pointer, known: Iterable[str]) -> None:
         message = f"'{name}' is not a {what} of the robot"
         report_name(self._made.reporter, "unknown-frame", message, pointer, name, known)
+
+
+def frame_renumbered(document: YamlDocument, entry: FrameEntry, taken: Iterable[str]) -> Sequence[Fix]:
+    """Another name for an added frame; none if a closure names it, for that can mean what has the name already."""
+    if any(entry.name in closure["frames"] for closure in document.data.get("closures", ())):
+        return ()
+    return renumbered(document, (*entry.pointer, "name"), entry.name, {*taken, entry.name})

@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import partial
 from types import MappingProxyType
 
-from eurdf.diagnostics import Diagnostics, FileError
+from eurdf.diagnostics import Diagnostics, FileError, Proposals
 from eurdf.format.closure_model import FrameReference, NamedFrame
 from eurdf.format.model import Description
 from eurdf.format.read import read_description
@@ -16,7 +16,7 @@ from eurdf.linking.actuators import link_actuators, with_motor
 from eurdf.linking.closures import link_closures
 from eurdf.linking.configurations import link_configurations
 from eurdf.linking.couplings import link_couplings
-from eurdf.linking.frame_names import FrameNames
+from eurdf.linking.frame_names import FrameNames, frame_renumbered
 from eurdf.linking.joints import Joints, bodies_of, check_ranges, joint_of
 from eurdf.linking.mimics import check_chains, freed_joints, led_configurations
 from eurdf.linking.replacement import replace_joints
@@ -25,7 +25,7 @@ from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, Motor, Root, root_joint
 from eurdf.mechanism.spanning_tree import depth_first, rigid_roots
 from eurdf.reading.source import Source
-from eurdf.reading.yaml_node import json_pointer
+from eurdf.reading.yaml_node import Pointer, json_pointer
 from eurdf.reading.yaml_reader import YamlReporter, read_yaml
 
 #: Velocities that the joints of a robot may have. The memory of a model grows with the square of their number.
@@ -212,15 +212,19 @@ def _closure_links(description: Description, urdf: Urdf) -> set[str]:
 def _reserve_names(description: Description, reporter: YamlReporter, root: Root) -> None:
     """EU-URD-011: what the description names anew takes no name that the model needs for itself."""
     reserved = ("universe", ROOT_JOINT) if root == "floating" else ("universe",)
-    named = [("joint", entry.name, entry.pointer, True) for entry in description.joints if entry.merges]
-    named += [("frame", entry.name, (*entry.pointer, "name"), False) for entry in description.frames]
-    for kind, name, pointer, key in named:
+    named: list[tuple[str, str, Pointer, bool, Proposals]]
+    named = [("joint", entry.name, entry.pointer, True, ()) for entry in description.joints if entry.merges]
+    for entry in description.frames:
+        fixes = partial(frame_renumbered, reporter.document, entry, [frame.name for frame in description.frames])
+        named.append(("frame", entry.name, (*entry.pointer, "name"), False, fixes))
+    for kind, name, pointer, key, proposals in named:
         if name in reserved:
             reporter.report(
                 "urdf-reserved-name",
                 f"'{name}' is reserved for the model, and cannot be the name of a {kind}",
                 pointer,
                 f"give the {kind} another name",
+                proposals,
                 key=key,
             )
 

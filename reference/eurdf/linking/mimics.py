@@ -32,7 +32,8 @@ def freed_joints(entries: Iterable[JointEntry], urdf: Urdf, reporter: YamlReport
             what = f"joint '{entry.name}' mimics no other" if not entry.merges else "none of the merged joints is one"
             message = f"'mimic: false' frees a mimic joint, but {what}"
             pointer = (*entry.pointer, "mimic")
-            fixes = removed(reporter.document, pointer, "'mimic'")
+            mimics = any(joint.mimic for joint in urdf.joints.values())  # one of them may be meant
+            fixes = () if mimics else removed(reporter.document, pointer, "'mimic'")
             reporter.report("joint-not-mimic", message, pointer, "which joint mimics another?", fixes)
         freed |= mimicking
     return freed

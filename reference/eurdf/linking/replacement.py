@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import replace
-from itertools import permutations
+from functools import partial
+from itertools import permutations, product
 from typing import NamedTuple
 
-from eurdf.diagnostics import Fix, Hint
+from eurdf.diagnostics import Fix, Hint, Proposals
 from eurdf.format.closure_model import AXES
 from eurdf.format.conventions import HINT, is_too_small, too_small
-from eurdf.format.fixes import removed, restated, swapped
+from eurdf.format.fixes import free_name, named, removed, restated, swapped
 from eurdf.format.joint_model import JointEntry
 from eurdf.linking.joints import Joints
 from eurdf.linking.merging import PARALLEL, NotMergeable, check_chain, find_chains, merge
@@ -79,7 +81,7 @@ class _Replacement(NamedTuple):
         message: str,
         *keys: str | int,
         hint: Hint = None,
-        proposals: Sequence[Fix] = (),
+        proposals: Proposals = (),
         key: bool = False,
     ) -> None:
         """Report at the entry, or at what it has under the keys."""
@@ -142,7 +144,8 @@ class _Replacement(NamedTuple):
             at = ("merges", index)
             if name in entry.merges[:index]:
                 message = f"joint '{name}' occurs twice among the joints to merge"
-                self.report("duplicate-replacement", message, *at, hint="name three different joints")
+                hint, fixes = "name three different joints", partial(self.chains, name)
+                self.report("duplicate-replacement", message, *at, hint=hint, proposals=fixes)
                 return None
             if name in joints.merged:
                 message = f"joint '{name}' is already merged into '{joints.merged[name]}'"
@@ -157,7 +160,9 @@ class _Replacement(NamedTuple):
         if entry.name != third.name if entry.name in joints.urdf.joints else entry.name in joints.by_name:
             message = f"there is already a joint '{entry.name}'"
             hint = f"give the merged joint a new name, or the name of the last of the three joints, '{third.name}'"
-            self.report("duplicate-joint-name", message, hint=hint, key=True)
+            other = free_name(entry.name, {*joints.urdf.joints, *joints.by_name})
+            fix = Fix(f"name it {other}", named(joints.reporter.document, entry.pointer, True, other))
+            self.report("duplicate-joint-name", message, hint=hint, key=True, proposals=[fix])
             return None
         try:
             *inner, ball = merge(check_chain((first, second, third), joints.urdf, self.closure_links), entry.name)
@@ -172,6 +177,19 @@ class _Replacement(NamedTuple):
         del joints.by_name[third.name]
         joints.merged.update({joint.name: entry.name for joint in chain if joint.name != entry.name})
         return ball
+
+    def chains(self, twice: str) -> Iterator[Fix]:
+        """Proposals for a joint that occurs twice among those to merge: another one, for which they are a chain."""
+        joints, pointer = self.joints, (*self.entry.pointer, "merges")
+        for name, index in product(joints.urdf.joints, range(3)):
+            merges = [*self.entry.merges]
+            if merges[index] != twice or name in merges or name in joints.merged:
+                continue
+            merges[index] = name
+            with suppress(NotMergeable, KeyError):
+                first, second, third = (joints.by_name[each] for each in merges)
+                check_chain((first, second, third), joints.urdf, self.closure_links)
+                yield replace(restated(joints.reporter.document, pointer, merges), rivals=True)
 
     # -- new types ------------------------------------------------------------------------------------------------
 

@@ -38,7 +38,8 @@ class _Known(NamedTuple):
     others: tuple[str, ...] = ()
 
 
-_KNOWN = {
+#: By tag.
+KNOWN = {
     "robot": _Known(("link", "joint", "material")),
     "link": _Known(("inertial", "visual", "collision")),
     "inertial": _Known(("origin",), ("mass", "inertia")),
@@ -53,9 +54,9 @@ _KNOWN = {
     "dynamics": _Known(attributes=("damping", "friction")),
     "mimic": _Known(attributes=("multiplier", "offset"), others=("joint",)),
 }
-_KNOWN_CHILDREN = {tag: frozenset((*known.children, *known.needed)) for tag, known in _KNOWN.items()}
+_KNOWN_CHILDREN = {tag: frozenset((*known.children, *known.needed)) for tag, known in KNOWN.items()}
 _KNOWN_ATTRIBUTES = {
-    tag: frozenset((*known.attributes, *known.others)) for tag, known in _KNOWN.items() if known.attributes
+    tag: frozenset((*known.attributes, *known.others)) for tag, known in KNOWN.items() if known.attributes
 }
 
 #: Attributes of limits, which may be beyond `LARGEST` on the side where they do not limit: the sign of that side.
@@ -271,7 +272,7 @@ class UrdfReader:
         tag = child.tag
         if not isinstance(tag, str):
             return
-        optional = _KNOWN[str(parent.tag)].children
+        optional = KNOWN[str(parent.tag)].children
         kind = URDF_JOINT_TYPES.get(parent.get("type", "")) if parent.tag == "joint" else None
         if kind is not None and kind.is_ranged:
             optional = tuple(other for other in optional if other != "limit")
@@ -283,7 +284,7 @@ class UrdfReader:
     def attributes(self, element: Element, optional: tuple[str, ...] | None = None) -> bool:
         """EU-URD-026: whether an unknown attribute has a name near that of an optional one, which is warned of."""
         tag = str(element.tag)
-        known, optional = _KNOWN_ATTRIBUTES[tag], optional or _KNOWN[tag].attributes
+        known, optional = _KNOWN_ATTRIBUTES[tag], optional or KNOWN[tag].attributes
         is_misspelt = False
         for attribute in map(str, element.keys()):
             if attribute not in known and (meant := self.near_miss(attribute, optional)):
@@ -330,7 +331,7 @@ class UrdfReader:
                 self.attributes(element)
                 self.later(element, "quat_xyzw", "1.1")
             else:
-                self.attributes(element, (*_KNOWN["origin"].attributes, "quat_xyzw"))
+                self.attributes(element, (*KNOWN["origin"].attributes, "quat_xyzw"))
                 quaternion_text = element.get("quat_xyzw")
         text = (xyz_text, rpy_text, quaternion_text)
         pose = self._poses.get(text)
