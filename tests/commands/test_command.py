@@ -73,9 +73,9 @@ def test_shared_options_have_the_same_help(capsys: pytest.CaptureFixture[str], m
         assert len({option(text, name) for text in texts}) == 1
     paths = [option(text, "PATH") for text in of_robots]
     assert all(path.startswith(paths[1]) for path in paths)
-    assert set(COMMANDS) == {*OF_ROBOTS, *OF_URDFS, "import", "robots", "certify", "completion"}
+    assert set(COMMANDS) == {*OF_ROBOTS, *OF_URDFS, "import", "robots", "certify", "completion", "server"}
 
 
-@pytest.mark.parametrize("command", sorted({*COMMANDS} - {"certify", "completion"}))
+@pytest.mark.parametrize("command", sorted({*COMMANDS} - {"certify", "completion", "server"}))
 def test_results_are_also_written_as_json(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert option(help_of(command, capsys), "--json")

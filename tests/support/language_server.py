@@ -1,14 +1,14 @@
-"""An editor, as far as the YAML language server sees one: it opens files, and asks for completion and hover text.
+"""An editor, as far as a language server sees one: it opens files, and asks for completion and hover text.
 
-The server is the real one, `yaml-language-server` of npm, which `tests/support/editor/package.json` names; VS Code's
-YAML extension, Neovim, Emacs and others run it.
+The server is `eurdf server`, or `yaml-language-server` of npm, which `tests/support/editor/package.json` names; VS
+Code's YAML extension, Neovim, Emacs and others run it.
 """
 
 from __future__ import annotations
 
 import asyncio
 import shutil
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Sequence
 from pathlib import Path
 from typing import TypeVar
 
@@ -33,15 +33,21 @@ _Answer = TypeVar("_Answer")
 
 
 class Editor:
-    """An editor with a YAML language server and no settings."""
+    """An editor with a language server and no settings.
 
-    def __init__(self) -> None:
+    Attributes:
+        found: What is underlined, by URI.
+    """
+
+    def __init__(self, command: Sequence[str]) -> None:
+        self._command = command
         self._client = BaseLanguageClient("editor", "1")
-        self._found: dict[str, list[lsp.Diagnostic]] = {}
+        self.found: dict[str, list[lsp.Diagnostic]] = {}
+        self._version = 1
 
         @self._client.feature(lsp.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)
         def _(params: lsp.PublishDiagnosticsParams) -> None:
-            self._found[params.uri] = list(params.diagnostics)
+            self.found[params.uri] = list(params.diagnostics)
 
         @self._client.feature(lsp.WORKSPACE_CONFIGURATION)
         def _(params: lsp.ConfigurationParams) -> list[object]:
@@ -54,8 +60,7 @@ class Editor:
             return None
 
     async def start(self) -> None:
-        assert NODE is not None
-        await self._client.start_io(NODE, str(SERVER), "--stdio")
+        await self._client.start_io(*self._command)
         item = lsp.ClientCompletionItemOptions(snippet_support=True)
         document = lsp.TextDocumentClientCapabilities(
             completion=lsp.CompletionClientCapabilities(completion_item=item), hover=lsp.HoverClientCapabilities()
@@ -74,9 +79,43 @@ class Editor:
         uri = path.as_uri()
         text = path.read_text(encoding="utf-8")
         self._client.text_document_did_open(lsp.DidOpenTextDocumentParams(lsp.TextDocumentItem(uri, "yaml", 1, text)))
-        while uri not in self._found:
+        while uri not in self.found:
             await asyncio.sleep(0.02)
-        return sorted((at.range.start.line + 1, at.range.start.character + 1, at.message) for at in self._found[uri])
+        return sorted((at.range.start.line + 1, at.range.start.character + 1, at.message) for at in self.found[uri])
+
+    async def type(self, path: Path, text: str, *, of: Path | None = None) -> list[lsp.Diagnostic]:
+        """Give a file that is open another text, and wait for what is underlined in it, or in another file."""
+        self._version += 1
+        document = lsp.VersionedTextDocumentIdentifier(version=self._version, uri=path.as_uri())
+        change = lsp.TextDocumentContentChangeWholeDocument(text=text)
+        params = lsp.DidChangeTextDocumentParams(document, [change])
+        uri = (of or path).as_uri()
+        self.found.pop(uri, None)
+        self._client.text_document_did_change(params)
+        while uri not in self.found:
+            await asyncio.sleep(0.01)
+        return self.found[uri]
+
+    def close(self, path: Path) -> None:
+        identifier = lsp.TextDocumentIdentifier(path.as_uri())
+        self._client.text_document_did_close(lsp.DidCloseTextDocumentParams(identifier))
+
+    async def code_actions(self, path: Path, where: lsp.Range) -> list[lsp.CodeAction]:
+        document = lsp.TextDocumentIdentifier(path.as_uri())
+        params = lsp.CodeActionParams(document, where, lsp.CodeActionContext([]))
+        found = await self._client.text_document_code_action_async(params)
+        return [each for each in found or () if isinstance(each, lsp.CodeAction)]
+
+    async def code_lenses(self, path: Path) -> Sequence[lsp.CodeLens]:
+        params = lsp.CodeLensParams(lsp.TextDocumentIdentifier(path.as_uri()))
+        return await self._client.text_document_code_lens_async(params) or ()
+
+    async def rename(self, path: Path, at: lsp.Position, name: str) -> lsp.WorkspaceEdit | None:
+        params = lsp.RenameParams(lsp.TextDocumentIdentifier(path.as_uri()), at, name)
+        return await self._client.text_document_rename_async(params)
+
+    async def command(self, name: str, *arguments: object) -> None:
+        await self._client.workspace_execute_command_async(lsp.ExecuteCommandParams(name, list(arguments)))
 
     async def completions(self, path: Path, line: int, column: int) -> list[str]:
         """What is offered at a place of an open file, line and column from 1."""
@@ -95,11 +134,11 @@ class Editor:
         return answer.contents.value
 
 
-def in_editor(session: Callable[[Editor], Awaitable[_Answer]]) -> _Answer:
-    """Run a session in an editor that is started for it, and return what it returns."""
+def in_editor(session: Callable[[Editor], Awaitable[_Answer]], command: Sequence[str] = ()) -> _Answer:
+    """Run a session in an editor that is started for it, with the server of YAML by default; return what it returns."""
 
     async def run() -> _Answer:
-        editor = Editor()
+        editor = Editor(command or (str(NODE), str(SERVER), "--stdio"))
         await editor.start()
         try:
             return await session(editor)
