@@ -18,7 +18,7 @@ from eurdf.diagnostics.wording import visible
 from eurdf.errors import CannotRun
 from eurdf.loading import check_texts
 from eurdf.reading.robot_source import is_stream, is_text
-from eurdf.reading.source import BOM
+from eurdf.reading.source import BOM, of_utf16
 from eurdf.writing.atomic_file import write_together
 
 #: Rounds of fixes: one can show what another one, or an error, had hidden.
@@ -55,7 +55,7 @@ class Fixing:
         try:
             for file, text in self.texts.items():
                 data = Path(file).read_bytes()
-                if data.removeprefix(BOM) != self.before[file].encode():
+                if data.removeprefix(BOM) != self.before[file].encode() and of_utf16(data) != self.before[file]:
                     raise CannotRun(f"another program changed '{file}' in the meantime; nothing was written, try again")
                 files[file] = (BOM if data.startswith(BOM) else b"") + text.encode()
             write_together(files)

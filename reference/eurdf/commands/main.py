@@ -30,7 +30,7 @@ GROUPS = {
     "write a description": ("generate", "assemble", "migrate", "simplify", "schema"),
     "convert": ("export", "import", "serial"),
     "measure": ("transmission",),
-    "parsers and shells": ("certify", "completion"),
+    "parsers, editors and shells": ("certify", "server", "completion"),
 }
 COMMANDS = tuple(chain.from_iterable(GROUPS.values()))
 

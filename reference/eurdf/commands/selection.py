@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import os
-import re
 from collections.abc import Iterable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eurdf.collection import find_robot, has_urdf
-from eurdf.collection.near_paths import YAML_ENDINGS
+from eurdf.collection import DESCRIPTIONS, find_robot, has_urdf, is_description
 from eurdf.diagnostics import FileError
 from eurdf.errors import CannotRun, RobotNotFound
 from eurdf.reading.robot_source import is_stream, is_text
@@ -22,13 +21,6 @@ if TYPE_CHECKING:
 
 #: The name of the neutral configuration, unless the description has one of this name.
 NEUTRAL = "neutral"
-
-_DESCRIPTIONS = tuple(f"robot{ending}" for ending in YAML_ENDINGS)
-# The file name ending of descriptions in a folder with other YAML files; schema catalogs know it.
-_OWN_SUFFIXES = tuple(f".eurdf{ending}" for ending in YAML_ENDINGS)
-
-# Top-level keys that only descriptions of robots have, in version 2 or version 1.
-_FORMAT_KEY = re.compile(rb"""^(["']?)(?:extended_urdf|closed_loop)\1[ \t]*:""", re.MULTILINE)
 
 
 def select(paths: Iterable[str], allow_none: bool = False) -> list[str]:
@@ -87,7 +79,7 @@ def named_configuration(robot: Robot, name: str) -> Vector:
 
 
 def _robots_at(path: str, allow_none: bool) -> list[str]:
-    if os.path.isdir(path) and not any(os.path.isfile(os.path.join(path, name)) for name in _DESCRIPTIONS):
+    if os.path.isdir(path) and not any(os.path.isfile(os.path.join(path, name)) for name in DESCRIPTIONS):
         found = _robots_below(path)
         if found:
             return found
@@ -116,19 +108,19 @@ def _robots_below(folder: str) -> list[str]:
     found = []
     for place, folders, files in os.walk(folder, onerror=refuse):
         folders[:] = sorted(name for name in folders if not name.startswith("."))
-        if any(name in _DESCRIPTIONS for name in files):
+        if any(name in DESCRIPTIONS for name in files):
             found.append(place)
             continue
         found += [
             os.path.join(place, name)
             for name in sorted(files)
-            if name.endswith(_OWN_SUFFIXES) or (name.endswith(YAML_ENDINGS) and _describes_robot(Path(place, name)))
+            if is_description(name, partial(_begin, Path(place, name)))
         ]
     return found
 
 
-def _describes_robot(file: Path) -> bool:
+def _begin(file: Path) -> bytes:
     try:
-        return _FORMAT_KEY.search(begin_of_file(file, FILE_LIMIT)) is not None
+        return begin_of_file(file, FILE_LIMIT)
     except OSError:
-        return False
+        return b""
