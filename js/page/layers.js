@@ -8,7 +8,6 @@ import { Marks } from "./marks.js";
 const COLLISION = new MeshStandardMaterial({ color: 0xf59f00, transparent: true, opacity: 0.45, depthWrite: false });
 const INERTIA = new MeshStandardMaterial({ color: 0x4263eb, transparent: true, opacity: 0.4, depthWrite: false });
 const GHOST = new MeshStandardMaterial({ color: 0x74a0d8, transparent: true, opacity: 0.3, depthWrite: false, polygonOffset: true, polygonOffsetFactor: 1 });
-const BONE = 0x868e96;
 const MASS = 0xe8590c;
 export const AXES = { motor: 0x2b8a3e, passive: 0x1c7ed6, dependent: 0xf08c00 };
 
@@ -129,12 +128,7 @@ export class Layers extends Group {
   }
 
   skeleton() {
-    return this.marks((marks, size) =>
-      this.session.robot.joints.map(({ parent, child }) => {
-        const rod = marks.rod(0.003 * size, BONE);
-        return (kinematics) => rod.span(kinematics.pose(parent).p, kinematics.pose(child).p);
-      }),
-    );
+    return this.marks((marks, size) => marks.skeleton(this.session.robot, 0.003 * size));
   }
 
   /** The axes of moving joints: motors green, passive joints blue, dependent actuators orange. */

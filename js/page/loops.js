@@ -1,10 +1,9 @@
 // The loops of a robot in the scene: lines to both frames of each closure, red where a loop is open or stops a motion.
 
-import { Marks } from "./marks.js";
+import { CLOSED } from "../src/closing/tolerances.js";
+import { Marks, RED } from "./marks.js";
 
 const CLOSURE = 0x9c36b5;
-const RED = 0xe03131;
-const CLOSED = 1e-6; // a larger row of a residual is that of an open loop, m or rad
 const LINE = 0.003; // radius of a line, in sizes of the robot
 const DOT = 0.008;
 

@@ -2,6 +2,9 @@
 
 import { CylinderGeometry, Group, Mesh, MeshBasicMaterial, Quaternion, SphereGeometry, Vector3 } from "three";
 
+export const RED = 0xe03131; // of what is at a limit or open
+const BONE = 0x868e96;
+
 const Y = new Vector3(0, 1, 0);
 const ROD = new CylinderGeometry(1, 1, 1, 12, 1);
 const BALL = new SphereGeometry(1, 20, 14);
@@ -20,6 +23,15 @@ export class Marks extends Group {
     const mesh = this.made(BALL, color);
     mesh.scale.setScalar(radius);
     return mesh;
+  }
+
+  /** A rod from each link to those below it, which is a part of the upper link; what brings them to where links are. */
+  skeleton(robot, radius) {
+    return robot.joints.map(({ parent, child }) => {
+      const rod = this.rod(radius, BONE);
+      rod.mesh.userData.link = parent;
+      return (kinematics) => rod.span(kinematics.pose(parent).p, kinematics.pose(child).p);
+    });
   }
 
   made(geometry, color) {

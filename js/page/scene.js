@@ -3,10 +3,9 @@
 import { Box3, Color, Group, Vector3 } from "three";
 import { matrixOf, shapesOf } from "../src/three/shapes.js";
 import { Loops } from "./loops.js";
-import { Marks } from "./marks.js";
+import { Marks, RED } from "./marks.js";
 
-const RED = new Color(0xe03131);
-const BONE = 0x868e96;
+const AT_LIMIT = new Color(RED);
 const TRANSLUCENT = 0.22; // opacity of shapes behind which loops are shown
 
 export class RobotScene extends Group {
@@ -53,10 +52,7 @@ export class RobotScene extends Group {
   place() {
     this.placeLinks();
     this.loops.place(this.session);
-    this.bones?.forEach(({ joint, rod }) => {
-      const { kinematics } = this.session;
-      rod.span(kinematics.pose(joint.parent).p, kinematics.pose(joint.child).p);
-    });
+    this.placeBones?.forEach((place) => place(this.session.kinematics));
     this.paint();
   }
 
@@ -90,18 +86,14 @@ export class RobotScene extends Group {
 
   /** A robot without shapes, or with a mesh that is not drawn, has lines between its links; each is a part of the upper link. */
   addBones() {
-    const marks = new Marks();
-    this.bones = this.session.robot.joints.map((joint) => {
-      const rod = marks.rod(0.004 * this.size, BONE);
-      rod.mesh.userData.link = joint.parent;
-      return { joint, rod };
-    });
-    this.add(marks);
+    this.bones = new Marks();
+    this.placeBones = this.bones.skeleton(this.session.robot, 0.004 * this.size);
+    this.add(this.bones);
   }
 
   /** The meshes that can be grabbed; each says its link in its data. */
   get grabbed() {
-    return [...new Set(this.parts.map(({ mesh }) => mesh)), ...(this.bones ?? []).map(({ rod }) => rod.mesh)];
+    return [...new Set(this.parts.map(({ mesh }) => mesh)), ...(this.bones?.children ?? [])];
   }
 
   /** Colours and opacity of the parts; a part whose joint is at a limit is red. */
@@ -111,7 +103,7 @@ export class RobotScene extends Group {
     const red = new Set(stopped.map((joint) => joint.child));
     for (const { link, material, color, opacity } of this.parts) {
       if (color) lighten(material.color.copy(color), this.dark);
-      if (color && red.has(link)) material.color.lerp(RED, 0.7);
+      if (color && red.has(link)) material.color.lerp(AT_LIMIT, 0.7);
       const alpha = this.translucent ? TRANSLUCENT * opacity : opacity;
       if (material.transparent !== alpha < 1) material.needsUpdate = true;
       material.transparent = alpha < 1;

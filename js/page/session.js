@@ -3,9 +3,9 @@
 import { Mechanism } from "../src/mechanism.js";
 import { Drive, analyze, assemble, drag, limits, sliders } from "../src/closing.js";
 import { characteristicLength } from "../src/closing/scale.js";
+import { CLOSED } from "../src/closing/tolerances.js";
 import { JOINT_TYPES } from "../src/mechanism/joint_types.js";
 
-const CLOSED = 1e-6; // a larger row of a residual is that of an open loop, m or rad
 const AT_LIMIT = 1e-4; // a coordinate nearer to its limit is at it, rad or m
 const REACHED = 1e-3; // a part that a drag leaves nearer to its target has reached it, in characteristic lengths
 const REMEMBERED = 200; // configurations to go back to

@@ -1,9 +1,9 @@
 // Which robots are among files: each description with its URDF, and each URDF that no description names.
 
 import { urdfOf } from "../../src/index.js";
+import { MOST_BYTES } from "../../src/reading/source.js";
 import { folderOf, nameOf, resolve } from "./paths.js";
 
-const MOST_BYTES = 16_777_216; // of a file that a reader accepts
 const KEYS = ["extended_urdf", "closed_loop", "name_mot", "joint_name"]; // one of which a description has
 /** What the text of a description contains. */
 export const IS_DESCRIPTION = new RegExp(`^[ \\t{]*["']?(${KEYS.join("|")})["']?[ \\t]*:`, "m");

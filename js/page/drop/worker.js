@@ -1,6 +1,7 @@
 // What takes time, away from the page: which robots there are, their check, their closed configuration and mobility.
 
 import { closuresOfDialects, read } from "../../src/index.js";
+import { MOST_BYTES } from "../../src/reading/source.js";
 import { Mechanism } from "../../src/mechanism.js";
 import { analyze, assemble } from "../../src/closing.js";
 import { fixesOf } from "./fixes.js";
@@ -9,7 +10,6 @@ import { findResource, folderOf, nameOf, packageNameOf } from "./paths.js";
 import { robotsIn } from "./robots.js";
 import { robotToShow, whatToShow } from "./shown.js";
 
-const MOST_BYTES = 16_777_217; // of a file that is read: one more than a reader accepts, so that it says so
 const MOST_SHOWN = 1_000_000; // bytes of the two files of a robot that the page reads again and shows
 const MOST_VELOCITIES = 300; // that a page moves
 const MOST_LINKS = 2000; // that it draws
@@ -98,7 +98,8 @@ const cut = (text) => (text.length > LONGEST ? `${text.slice(0, LONGEST)}…` : 
 
 /** {name, text: bytes}; a file that is not there has null. */
 async function contentOf({ path, file }) {
-  return { name: path, text: file && new Uint8Array(await file.slice(0, MOST_BYTES).arrayBuffer()) };
+  // One byte more than a reader accepts, so that it says so.
+  return { name: path, text: file && new Uint8Array(await file.slice(0, MOST_BYTES + 1).arrayBuffer()) };
 }
 
 /** The text as a person sees it, whatever is wrong with it. */

@@ -7,9 +7,8 @@ import { coordinatesOf, hasPose, motionsBetween } from "./poses_of_joints.js";
 import { problemOf } from "./problem.js";
 import { rangeOf } from "./sliders.js";
 import { atRest } from "./spring_rest.js";
-import { CLOSED } from "./tolerances.js";
+import { CLOSED, DEAD } from "./tolerances.js";
 
-const DEAD = 0.01; // a smallest singular value of K_p below this part of the largest one met is that of a dead point
 const SHORTEST_STEP = 2 ** -22; // of the range of a coordinate
 const TO_LIMIT = 8; // corrections of a last step to the limit of a passive joint
 const REST_STEPS = 40; // over the range of a coordinate, of a robot with springs

@@ -4,9 +4,8 @@ import { JOINT_TYPES } from "../mechanism/joint_types.js";
 import { assembled } from "./assemble.js";
 import { Branch } from "./branch.js";
 import { problemOf } from "./problem.js";
-import { CLOSED } from "./tolerances.js";
+import { CLOSED, DEAD } from "./tolerances.js";
 
-const DEAD = 0.01; // as for Drive
 const SHORTEST_STEP = 2 ** -12; // of a step
 
 /**

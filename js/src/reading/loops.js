@@ -2,9 +2,9 @@
 
 import { assemble } from "../closing/assemble.js";
 import { Decomposition } from "../closing/linear_algebra.js";
+import { CLOSED } from "../closing/tolerances.js"; // of a coupling, times its largest coefficient
 import { Mechanism } from "../mechanism/mechanism.js";
 
-const CLOSED = 1e-6; // m, rad; of a coupling, times its largest coefficient
 const STARTS = [0, 0.1, -0.1]; // velocities that lead from the neutral to where a search starts
 const STEPS = 100;
 const LONGEST = 0.5; // of a step

@@ -1,7 +1,8 @@
 // A file as UTF-8 text within its bound, EU-FIL-001 to -003, and the lines and columns of its characters.
 // A place is an object with a `source`, and with an `offset` in it (in UTF-16 units) unless it is the file as a whole.
 
-const MOST_BYTES = 16_777_216;
+/** Of a file. */
+export const MOST_BYTES = 16_777_216;
 
 export class Source {
   /** `text`: without a byte order mark. */

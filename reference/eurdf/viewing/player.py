@@ -71,7 +71,7 @@ class Player:
         self._tell(self.playing)
 
     def _told(self, frames: Iterator[float]) -> Iterator[float]:
-        """The frames of a motion, each of which is told; at its end it is paused."""
+        """Pass on the frames of a motion, and tell pages where it is; pause it at its end."""
         each = self._playback
         assert each is not None
         time = each.time

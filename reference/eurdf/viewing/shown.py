@@ -110,7 +110,7 @@ class ShownRobot:
         self.version += 1
 
     def model(self, facts: Facts | None) -> Model:
-        """What a page is told of it."""
+        """The message that describes this robot to a page."""
         return Model(
             robot=self._number,
             version=self.version,

@@ -188,7 +188,7 @@ class Viewer:
         return next(filter(None, (each.mesh(path) for each in self._shown)), None)
 
     def _greeting(self) -> list[str]:
-        """What a page is told when it connects."""
+        """The messages for a page that connects."""
         found: list[Any] = [each.model(self._facts if each is self._first else None) for each in self._shown]
         found += [self._player.playing, *([self._analyzed] if self._analyzed else [])]
         return [messages.text_of(each) for each in found]
