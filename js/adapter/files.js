@@ -2,9 +2,10 @@
 
 import { closeSync, constants, fstatSync, openSync, readSync } from "node:fs";
 import { basename } from "node:path";
+import { MOST_BYTES } from "../src/reading/source.js";
 import { namedFiles } from "./named_files.js";
 
-const MOST_BYTES = 16_777_216 + 1; // one more than a file may have, EU-FIL-002
+const READ = MOST_BYTES + 1; // one more than a file may have, EU-FIL-002
 
 /** What `read` takes, of the files at two paths. */
 export const textsAt = ({ description, urdf }) => ({
@@ -32,7 +33,7 @@ function fileAt(path) {
 }
 
 function bytesOf(file) {
-  const bytes = new Uint8Array(Math.min(fstatSync(file).size, MOST_BYTES));
+  const bytes = new Uint8Array(Math.min(fstatSync(file).size, READ));
   let length = 0;
   for (let more = 1; more && length < bytes.length; length += more) more = readSync(file, bytes, { offset: length });
   return bytes.subarray(0, length);

@@ -17,26 +17,14 @@ from eurdf.convert.losses import Effect
 from eurdf.mechanism.constraint import Coupling
 from eurdf.mechanism.joint_types import JointType
 from eurdf.pinocchio.robot import build_robot
+from support.open_four_bar import TURN, robot
 from support.plain_urdf import inertial, joint_element, link_element
-
-LINKS = "".join(link_element(name, inertial(1.0)) for name in ("base", "left", "top", "right"))
-TURN = '<axis xyz="0 1 0"/>'
-JOINTS = (
-    joint_element("a", "continuous", "base", "left", TURN)
-    + joint_element("b", "continuous", "left", "top", TURN, '<origin xyz="0 0 1"/>')
-    + joint_element("c", "continuous", "base", "right", TURN, '<origin xyz="1 0 0"/>')
-)
-
 
 ENDS = '<link1 link="top"/><link2 link="right"/>'
 
 
 def loop_joint(content: str, attributes: str = 'type="spherical"') -> str:
     return f'<loop_joint name="l" {attributes}>{content}</loop_joint>'
-
-
-def robot(content: str, attributes: str = "") -> str:
-    return f'<robot name="r"{attributes}>{LINKS}{JOINTS}{content}</robot>'
 
 
 def imported(folder: Path, text: str, format_: str | None = None) -> eurdf.convert.Import:

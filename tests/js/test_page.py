@@ -17,7 +17,7 @@ import pytest
 import eurdf
 from eurdf.viewing.live_robot import PageRobot, live_page, page_robot, page_robot_of
 from eurdf.viewing.scene import Scene
-from support.browser import axe, barriers, browser, errors_of
+from support.browser import POSES, VIEW, axe, barriers, browser, errors_of
 from support.described import strut
 from support.hostile_meshes import collada, gltf
 from support.places import ROBOTS
@@ -25,19 +25,9 @@ from support.stl import TETRAHEDRON
 
 pytestmark = pytest.mark.slow
 
-# What scripts of the tests start with: the view of the only robot on the page.
-_VIEW = "const view = document.querySelector('.eu-live').view; const { session, scene } = view;"
-
-# Where a link is drawn: the transform to the world, by rows.
-_POSES = f"""() => {{
-  {_VIEW}
-  const rows = ({{ elements: e }}) => [0, 1, 2, 3].map((i) => [e[i], e[4 + i], e[8 + i], e[12 + i]]);
-  return Object.fromEntries([...scene.links].map(([name, link]) => [name, rows(link.matrixWorld)]));
-}}"""
-
 # A point of the picture, nearest to the lower left corner, at which a link other than the root is drawn.
 _HANDLE = f"""() => {{
-  {_VIEW}
+  {VIEW}
   const {{ left, right, top, bottom }} = view.viewport.canvas.getBoundingClientRect();
   for (let y = bottom - 4; y > top; y -= 4)
     for (let x = left + 4; x < right; x += 4) {{
@@ -48,7 +38,7 @@ _HANDLE = f"""() => {{
 
 # Where the held point is in the window.
 _HELD = f"""() => {{
-  {_VIEW}
+  {VIEW}
   const at = view.grabbing.ball.position.clone().project(view.viewport.camera);
   const {{ left, top, width, height }} = view.viewport.canvas.getBoundingClientRect();
   return [left + (0.5 + 0.5 * at.x) * width, top + (0.5 - 0.5 * at.y) * height];
@@ -81,11 +71,11 @@ class Opened:
 
     def ask(self, expression: str) -> Any:
         """The value of an expression in JavaScript that knows ``view``, ``session`` and ``scene``."""
-        return self.page.evaluate(f"() => {{ {_VIEW} return {expression}; }}")
+        return self.page.evaluate(f"() => {{ {VIEW} return {expression}; }}")
 
     def wait(self, condition: str) -> None:
         """Wait until an expression of `ask` is true."""
-        self.page.wait_for_function(f"() => {{ {_VIEW} return {condition}; }}")
+        self.page.wait_for_function(f"() => {{ {VIEW} return {condition}; }}")
 
     @property
     def q(self) -> dict[str, list[float]]:
@@ -115,7 +105,7 @@ def assert_drawn_where_the_reference_has_it(page: Opened, robot: eurdf.Robot) ->
     q = robot.configuration({name: tuple(each) for name, each in page.q.items()})
     data = robot.model.createData()
     pin.framesForwardKinematics(robot.model, data, q)
-    poses = page.page.evaluate(_POSES)
+    poses = page.page.evaluate(POSES)
     assert set(poses) == {body.name for body in robot.mechanism.bodies if not body.virtual}
     for link, pose in poses.items():
         expected = data.oMf[robot.model.getFrameId(link, pin.BODY)].homogeneous
@@ -410,7 +400,7 @@ def test_meshes_of_each_format_are_drawn_where_the_reference_has_them(chromium: 
     (tmp_path / "robot.urdf").write_text(f'<robot name="meshes">{links}{joints}</robot>')
     robot = eurdf.load(tmp_path / "robot.urdf")
     page = Opened(chromium, tmp_path, page_robot(tmp_path / "robot.urdf"))
-    page.page.evaluate(f"async () => {{ {_VIEW} await scene.loaded; }}")
+    page.page.evaluate(f"async () => {{ {VIEW} await scene.loaded; }}")
     drawn = page.ask(
         "scene.parts.map(({ mesh, link }) => { const p = mesh.geometry.attributes.position;"
         " mesh.updateWorldMatrix(true, false); return [link, Array.from({ length: p.count }, (_, i) =>"

@@ -18,7 +18,7 @@ from eurdf_conformance.corpus.case import InvalidCase
 from eurdf_conformance.corpus.read import read_cases
 from spec.site.clause import ROOT
 from spec.site.drop import write_drop_page
-from support.browser import barriers, browser, errors_of, scrolls_sideways, served
+from support.browser import POSES, VIEW, barriers, browser, errors_of, scrolls_sideways, served
 from support.hostile import HOSTILE, INERTIAL, joint
 from support.places import ROBOTS
 from support.stl import TETRAHEDRON
@@ -26,15 +26,6 @@ from support.wild import ROBOTS as WILD_ROBOTS
 from support.wild import needs_wild
 
 pytestmark = pytest.mark.slow
-
-_VIEW = "const view = document.querySelector('.eu-live').view; const { session, scene } = view;"
-
-# The transform to the world of each link that is drawn, by rows.
-_POSES = f"""() => {{
-  {_VIEW}
-  const rows = ({{ elements: e }}) => [0, 1, 2, 3].map((i) => [e[i], e[4 + i], e[8 + i], e[12 + i]]);
-  return Object.fromEntries([...scene.links].map(([name, link]) => [name, rows(link.matrixWorld)]));
-}}"""
 
 _FOUND = """() => [...document.querySelectorAll("#diagnostics > li")].map((item) =>
   [".drop-severity", "a", ".drop-at"].map((part) => item.querySelector(part).textContent))"""
@@ -116,7 +107,7 @@ class Opened:
 
     @property
     def q(self) -> dict[str, list[float]]:
-        q: dict[str, list[float]] = self.page.evaluate(f"() => {{ {_VIEW} return session.q; }}")
+        q: dict[str, list[float]] = self.page.evaluate(f"() => {{ {VIEW} return session.q; }}")
         return q
 
     def close(self) -> None:
@@ -141,7 +132,7 @@ def assert_moves_as_the_reference(page: Opened, robot: eurdf.Robot) -> None:
         assert np.abs(eurdf.residual(robot, q)).max(initial=0) < 1e-9
         data = robot.model.createData()
         pin.framesForwardKinematics(robot.model, data, q)
-        for link, pose in page.page.evaluate(_POSES).items():
+        for link, pose in page.page.evaluate(POSES).items():
             expected = data.oMf[robot.model.getFrameId(link, pin.BODY)].homogeneous
             np.testing.assert_allclose(pose, expected, atol=1e-9, err_msg=link)
 
@@ -329,7 +320,7 @@ def test_meshes_are_found_in_the_dropped_package(chromium: Any, address: str, tm
     )
     page = Opened(chromium, address)
     page.drop(tmp_path)
-    assert page.page.evaluate(f"async () => {{ {_VIEW} await scene.loaded; return scene.parts.length; }}") == 2
+    assert page.page.evaluate(f"async () => {{ {VIEW} await scene.loaded; return scene.parts.length; }}") == 2
     assert [code for _, code, _ in page.found] == ["urdf-mesh-missing"]
     page.close()
 

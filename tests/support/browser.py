@@ -23,6 +23,17 @@ _NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable
 _WITHOUT_GPU = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 
 
+#: What a script starts with that knows the only robot on a page of it: its session and its scene.
+VIEW = "const view = document.querySelector('.eu-live').view; const { session, scene } = view;"
+
+#: The transform to the world of each link that is drawn, by rows.
+POSES = f"""() => {{
+  {VIEW}
+  const rows = ({{ elements: e }}) => [0, 1, 2, 3].map((i) => [e[i], e[4 + i], e[8 + i], e[12 + i]]);
+  return Object.fromEntries([...scene.links].map(([name, link]) => [name, rows(link.matrixWorld)]));
+}}"""
+
+
 @contextmanager
 def browser() -> Iterator[Any]:
     """A browser; the test is skipped where there is none."""

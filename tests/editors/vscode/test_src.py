@@ -12,7 +12,7 @@ import pytest
 
 import eurdf
 from eurdf.viewing.page_files import page_path
-from support.browser import browser, errors_of
+from support.browser import VIEW, browser, errors_of
 from support.places import ROBOTS, ROOT
 from support.processes import why_not_installed
 
@@ -33,8 +33,6 @@ const text = (path) => readFile(path, "utf8");
 const page = previewPage(content, { script: await text(script), style: await text(style), nonce: "a0" });
 process.stdout.write(JSON.stringify({ content, page }));
 """
-
-_VIEW = "const { session, scene } = document.querySelector('.eu-live').view;"
 
 
 def node(*arguments: str) -> str:
@@ -70,14 +68,14 @@ def test_preview_moves_the_robot_and_follows_its_texts(tmp_path: Path, name: str
         page.get_by_role("slider").first.wait_for()
 
         def ask(expression: str) -> Any:
-            return page.evaluate(f"() => {{ {_VIEW} return {expression}; }}")
+            return page.evaluate(f"() => {{ {VIEW} return {expression}; }}")
 
         def told(**message: Any) -> None:
             page.evaluate(
                 "async (data) => { postMessage(data); await new Promise((done) => setTimeout(done)); }", message
             )
 
-        assert page.evaluate(f"async () => {{ {_VIEW} return (await scene.loaded).length; }}") == 0
+        assert page.evaluate(f"async () => {{ {VIEW} return (await scene.loaded).length; }}") == 0
         before, drawn = (
             ask("session.q"),
             ask("[...scene.links.values()].map(({ matrixWorld }) => matrixWorld.elements)"),
@@ -104,7 +102,7 @@ def test_preview_moves_the_robot_and_follows_its_texts(tmp_path: Path, name: str
         told(content={**content, "urdf": renamed, "meshes": {}})
         assert page.locator(".eu-live-problem").count() == 0
         assert ask("session.robot.name").startswith("other_")
-        assert page.evaluate(f"async () => {{ {_VIEW} return (await scene.loaded).length; }}") == 0
+        assert page.evaluate(f"async () => {{ {VIEW} return (await scene.loaded).length; }}") == 0
         for joint, values in moved.items():
             assert ask("session.q")[joint] == pytest.approx(values, abs=1e-6)
         assert ask(camera) == at

@@ -12,7 +12,7 @@ import pytest
 import eurdf
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.robot import build_robot
-from support.plain_urdf import inertial, joint_element, link_element
+from support.open_four_bar import robot
 from support.processes import JAVASCRIPT, why_not_installed
 from support.same_mechanism import unlike
 
@@ -25,18 +25,7 @@ import { closuresOfDialects } from "extended-urdf";
 process.stdout.write(JSON.stringify(closuresOfDialects(readFileSync(0, "utf8"))));
 """
 
-LINKS = "".join(link_element(name, inertial(1.0)) for name in ("base", "left", "top", "right"))
-TURN = '<axis xyz="0 1 0"/>'
-JOINTS = (
-    joint_element("a", "continuous", "base", "left", TURN)
-    + joint_element("b", "continuous", "left", "top", TURN, '<origin xyz="0 0 1"/>')
-    + joint_element("c", "continuous", "base", "right", TURN, '<origin xyz="1 0 0"/>')
-)
 DRAKE = ' xmlns:drake="http://drake.mit.edu"'
-
-
-def robot(content: str, attributes: str = "") -> str:
-    return f'<robot name="r"{attributes}>{LINKS}{JOINTS}{content}</robot>'
 
 
 def described(folder: Path, urdf: str) -> tuple[eurdf.Robot, list[str]]:
